@@ -1,0 +1,220 @@
+"""Point files: the netCDF form of a trajectory, with all names, attributes and encodings of its variables.
+
+docs/data.md is the data dictionary for readers. Writing needs netCDF4 only, so that a point job starts fast; the same
+table makes the xarray Dataset of a notebook.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from burridge_knopoff.files import write_whole
+from burridge_knopoff.provenance import provenance
+from burridge_knopoff.simulation import DEFAULT_SOLVER, STATUS, Trajectory
+
+if TYPE_CHECKING:
+    import netCDF4
+    import xarray
+
+CONVENTIONS = "CF-1.11, ACDD-1.3"
+COMPRESSION_LEVEL = 5
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes."""
+
+    dimensions: tuple[str, ...]
+    dtype: str
+    long_name: str
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    coordinate: bool = False
+
+    def all_attributes(self) -> dict[str, Any]:
+        """Return the attributes in the order in which they are written."""
+        attributes: dict[str, Any] = {"long_name": self.long_name}
+        if "flag_values" not in self.attributes:
+            attributes["units"] = "1"
+        attributes.update(self.attributes)
+        return attributes
+
+
+def flag(dtype: str, meanings: Mapping[int, str]) -> dict[str, Any]:
+    """Return the CF attributes of a flag variable."""
+    return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
+
+
+KIND = flag("i1", {0: "stop", 1: "start"})
+DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
+STATUS_FLAG = flag("i1", dict(enumerate(STATUS)))
+RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
+
+_V = Variable
+POINT_VARIABLES: dict[str, Variable] = {
+    "a": _V((), "f8", "friction parameter a", coordinate=True),
+    "v": _V((), "f8", "driver velocity v", coordinate=True),
+    "block": _V(("block",), "i2", "block number, 1 to N along the chain", coordinate=True),
+    "initial_position": _V(("block",), "f8", "initial position U(0)"),
+    "initial_velocity": _V(("block",), "f8", "initial velocity U'(0)"),
+    "status": _V((), "i1", "how the run ended", STATUS_FLAG),
+    "end_time": _V((), "f8", "time tau at which the run ended"),
+    "event_count": _V((), "i8", "number of stops and starts in the whole run"),
+    "step_count": _V((), "i8", "number of solver steps in the whole run"),
+    "mean_distance": _V(
+        (),
+        "f8",
+        "time average <J> of the phase-space distance between the end blocks over the window",
+        {"cell_methods": "time: mean", "ancillary_variables": "mean_distance_error status"},
+    ),
+    "mean_distance_error": _V((), "f8", "standard error of <J> from the batch means"),
+    "batch_mean_distance": _V(("batch",), "f8", "time average of J over one batch of the window"),
+    "batch": _V(("batch",), "f8", "time tau at the middle of the batch", coordinate=True),
+    "least_friction": _V((), "f8", "least friction Phi(a U') on a slipping block in the whole run"),
+    "least_spring_force": _V((), "f8", "least spring force s on a stuck block in the whole run"),
+    "window_least_friction": _V((), "f8", "least friction Phi(a U') on a slipping block in the window"),
+    "window_least_spring_force": _V((), "f8", "least spring force s on a stuck block in the window"),
+    "time": _V(("time",), "f8", "time tau of a sample of J", coordinate=True),
+    "distance": _V(("time",), "f8", "phase-space distance J(tau) between the end blocks"),
+    "earlier_event_time": _V(("earlier_event",), "f8", "time tau of an event before those with states"),
+    "earlier_event_block": _V(("earlier_event",), "i2", "block that stops or starts before those with states"),
+    "earlier_event_kind": _V(("earlier_event",), "i1", "kind of event before those with states", KIND),
+    "event_time": _V(("event",), "f8", "time tau of an event"),
+    "event_block": _V(("event",), "i2", "block that stops or starts"),
+    "event_kind": _V(("event",), "i1", "kind of event", KIND),
+    "event_position": _V(("event", "block"), "f8", "positions of all blocks at an event", RELATIVE),
+    "event_velocity": _V(("event", "block"), "f8", "velocities U' of all blocks at an event"),
+    "crossing_time": _V(("crossing",), "f8", "time tau of a crossing of the section W = 0"),
+    "crossing_velocity": _V(("crossing",), "f8", "W' at a crossing of the section W = 0"),
+    "crossing_direction": _V(("crossing",), "i1", "direction in which W crosses 0", DIRECTION),
+    "trajectory_time": _V(("trajectory_time",), "f8", "time tau in the last part of the run", coordinate=True),
+    "position": _V(("trajectory_time", "block"), "f8", "positions of the blocks", RELATIVE),
+    "velocity": _V(("trajectory_time", "block"), "f8", "velocities U' of the blocks"),
+}
+
+
+def point_values(trajectory: Trajectory) -> dict[str, Any]:
+    """Return the values of all point variables."""
+    settings = trajectory.settings
+    width = settings.window / settings.batches
+    special = {
+        "a": trajectory.friction.a,
+        "v": settings.v,
+        "block": np.arange(1, trajectory.chain.blocks + 1),
+        "initial_position": np.array(trajectory.initial.position),
+        "initial_velocity": np.array(trajectory.initial.velocity),
+        "status": STATUS.index(trajectory.status),
+        "batch": settings.transient + width * (np.arange(settings.batches) + 0.5),
+    }
+    return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
+
+
+def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
+    """Return the global attributes of a point file."""
+    settings = trajectory.settings
+    law = trajectory.friction.law
+    attributes = {
+        "Conventions": CONVENTIONS,
+        "title": f"Burridge-Knopoff chain of {trajectory.chain.blocks} blocks, {law} friction law",
+        "summary": (
+            "One simulation of spring-coupled blocks with stick-slip friction: event sequence, section crossings and "
+            "phase-space distance between the end blocks. All quantities are dimensionless."
+        ),
+        "keywords": "stick-slip, Burridge-Knopoff model, synchronization",
+        "source": f"{provenance()['software']}, event-driven or time-stepping simulation",
+        "law": law,
+        "solver": settings.solver or DEFAULT_SOLVER[law],
+        "initial": trajectory.initial.name,
+        "contact": settings.contact,
+        "start": settings.start,
+        "events": settings.events,
+        "transient": settings.transient,
+        "window": settings.window,
+    }
+    if attributes["solver"] == "rk4":
+        attributes["step"] = settings.step
+    attributes.update(provenance())
+    return attributes
+
+
+def write_point(trajectory: Trajectory, path: str | Path) -> None:
+    """Write a trajectory as a point file, whole or not at all.
+
+    Raises OSError if the file cannot be written.
+    """
+    import netCDF4
+
+    def write(name: str) -> None:
+        try:
+            with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
+                fill(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
+        except RuntimeError as error:
+            raise OSError(f"{path}: cannot be written: {error}") from error
+
+    write_whole(path, write)
+
+
+def fill(
+    dataset: netCDF4.Dataset,
+    variables: Mapping[str, Variable],
+    values: Mapping[str, Any],
+    attributes: Mapping[str, Any],
+) -> None:
+    """Write attributes, dimensions and variables into an open netCDF file."""
+    dataset.setncatts(dict(attributes))
+    scalars = " ".join(name for name, item in variables.items() if item.coordinate and not item.dimensions)
+    for name, item in variables.items():
+        array = np.asarray(values[name], dtype=item.dtype)
+        for dimension, size in zip(item.dimensions, array.shape, strict=True):
+            if dimension not in dataset.dimensions:
+                dataset.createDimension(dimension, size)
+        large = array.size > 64
+        variable = dataset.createVariable(
+            name,
+            item.dtype,
+            item.dimensions,
+            compression="zlib" if large else None,
+            complevel=COMPRESSION_LEVEL,
+            shuffle=large,
+            chunksizes=array.shape if large else None,
+            fill_value=False,
+        )
+        named = item.all_attributes()
+        if not item.coordinate:
+            named["coordinates"] = _coordinates(item, scalars)
+        variable.setncatts(named)
+        variable[...] = array
+
+
+_AUXILIARY = {"event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
+
+
+def _coordinates(item: Variable, scalars: str) -> str:
+    """Return the CF coordinates attribute: a and v everywhere, and the times of events and crossings."""
+    own = [_AUXILIARY[dimension] for dimension in item.dimensions if dimension in _AUXILIARY]
+    return " ".join([*own, scalars]).strip()
+
+
+def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
+    """Return a trajectory as the xarray Dataset that its point file opens as."""
+    import xarray
+
+    values = point_values(trajectory)
+    variables = {
+        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
+        for name, item in POINT_VARIABLES.items()
+    }
+    auxiliary = set(_AUXILIARY.values())
+    return xarray.Dataset(
+        {name: value for name, value in variables.items() if not _is_coordinate(name, auxiliary)},
+        {name: value for name, value in variables.items() if _is_coordinate(name, auxiliary)},
+        point_attributes(trajectory),
+    )
+
+
+def _is_coordinate(name: str, auxiliary: set[str]) -> bool:
+    return POINT_VARIABLES[name].coordinate or name in auxiliary

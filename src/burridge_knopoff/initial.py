@@ -1,0 +1,69 @@
+"""Initial states: positions U(0) and velocities U'(0) of all blocks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+CONTACTS = ("one_sided", "symmetric")
+STARTS = ("moving", "tested")
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """Positions U(0) and velocities U'(0), one number a block, under a name.
+
+    Raises ValueError where the numbers are not finite or do not match in count.
+    """
+
+    name: str
+    position: tuple[float, ...]
+    velocity: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for key in ("position", "velocity"):
+            values = tuple(float(value) for value in getattr(self, key))
+            object.__setattr__(self, key, values)
+            for value in values:
+                if not math.isfinite(value) or abs(value) > 1e6:
+                    raise ValueError(f"{key}: {value!r} is not allowed: finite numbers within ±1e6")
+        if len(self.velocity) != len(self.position):
+            raise ValueError(
+                f"velocity: {len(self.velocity)} numbers for {len(self.position)} positions; one a block is needed"
+            )
+
+    def check_contact(self, contact: str) -> None:
+        """Raise ValueError if a block slides backward, which a one-sided contact does not know."""
+        if contact == "one_sided" and min(self.velocity) < 0.0:
+            raise ValueError(
+                f"velocity: {min(self.velocity)!r} is not allowed under contact one_sided: "
+                "blocks only slip forward (≥ 0); contact symmetric allows backward slip"
+            )
+
+
+_PAPER_VELOCITY = (0.099, 0.1012, 0.1023)
+
+#: The paper's two initial states (Section III): they differ in U_1(0) only.
+PAPER_STATES = {
+    "minus": InitialState("minus", (-0.989, -0.993, -0.991), _PAPER_VELOCITY),
+    "plus": InitialState("plus", (0.989, -0.993, -0.991), _PAPER_VELOCITY),
+}
+
+
+def initial_state(name: str, position: Sequence[float] | None = None, velocity: Sequence[float] | None = None):
+    """Return the state of that name: one of the paper's, or the given numbers under this name.
+
+    Raises ValueError if the name is unknown and numbers are missing.
+    """
+    known = PAPER_STATES.get(name)
+    if position is None and velocity is None and known is not None:
+        return known
+    if position is None or velocity is None:
+        if known is None:
+            raise ValueError(
+                f"initial: {name!r} is not known: {' | '.join(PAPER_STATES)}, or give both position and velocity"
+            )
+        position = known.position if position is None else position
+        velocity = known.velocity if velocity is None else velocity
+    return InitialState(name, tuple(position), tuple(velocity))

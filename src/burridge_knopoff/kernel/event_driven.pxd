@@ -1,0 +1,27 @@
+from burridge_knopoff.kernel.events cimport EventLog
+from burridge_knopoff.kernel.modes cimport Modes
+from burridge_knopoff.kernel.observe cimport Observer
+from burridge_knopoff.kernel.piece cimport Piece
+from burridge_knopoff.kernel.polynomial cimport Polynomial
+from burridge_knopoff.kernel.series cimport Series
+from burridge_knopoff.kernel.state cimport State
+
+cdef class EventDriven:
+    cdef readonly State state
+    cdef readonly EventLog log
+    cdef readonly Observer observer
+    cdef Series series
+    cdef Piece piece
+    cdef Polynomial polynomial
+    cdef Modes modes
+    cdef bint closed_form
+    cdef readonly double clock
+    cdef readonly double clock_rest
+    cdef readonly long long steps
+    cdef long long step_limit
+    cdef double event_time
+    cdef double since_event
+
+    cdef int _run(self) noexcept nogil
+    cdef Py_ssize_t _first_event(self, double horizon) noexcept nogil
+    cdef void _advance(self, double t) noexcept nogil

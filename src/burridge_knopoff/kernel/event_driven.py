@@ -1,0 +1,152 @@
+"""The event-driven solvers `map` and `series`: smooth motion from event to event, each event where it truly lies.
+
+Both look for events on the Taylor polynomials of the motion, in which none can be missed (see `polynomial`). `series`
+also takes the state at the end of a piece from them; `map` takes it from the normal modes since the last event, so that
+its only approximation is the event time.
+"""
+
+import cython
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.events import (
+        ACCUMULATING_EVENTS,
+        COMPLETED,
+        NOT_FINITE,
+        RUNNING,
+        STEP_LIMIT,
+        STEPS_PER_CALL,
+        EventLog,
+    )
+    from cython.cimports.burridge_knopoff.kernel.modes import Modes
+    from cython.cimports.burridge_knopoff.kernel.observe import Observer
+    from cython.cimports.burridge_knopoff.kernel.piece import Piece
+    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from cython.cimports.burridge_knopoff.kernel.series import Series
+    from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
+else:
+    from burridge_knopoff.kernel.events import (
+        ACCUMULATING_EVENTS,
+        COMPLETED,
+        NOT_FINITE,
+        RUNNING,
+        STEP_LIMIT,
+        STEPS_PER_CALL,
+        EventLog,
+    )
+    from burridge_knopoff.kernel.modes import Modes
+    from burridge_knopoff.kernel.observe import Observer
+    from burridge_knopoff.kernel.piece import Piece
+    from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from burridge_knopoff.kernel.series import Series
+    from burridge_knopoff.kernel.state import YOUNG, State
+
+class EventDriven:
+    """One run of a solver that goes from event to event; `run` returns its status."""
+
+    def __init__(self, state, log, observer, order: int, closed_form: bool, step_limit: int) -> None:
+        self.state = state
+        self.log = log
+        self.observer = observer
+        self.series = Series(state.blocks, order)
+        self.piece = Piece(state.blocks, order)
+        self.polynomial = Polynomial(order)
+        self.modes = Modes(state.blocks)
+        self.closed_form = closed_form
+        self.clock = 0.0
+        self.clock_rest = 0.0
+        self.steps = 0
+        self.step_limit = step_limit
+        self.event_time = 0.0
+        self.since_event = 0.0
+
+    def run(self) -> int:
+        """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended."""
+        status: cython.int
+        with cython.nogil:
+            status = self._run()
+        return status
+
+    def _run(self):
+        block: cython.Py_ssize_t
+        length: cython.double
+        remaining: cython.double
+        total: cython.double
+        budget: cython.int = STEPS_PER_CALL
+        if self.steps == 0:
+            self.log.settle(self.state, self.clock)
+            if self.closed_form:
+                self.modes.start(self.state)
+        while budget > 0:
+            budget -= 1
+            if self.log.accumulating:
+                return ACCUMULATING_EVENTS
+            if self.steps >= self.step_limit:
+                return STEP_LIMIT
+            remaining = (self.observer.end - self.clock) - self.clock_rest
+            length = self.series.expand(self.state, self.piece)
+            self.steps += 1
+            if not length > 0.0:
+                return NOT_FINITE
+            length = min(length, remaining)
+            block = self._first_event(length)
+            if block >= 0:
+                length = self.event_time
+            self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
+            self.since_event += length
+            self._advance(length)
+            if self.closed_form:
+                self.modes.advance(self.state, self.since_event)
+            total = self.clock + (self.clock_rest + length)
+            self.clock_rest = (self.clock - total) + (self.clock_rest + length)
+            self.clock = total
+            if block >= 0:
+                self.log.change(self.state, block, self.clock)
+                self.log.settle(self.state, self.clock)
+                self.since_event = 0.0
+                if self.closed_form:
+                    self.modes.start(self.state)
+            if length >= remaining:
+                return COMPLETED
+        return RUNNING
+
+    def _first_event(self, horizon):
+        """Return the block that stops or starts first within the horizon, its time in event_time; -1 if none does."""
+        i: cython.Py_ssize_t
+        side: cython.int
+        t: cython.double
+        block: cython.Py_ssize_t = -1
+        self.event_time = horizon
+        for i in range(self.state.blocks):
+            for side in range(1, -2 * self.state.symmetric, -2):
+                if self.state.slip[i] != 0:
+                    self.piece.load_speed(self.state, i, self.polynomial)
+                else:
+                    self.piece.load_gap(self.state, i, side, self.polynomial)
+                # The zeros at the start of the piece are known exactly: a block that has just started has U' = U'' = 0.
+                self.polynomial.deflate()
+                t = self.polynomial.first_root(self.event_time)
+                if t >= 0.0 and (t < self.event_time or block < 0):
+                    self.event_time = t
+                    block = i
+                if self.state.slip[i] != 0:
+                    break
+        return block
+
+    def _advance(self, t):
+        """Move the state on by t along the piece."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        slope: cython.double
+        for i in range(self.state.blocks):
+            self.state.position[i] = evaluate(self.piece.position, i, self.piece.degree, t)
+            if t > 0.0:
+                self.state.touching[i] = 0
+            if self.state.slip[i] == 0:
+                continue
+            self.state.velocity[i] = evaluate(self.piece.velocity, i, self.piece.degree, t)
+            self.state.age[i] += t
+            if self.state.age[i] < YOUNG:
+                slope = 0.0
+                for k in range(self.piece.degree, 0, -1):
+                    slope = slope * t + k * self.piece.velocity[i, k]
+                self.state.acceleration[i] = slope

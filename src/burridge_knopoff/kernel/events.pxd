@@ -1,0 +1,23 @@
+from burridge_knopoff.kernel.record cimport Record
+from burridge_knopoff.kernel.state cimport State
+
+cdef int RUNNING
+cdef int COMPLETED
+cdef int STEP_LIMIT
+cdef int ACCUMULATING_EVENTS
+cdef int NOT_FINITE
+cdef int STEPS_PER_CALL
+
+cdef class EventLog:
+    cdef readonly double states_from
+    cdef readonly bint keep
+    cdef readonly Record earlier_events
+    cdef readonly Record events
+    cdef readonly long long count
+    cdef double unit_start
+    cdef long long unit_count
+    cdef readonly long long rate_limit
+    cdef readonly bint accumulating
+
+    cdef void change(self, State state, Py_ssize_t block, double clock) noexcept nogil
+    cdef void settle(self, State state, double clock) noexcept nogil

@@ -1,0 +1,74 @@
+"""Stops and starts: how they are carried out, kept, and told from an accumulation of events."""
+
+import cython
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.record import Record
+    from cython.cimports.burridge_knopoff.kernel.state import State
+else:
+    from burridge_knopoff.kernel.record import Record
+    from burridge_knopoff.kernel.state import State
+
+RUNNING = -1
+COMPLETED = 0
+STEP_LIMIT = 1
+ACCUMULATING_EVENTS = 2
+NOT_FINITE = 3
+
+STEPS_PER_CALL = 1_000_000
+
+
+class EventLog:
+    """The event sequence of a run.
+
+    `earlier_events` has rows (time | block, kind) for events before `states_from`; `events` has rows (time | block, kind, x_1 … x_N, U_1' … U_N')
+    for those from `states_from` on. More than `rate_limit` events in one time unit count as an accumulation.
+    """
+
+    def __init__(self, blocks: int, states_from: float, keep: bool, rate_limit: int) -> None:
+        self.states_from = states_from
+        self.keep = keep
+        self.earlier_events = Record(2)
+        self.events = Record(2 + 2 * blocks)
+        self.count = 0
+        self.unit_start = 0.0
+        self.unit_count = 0
+        self.rate_limit = rate_limit
+        self.accumulating = False
+
+    def change(self, state, block, clock):
+        """Let a block stop or start now, and keep the event."""
+        i: cython.Py_ssize_t
+        row: cython.Py_ssize_t
+        kind: cython.int = state.transition(block)
+        self.count += 1
+        if clock >= self.unit_start + 1.0:
+            self.unit_start = clock
+            self.unit_count = 0
+        self.unit_count += 1
+        if self.unit_count > self.rate_limit:
+            self.accumulating = True
+        if not self.keep:
+            return
+        if clock < self.states_from:
+            row = self.earlier_events.append(clock)
+            self.earlier_events.value[row, 0] = block + 1
+            self.earlier_events.value[row, 1] = kind
+            return
+        row = self.events.append(clock)
+        self.events.value[row, 0] = block + 1
+        self.events.value[row, 1] = kind
+        for i in range(state.blocks):
+            self.events.value[row, 2 + i] = state.position[i]
+            self.events.value[row, 2 + state.blocks + i] = state.velocity[i]
+
+    def settle(self, state, clock):
+        """Carry out every change that is due at this instant, to the last one, before time moves on."""
+        i: cython.Py_ssize_t
+        due: cython.int = 1
+        while due and not self.accumulating:
+            due = 0
+            for i in range(state.blocks):
+                if state.pending(i):
+                    self.change(state, i, clock)
+                    due = 1

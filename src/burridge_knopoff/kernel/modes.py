@@ -1,0 +1,173 @@
+"""Normal modes of the slipping blocks: the paper's mapping between events, in closed form (linearized law).
+
+Stuck blocks cut the chain into runs of slipping blocks that do not feel each other. In a run
+
+    x'' = −K x + a x' + b − g v τ,        b_i = Σ x_j(0) over stuck neighbours j (+ 2 where i slips backward),
+                                          g_i = number of stuck neighbours
+
+and with K = Q diag(λ) Qᵀ each mode q = Qᵀx is a particular solution p + r τ plus
+
+    z(τ) = exp(aτ/2) [z0 cos ωτ + (z0' − a z0/2)/ω sin ωτ],     ω² = λ − a²/4,
+
+    r = −v Qᵀg / λ,     p = (a r + Qᵀb) / λ.
+
+Every λ is at least 1 because K·1 = D ≥ 1, so that all modes oscillate for a < 2. The matrix of a run depends on its
+length and on the ends of the chain that it contains only: there are at most 4N of them for any set of slipping blocks,
+each solved once, when it is first met.
+"""
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import cos, exp, sin, sqrt
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
+else:
+    from burridge_knopoff.kernel.state import YOUNG, State
+
+
+class Modes:
+    """Closed-form motion of a chain of `blocks` blocks from the last call of `start`."""
+
+    def __init__(self, blocks: int) -> None:
+        self.blocks = blocks
+        # vector_row[4 (length - 1) + 2 (left end) + (right end)]: first row of that run's block in `vector`, or -1.
+        self.vector_row = np.full((blocks, 4), -1, dtype=np.intp)
+        self.eigenvalue = np.zeros(blocks)
+        self.vector = np.zeros((blocks, blocks))
+        self.rows = 0
+        self.first = np.zeros(blocks, dtype=np.intp)
+        self.last = np.zeros(blocks, dtype=np.intp)
+        self.row = np.zeros(blocks, dtype=np.intp)
+        self.runs = 0
+        self.origin = np.zeros(blocks)
+        self.offset = np.zeros(blocks)
+        self.drift = np.zeros(blocks)
+        self.amplitude = np.zeros(blocks)
+        self.amplitude_rate = np.zeros(blocks)
+
+    def start(self, state):
+        """Take the state as the origin of the motion: find the runs and their mode amplitudes."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        m: cython.Py_ssize_t
+        row: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        last: cython.Py_ssize_t
+        q: cython.double
+        rate: cython.double
+        push: cython.double
+        stuck: cython.double
+        factor: cython.double
+        self.runs = 0
+        i = 0
+        while i < self.blocks:
+            if state.slip[i] == 0:
+                self.origin[i] = state.position[i]
+                i += 1
+                continue
+            first = i
+            while i < self.blocks and state.slip[i] != 0:
+                i += 1
+            last = i - 1
+            row = self._row(first, last, state)
+            self.first[self.runs] = first
+            self.last[self.runs] = last
+            self.row[self.runs] = row
+            self.runs += 1
+            for k in range(first, last + 1):
+                q = 0.0
+                rate = 0.0
+                push = 0.0
+                stuck = 0.0
+                for m in range(first, last + 1):
+                    factor = self.vector[row + k - first, m - first]
+                    q += factor * state.position[m]
+                    rate += factor * (state.velocity[m] - state.v)
+                    if state.slip[m] < 0:
+                        push += 2.0 * factor
+                if first > 0:
+                    factor = self.vector[row + k - first, 0]
+                    push += factor * state.position[first - 1]
+                    stuck += factor
+                if last < self.blocks - 1:
+                    factor = self.vector[row + k - first, last - first]
+                    push += factor * state.position[last + 1]
+                    stuck += factor
+                self.drift[k] = -state.v * stuck / self.eigenvalue[row + k - first]
+                self.offset[k] = (state.a * self.drift[k] + push) / self.eigenvalue[row + k - first]
+                self.amplitude[k] = q - self.offset[k]
+                self.amplitude_rate[k] = rate - self.drift[k]
+
+    def advance(self, state, t):
+        """Set the state's positions and velocities to those at time t after the origin.
+
+        A block that has only just started keeps its velocity: it is about s' t²/2, less than what rounding leaves of
+        the sum over modes, whose sign would stop the block.
+        """
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t
+        row: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        last: cython.Py_ssize_t
+        eigenvalue: cython.double
+        omega: cython.double
+        cosine: cython.double
+        sine: cython.double
+        q: cython.double
+        rate: cython.double
+        half: cython.double = 0.5 * state.a
+        growth: cython.double = exp(half * t)
+        for i in range(self.blocks):
+            if state.slip[i] == 0:
+                state.position[i] = self.origin[i] - state.v * t
+            else:
+                state.position[i] = 0.0
+                if state.age[i] >= YOUNG:
+                    state.velocity[i] = state.v
+        for n in range(self.runs):
+            first = self.first[n]
+            last = self.last[n]
+            for k in range(first, last + 1):
+                row = self.row[n] + k - first
+                eigenvalue = self.eigenvalue[row]
+                omega = sqrt(eigenvalue - half * half)
+                cosine = growth * cos(omega * t)
+                sine = growth * sin(omega * t) / omega
+                q = self.amplitude[k] * cosine + (self.amplitude_rate[k] - half * self.amplitude[k]) * sine
+                rate = self.amplitude_rate[k] * cosine
+                rate += (half * self.amplitude_rate[k] - eigenvalue * self.amplitude[k]) * sine
+                q += self.offset[k] + self.drift[k] * t
+                rate += self.drift[k]
+                for i in range(first, last + 1):
+                    state.position[i] += self.vector[row, i - first] * q
+                    if state.age[i] >= YOUNG:
+                        state.velocity[i] += self.vector[row, i - first] * rate
+
+    def _row(self, first, last, state):
+        """Return where the modes of the run first … last begin in the tables, solving them if they are new."""
+        row: cython.Py_ssize_t = self.vector_row[last - first, 2 * (first == 0) + (last == self.blocks - 1)]
+        if row < 0:
+            with cython.gil:
+                row = self._solve(first, last, state)
+        return row
+
+    def _solve(self, first, last, state):
+        """Diagonalise the run's matrix, append eigenvalues and eigenvectors (as rows), and return their first row."""
+        length = last - first + 1
+        matrix = np.diag(np.asarray(state.stiffness)[first : last + 1]) - np.eye(length, k=1) - np.eye(length, k=-1)
+        eigenvalue, vector = np.linalg.eigh(matrix)
+        row = self.rows
+        if row + length > self.vector.shape[0]:
+            grown = np.zeros((2 * (row + length), self.blocks))
+            grown[:row] = np.asarray(self.vector)[:row]
+            self.vector = grown
+            more = np.zeros(2 * (row + length))
+            more[:row] = np.asarray(self.eigenvalue)[:row]
+            self.eigenvalue = more
+        np.asarray(self.vector)[row : row + length, :length] = vector.T
+        np.asarray(self.eigenvalue)[row : row + length] = eigenvalue
+        self.vector_row[last - first, 2 * (first == 0) + (last == self.blocks - 1)] = row
+        self.rows = row + length
+        return row

@@ -1,0 +1,184 @@
+"""Observables taken from the motion while it passes, piece by piece, without storing it."""
+
+import cython
+import numpy as np
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.distance import Distance
+    from cython.cimports.burridge_knopoff.kernel.piece import Piece
+    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from cython.cimports.burridge_knopoff.kernel.record import Record
+    from cython.cimports.burridge_knopoff.kernel.state import State
+else:
+    from burridge_knopoff.kernel.distance import Distance
+    from burridge_knopoff.kernel.piece import Piece
+    from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from burridge_knopoff.kernel.record import Record
+    from burridge_knopoff.kernel.state import State
+
+TRANSIENT = 0
+WINDOW = 1
+UPWARD = 1
+DOWNWARD = -1
+NOTHING = -1e300
+
+# W at the end of one piece and at the start of the next differ by rounding, less than this.
+SEAM = 1e-14
+
+
+class Observer:
+    """What one run measures.
+
+    edge : batch boundaries, shape (batches + 1,); the first is the end of the transient, the last the end of the run
+    distance_time : times at which J is sampled, shape (samples,)
+    trajectory_time : times at which positions and velocities are sampled, shape (m,)
+    """
+
+    def __init__(self, blocks, order, edge, distance_time, trajectory_time) -> None:
+        self.transient = edge[0]
+        self.end = edge[len(edge) - 1]
+        self.edge = np.array(edge, dtype=float)
+        self.batches = len(edge) - 1
+        self.batch = 0
+        self.batch_integral = np.zeros(self.batches)
+        self.batch_rest = np.zeros(self.batches)
+        self.distance_time = np.array(distance_time, dtype=float)
+        self.distance_sample = np.full(len(distance_time), np.nan)
+        self.next_distance = 0
+        self.trajectory_time = np.array(trajectory_time, dtype=float)
+        self.trajectory_position = np.full((len(trajectory_time), blocks), np.nan)
+        self.trajectory_velocity = np.full((len(trajectory_time), blocks), np.nan)
+        self.next_trajectory = 0
+        self.crossings = Record(2)
+        self.side = 0
+        self.highest_speed = np.full(2, NOTHING)
+        self.lowest_force = np.full(2, -NOTHING)
+        self.distance = Distance(order)
+        self.polynomial = Polynomial(order)
+
+    def observe(self, state, piece, clock, clock_rest, length):
+        """Take everything from the first `length` of a piece that starts at time clock + clock_rest."""
+        window: cython.double = (self.transient - clock) - clock_rest
+        self.distance.load(piece, length)
+        if length > window:
+            self._average(clock, clock_rest, length)
+            self._cross(state, piece, clock, clock_rest, length)
+            self._extreme(state, piece, WINDOW, length)
+        if window > 0.0:
+            self._extreme(state, piece, TRANSIENT, min(length, window))
+        self._sample(piece, clock, clock_rest, length)
+
+    def _average(self, clock, clock_rest, length):
+        """Add the integral of J to the batches that the piece touches (compensated sums)."""
+        start: cython.double = max(0.0, (self.edge[self.batch] - clock) - clock_rest)
+        stop: cython.double
+        edge: cython.double
+        term: cython.double
+        total: cython.double
+        while self.batch < self.batches:
+            edge = (self.edge[self.batch + 1] - clock) - clock_rest
+            stop = min(edge, length)
+            if stop > start:
+                term = self.distance.integral(start, stop)
+                total = self.batch_integral[self.batch] + term
+                self.batch_rest[self.batch] += (self.batch_integral[self.batch] - total) + term
+                self.batch_integral[self.batch] = total
+            if edge > length or self.batch == self.batches - 1:
+                break
+            self.batch += 1
+            start = max(0.0, edge)
+
+    def _sample(self, piece, clock, clock_rest, length):
+        """Take the samples of J and of the trajectory that fall into the piece."""
+        i: cython.Py_ssize_t
+        t: cython.double
+        while self.next_distance < self.distance_time.shape[0]:
+            t = (self.distance_time[self.next_distance] - clock) - clock_rest
+            if t > length:
+                break
+            self.distance_sample[self.next_distance] = self.distance.value(t)
+            self.next_distance += 1
+        while self.next_trajectory < self.trajectory_time.shape[0]:
+            t = (self.trajectory_time[self.next_trajectory] - clock) - clock_rest
+            if t > length:
+                break
+            for i in range(piece.blocks):
+                self.trajectory_position[self.next_trajectory, i] = evaluate(piece.position, i, piece.degree, t)
+                self.trajectory_velocity[self.next_trajectory, i] = evaluate(piece.velocity, i, piece.degree, t)
+            self.next_trajectory += 1
+
+    def _cross(self, state, piece, clock, clock_rest, length):
+        """Record where W = Σ x_i changes its sign, with W' and the direction.
+
+        The side on which W lies is remembered from piece to piece, so that rounding at a seam can neither hide a
+        crossing nor make one.
+        """
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        row: cython.Py_ssize_t
+        total: cython.double
+        t: cython.double
+        start: cython.double = 0.0
+        window: cython.double = (self.transient - clock) - clock_rest
+        self.polynomial.degree = piece.degree
+        for k in range(piece.degree + 1):
+            total = 0.0
+            for i in range(piece.blocks):
+                total += piece.position[i, k]
+            self.polynomial.coefficient[k] = total
+        if self.side == 0:
+            self.side = DOWNWARD if self.polynomial.value(max(0.0, window)) < 0.0 else UPWARD
+            if window > 0.0:
+                self.polynomial.shift(window)
+                start = window
+        if self.side * self.polynomial.coefficient[0] < 0.0 and abs(self.polynomial.coefficient[0]) < SEAM and self.side * self.polynomial.coefficient[1] > 0.0:
+            self.polynomial.coefficient[0] = 0.0
+            self.polynomial.deflate()
+        while start < length:
+            if self.side < 0:
+                self.polynomial.negate()
+            t = self.polynomial.first_root(length - start)
+            if self.side < 0:
+                self.polynomial.negate()
+            if t < 0.0:
+                return
+            start += t
+            # The root is divided out, and with it what rounding leaves of W there. If the sign after it is the one
+            # before it, W has touched 0 within rounding and not crossed.
+            self.polynomial.shift(t)
+            self.polynomial.coefficient[0] = 0.0
+            self.polynomial.deflate()
+            if self.side * self.polynomial.coefficient[0] >= 0.0:
+                continue
+            self.side = -self.side
+            total = 0.0
+            for i in range(piece.blocks):
+                total += evaluate(piece.velocity, i, piece.degree, start) - state.v
+            row = self.crossings.append(clock + (clock_rest + start))
+            self.crossings.value[row, 0] = total
+            self.crossings.value[row, 1] = self.side
+
+    def _extreme(self, state, piece, stage, length):
+        """Follow the highest slip speed and the lowest spring force on a stuck block, in the transient or the window."""
+        i: cython.Py_ssize_t
+        for i in range(piece.blocks):
+            if state.slip[i] != 0:
+                piece.load_speed(state, i, self.polynomial)
+                self.highest_speed[stage] = self.polynomial.maximum(length, self.highest_speed[stage])
+            else:
+                piece.load_gap(state, i, 1, self.polynomial)
+                self.lowest_force[stage] = 1.0 - self.polynomial.maximum(length, 1.0 - self.lowest_force[stage])
+
+    def results(self) -> dict:
+        """Return all that was measured as NumPy arrays."""
+        integral = np.asarray(self.batch_integral) + np.asarray(self.batch_rest)
+        return {
+            "batch_integral": integral,
+            "distance": np.asarray(self.distance_sample),
+            "position": np.asarray(self.trajectory_position),
+            "velocity": np.asarray(self.trajectory_velocity),
+            "crossing_time": self.crossings.times(),
+            "crossing": self.crossings.values(),
+            "highest_speed": np.asarray(self.highest_speed),
+            "lowest_force": np.asarray(self.lowest_force),
+        }

@@ -1,0 +1,13 @@
+from burridge_knopoff.kernel.polynomial cimport Polynomial
+from burridge_knopoff.kernel.state cimport State
+
+cdef class Piece:
+    cdef readonly Py_ssize_t blocks
+    cdef readonly Py_ssize_t order
+    cdef public Py_ssize_t degree
+    cdef double[:, ::1] position
+    cdef double[:, ::1] velocity
+    cdef double[:, ::1] force
+
+    cdef void load_speed(self, State state, Py_ssize_t i, Polynomial polynomial) noexcept nogil
+    cdef void load_gap(self, State state, Py_ssize_t i, int side, Polynomial polynomial) noexcept nogil

@@ -1,0 +1,48 @@
+"""One piece of the motion: every block's position, velocity and spring force as polynomials of the time since its start.
+
+Whatever a solver does, it hands its motion on in this form; events and observables read nothing else.
+"""
+
+import cython
+import numpy as np
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial
+    from cython.cimports.burridge_knopoff.kernel.state import State
+else:
+    from burridge_knopoff.kernel.polynomial import Polynomial
+    from burridge_knopoff.kernel.state import State
+
+
+class Piece:
+    """Coefficient tables of shape (blocks, order + 1), lowest power first, of x_i, U_i' and s_i; `degree` ≤ order."""
+
+    def __init__(self, blocks: int, order: int) -> None:
+        self.blocks = blocks
+        self.order = order
+        self.degree = order
+        self.position = np.zeros((blocks, order + 1))
+        self.velocity = np.zeros((blocks, order + 1))
+        self.force = np.zeros((blocks, order + 1))
+
+    def load_speed(self, state, i, polynomial):
+        """Load the speed |U_i'| of a slipping block: the block stops where it becomes negative."""
+        k: cython.Py_ssize_t
+        polynomial.degree = self.degree
+        if state.slip[i] < 0:
+            for k in range(self.degree + 1):
+                polynomial.coefficient[k] = -self.velocity[i, k]
+        else:
+            for k in range(self.degree + 1):
+                polynomial.coefficient[k] = self.velocity[i, k]
+
+    def load_gap(self, state, i, side, polynomial):
+        """Load 1 − side·s_i of a stuck block: the block starts where it becomes negative."""
+        k: cython.Py_ssize_t
+        polynomial.degree = self.degree
+        for k in range(self.degree + 1):
+            polynomial.coefficient[k] = -side * self.force[i, k]
+        polynomial.coefficient[0] += 1.0
+        # At its threshold by construction: what rounding leaves of 1 - s must not start the block a second time.
+        if state.touching[i] and abs(polynomial.coefficient[0]) < 0.5:
+            polynomial.coefficient[0] = 0.0

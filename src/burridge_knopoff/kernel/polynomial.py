@@ -1,0 +1,304 @@
+"""One polynomial over one piece of the motion: its first root and its maximum, neither of which can be missed.
+
+A polynomial of degree n over [0, h] is a convex combination of its n + 1 Bernstein coefficients. Hence
+
+- no negative coefficient: no root, however close to zero the polynomial comes between its ends;
+- exactly one change of sign in the coefficients: exactly one root, and it is simple (Descartes' rule of signs);
+- otherwise the interval is halved (de Casteljau) and the left half is searched first.
+
+Every interval that is passed over is passed over by the first statement, so a grazing touch is found at any
+distance from the ends of the piece. What remains undecided are dips that rounding alone can fill: the halving ends at
+intervals of 2^-48 of the piece. The conversion has positive weights of at most 1, so its error is a few ulp of
+the largest scaled coefficient.
+
+Reference: R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospective", Comput. Aided Geom. Des. 29
+(2012) 379-419.
+"""
+
+import math
+
+import cython
+import numpy as np
+
+MAXIMUM_DEPTH = 48
+NEWTON_ITERATIONS = 80
+
+# Scaled coefficients below this share of the largest one cannot change a double-precision value of the polynomial.
+NEGLIGIBLE = 1e-19
+
+# A root is found when Newton's method moves it by no more than half an ulp.
+RESOLUTION = 1.2e-16
+
+
+def evaluate(coefficient, row, degree, t):
+    """Return the value at t of the polynomial whose coefficients are one row of a table, lowest power first."""
+    k: cython.Py_ssize_t
+    total: cython.double = coefficient[row, degree]
+    for k in range(degree - 1, -1, -1):
+        total = total * t + coefficient[row, k]
+    return total
+
+
+class Polynomial:
+    """A polynomial Σ c_k t^k that callers fill and then search; `coefficient` has shape (capacity + 1,)."""
+
+    def __init__(self, capacity: int) -> None:
+        self.capacity = capacity
+        self.degree = 0
+        self.coefficient = np.zeros(capacity + 1)
+        self.bernstein = np.zeros((MAXIMUM_DEPTH + 2, capacity + 1))
+        self.left = np.zeros(MAXIMUM_DEPTH + 2)
+        self.right = np.zeros(MAXIMUM_DEPTH + 2)
+        inverse = np.zeros((capacity + 1, capacity + 1))
+        for n in range(capacity + 1):
+            for k in range(n + 1):
+                inverse[n, k] = 1.0 / math.comb(n, k)
+        self.inverse_binomial = inverse
+        self.lowest = 0.0
+        self.highest = 0.0
+
+    def value(self, t):
+        k: cython.Py_ssize_t
+        total: cython.double = self.coefficient[self.degree]
+        for k in range(self.degree - 1, -1, -1):
+            total = total * t + self.coefficient[k]
+        return total
+
+    def slope(self, t):
+        k: cython.Py_ssize_t
+        total: cython.double = 0.0
+        for k in range(self.degree, 0, -1):
+            total = total * t + k * self.coefficient[k]
+        return total
+
+    def deflate(self):
+        """Divide out the roots at t = 0 (leading coefficients that are exactly 0); return how many there were.
+
+        A polynomial that is identically zero keeps one coefficient, 0.
+        """
+        k: cython.Py_ssize_t
+        zeros: cython.Py_ssize_t = 0
+        while zeros < self.degree and self.coefficient[zeros] == 0.0:
+            zeros += 1
+        if zeros > 0:
+            for k in range(self.degree - zeros + 1):
+                self.coefficient[k] = self.coefficient[k + zeros]
+            self.degree -= zeros
+        return zeros
+
+    def shift(self, t):
+        """Move the origin to t: the polynomial p(t + ·)."""
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        for j in range(self.degree):
+            for k in range(self.degree - 1, j - 1, -1):
+                self.coefficient[k] += t * self.coefficient[k + 1]
+
+    def negate(self):
+        k: cython.Py_ssize_t
+        for k in range(self.degree + 1):
+            self.coefficient[k] = -self.coefficient[k]
+
+    def first_root(self, length):
+        """Return the first t in [0, length] at which the polynomial becomes negative, or -1.0 if it never does.
+
+        The value at 0 must not be negative by more than rounding: a negative one is answered with 0.
+        """
+        n: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        top: cython.Py_ssize_t
+        changes: cython.Py_ssize_t
+        sign: cython.int
+        first: cython.int
+        n = self._scale(length)
+        if self.lowest > 0.0:
+            return -1.0
+        self._convert(n)
+        top = 0
+        self.left[0] = 0.0
+        self.right[0] = length
+        while top >= 0:
+            changes = 0
+            sign = 0
+            first = 0
+            for k in range(n + 1):
+                if self.bernstein[top, k] > 0.0:
+                    changes += sign < 0
+                    sign = 1
+                elif self.bernstein[top, k] < 0.0:
+                    changes += sign > 0
+                    sign = -1
+                if first == 0:
+                    first = sign
+            if first < 0:
+                return self.left[top]
+            if changes == 0:
+                top -= 1
+            elif changes == 1:
+                return self._root_between(self.left[top], self.right[top])
+            elif top >= MAXIMUM_DEPTH or self.right[top] - self.left[top] <= 4e-15 * self.right[top]:
+                if sign < 0:
+                    return self.right[top]
+                top -= 1
+            else:
+                self._split(top, n)
+                top += 1
+        return -1.0
+
+    def maximum(self, length, floor):
+        """Return the larger of floor and the maximum over [0, length]."""
+        n: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        top: cython.Py_ssize_t
+        changes: cython.Py_ssize_t
+        sign: cython.int
+        first: cython.int
+        step: cython.double
+        largest: cython.double
+        n = self._scale(length)
+        if self.highest <= floor:
+            return floor
+        self._convert(n)
+        top = 0
+        self.left[0] = 0.0
+        self.right[0] = length
+        while top >= 0:
+            floor = max(floor, self.bernstein[top, 0], self.bernstein[top, n])
+            largest = floor
+            changes = 0
+            sign = 0
+            first = 0
+            for k in range(n + 1):
+                largest = max(largest, self.bernstein[top, k])
+                if k < n:
+                    step = self.bernstein[top, k + 1] - self.bernstein[top, k]
+                    if step > 0.0:
+                        changes += sign < 0
+                        sign = 1
+                    elif step < 0.0:
+                        changes += sign > 0
+                        sign = -1
+                    if first == 0:
+                        first = sign
+            if largest <= floor:
+                top -= 1
+            elif changes == 1 and first > 0:
+                floor = max(floor, self._peak_between(self.left[top], self.right[top]))
+                top -= 1
+            elif changes <= 1 or top >= MAXIMUM_DEPTH:
+                top -= 1
+            else:
+                self._split(top, n)
+                top += 1
+        return floor
+
+    def _scale(self, length):
+        """Put the terms at t = length into the first Bernstein row; return the degree that matters there."""
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.degree
+        power: cython.double = 1.0
+        scaled: cython.double
+        largest: cython.double = 0.0
+        self.lowest = self.coefficient[0]
+        self.highest = self.coefficient[0]
+        for k in range(self.degree + 1):
+            scaled = self.coefficient[k] * power
+            self.bernstein[0, k] = scaled
+            power *= length
+            largest = max(largest, abs(scaled))
+            if k > 0:
+                if scaled < 0.0:
+                    self.lowest += scaled
+                else:
+                    self.highest += scaled
+        while n > 0 and abs(self.bernstein[0, n]) <= NEGLIGIBLE * largest:
+            n -= 1
+        return n
+
+    def _convert(self, degree):
+        """Turn the scaled terms in the first row into Bernstein coefficients."""
+        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for k in range(1, degree + 1):
+            self.bernstein[0, k] *= self.inverse_binomial[degree, k]
+        for j in range(1, degree + 1):
+            for k in range(degree, j - 1, -1):
+                self.bernstein[0, k] += self.bernstein[0, k - 1]
+
+    def _split(self, top, degree):
+        """Halve the interval in row top: its right half stays there, its left half goes to row top + 1."""
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        middle: cython.double = 0.5 * (self.left[top] + self.right[top])
+        self.left[top + 1] = self.left[top]
+        self.right[top + 1] = middle
+        self.left[top] = middle
+        for j in range(degree + 1):
+            self.bernstein[top + 1, j] = self.bernstein[top, 0]
+            for k in range(degree - j):
+                self.bernstein[top, k] = 0.5 * (self.bernstein[top, k] + self.bernstein[top, k + 1])
+
+    def _root_between(self, low, high):
+        """Return the only root in [low, high], positive at low and negative at high: Newton kept in a bracket."""
+        k: cython.Py_ssize_t
+        iteration: cython.int
+        t: cython.double
+        change: cython.double
+        value: cython.double
+        slope: cython.double
+        at_low: cython.double = self.value(low)
+        at_high: cython.double = self.value(high)
+        if at_low <= 0.0:
+            return low
+        if at_high >= 0.0:
+            return high
+        t = low + (high - low) * at_low / (at_low - at_high)
+        for iteration in range(NEWTON_ITERATIONS):
+            value = self.coefficient[self.degree]
+            slope = 0.0
+            for k in range(self.degree - 1, -1, -1):
+                slope = slope * t + value
+                value = value * t + self.coefficient[k]
+            if value == 0.0:
+                return t
+            if value > 0.0:
+                low = t
+            else:
+                high = t
+            change = 0.5 * (low + high) - t
+            if slope < 0.0:
+                if abs(value) <= -RESOLUTION * slope * t:
+                    return t
+                if low < t - value / slope < high:
+                    change = -value / slope
+            t += change
+            if abs(change) <= RESOLUTION * t:
+                return t
+        return t
+
+    def _peak_between(self, low, high):
+        """Return the maximum in [low, high], where the derivative changes its sign once, from + to -."""
+        iteration: cython.int
+        k: cython.Py_ssize_t
+        t: cython.double = 0.5 * (low + high)
+        slope: cython.double
+        curvature: cython.double
+        change: cython.double
+        for iteration in range(NEWTON_ITERATIONS):
+            slope = 0.0
+            curvature = 0.0
+            for k in range(self.degree, 0, -1):
+                curvature = curvature * t + slope
+                slope = slope * t + k * self.coefficient[k]
+            if slope > 0.0:
+                low = t
+            else:
+                high = t
+            change = 0.5 * (low + high) - t
+            if curvature < 0.0 and low < t - slope / curvature < high:
+                change = -slope / curvature
+            t += change
+            # The maximum is flat: half of the digits of its place give all digits of its value.
+            if abs(change) <= 1e-9 * high:
+                break
+        return self.value(t)

@@ -1,0 +1,36 @@
+"""A table that grows: one time and a few values a row, for events and section crossings."""
+
+import cython
+import numpy as np
+
+
+class Record:
+    """Rows of a time and `width` values; `append` makes room for a row and returns its number."""
+
+    def __init__(self, width: int) -> None:
+        self.width = width
+        self.count = 0
+        self.time = np.zeros(1024)
+        self.value = np.zeros((1024, width))
+
+    def append(self, time):
+        if self.count == self.time.shape[0]:
+            self._grow()
+        self.time[self.count] = time
+        self.count += 1
+        return self.count - 1
+
+    def _grow(self):
+        time = np.zeros(2 * self.count)
+        time[: self.count] = self.time
+        value = np.zeros((2 * self.count, self.width))
+        value[: self.count] = self.value
+        self.time = time
+        self.value = value
+        return 0
+
+    def times(self) -> np.ndarray:
+        return np.asarray(self.time)[: self.count].copy()
+
+    def values(self) -> np.ndarray:
+        return np.asarray(self.value)[: self.count].copy()

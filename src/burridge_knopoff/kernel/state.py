@@ -1,0 +1,135 @@
+"""The state of a chain at one instant and the stick-slip rules that change it.
+
+Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −Φ(av)·1, velocity is U_i' itself, so that a
+stuck block has velocity exactly 0. Because K·1 = D the spring force on block i is
+
+    s_i = D_i vτ − (K U)_i = Φ(av) − (K x)_i
+
+and nothing in the system depends on τ. K is tridiagonal: 2 D_i on the diagonal (D_i neighbours), −1 beside it.
+"""
+
+import cython
+import numpy as np
+
+# Times closer than this are one instant: velocities and spring forces carry rounding of about this size, so that the
+# order of two such events cannot be told.
+COINCIDENCE = 1e-15
+
+# A block that has slipped for less than this keeps the acceleration that was carried along since its start, which
+# began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign could stop the block.
+YOUNG = 1e-6
+LONG = 1e300
+
+
+class State:
+    """Positions x_i, velocities U_i' and slip directions (0 stuck, 1 forward, −1 backward) of N blocks.
+
+    `touching` marks a block whose spring force is at its threshold exactly, because it has started (or started and
+    stopped again) at this very instant. `age` is the time since the start of the present slip.
+    """
+
+    def __init__(self, stiffness, a, v, sliding_friction, nonlinear, symmetric) -> None:
+        n = len(stiffness)
+        self.blocks = n
+        self.a = a
+        self.v = v
+        self.sliding_friction = sliding_friction
+        self.nonlinear = nonlinear
+        self.symmetric = symmetric
+        self.stiffness = np.array(stiffness, dtype=float)
+        self.position = np.zeros(n)
+        self.velocity = np.zeros(n)
+        self.acceleration = np.zeros(n)
+        self.age = np.full(n, LONG)
+        self.slip = np.zeros(n, dtype=np.intc)
+        self.touching = np.zeros(n, dtype=np.intc)
+
+    def begin(self, position, velocity, tested: bool) -> None:
+        """Set the state at τ = 0: every block slips, or (tested) a block with s_i ≤ 1 is stuck with velocity 0."""
+        i: cython.Py_ssize_t
+        for i in range(self.blocks):
+            self.position[i] = position[i]
+        for i in range(self.blocks):
+            self.velocity[i] = velocity[i]
+            self.slip[i] = -1 if velocity[i] < 0.0 else 1
+            if tested and self.spring_force(i) <= 1.0:
+                self.velocity[i] = 0.0
+                self.slip[i] = 0
+
+    def spring_force(self, i):
+        """Return s_i."""
+        pull: cython.double = self.stiffness[i] * self.position[i]
+        if i > 0:
+            pull -= self.position[i - 1]
+        if i < self.blocks - 1:
+            pull -= self.position[i + 1]
+        return self.sliding_friction - pull
+
+    def force_rate(self, i):
+        """Return ds_i/dτ."""
+        rate: cython.double = self.stiffness[i] * (self.velocity[i] - self.v)
+        if i > 0:
+            rate -= self.velocity[i - 1] - self.v
+        if i < self.blocks - 1:
+            rate -= self.velocity[i + 1] - self.v
+        return -rate
+
+    def friction(self, speed):
+        """Return Φ(a |U'|)."""
+        if self.nonlinear:
+            return 1.0 / (1.0 + self.a * speed)
+        return 1.0 - self.a * speed
+
+    def slip_acceleration(self, i):
+        """Return U_i'' of a slipping block."""
+        if self.touching[i]:
+            return 0.0
+        if self.age[i] < YOUNG:
+            return self.acceleration[i]
+        if self.slip[i] < 0:
+            return self.spring_force(i) + self.friction(-self.velocity[i])
+        return self.spring_force(i) - self.friction(self.velocity[i])
+
+    def transition(self, i):
+        """Let block i stop if it slips and start if it is stuck; return the kind of event: 0 stop, 1 start."""
+        if self.slip[i] != 0:
+            self.slip[i] = 0
+            self.velocity[i] = 0.0
+            self.acceleration[i] = 0.0
+            self.age[i] = LONG
+            return 0
+        self.slip[i] = 1 if self.spring_force(i) > 0.0 else -1
+        self.velocity[i] = 0.0
+        self.acceleration[i] = 0.0
+        self.age[i] = 0.0
+        self.touching[i] = 1
+        return 1
+
+    def pending(self, i):
+        """Tell whether block i changes at this very instant: it is past its threshold, or within COINCIDENCE of it."""
+        gap: cython.double
+        rate: cython.double
+        direction: cython.int = self.slip[i]
+        if direction != 0:
+            if self.touching[i]:
+                return direction * self.force_rate(i) < 0.0
+            gap = direction * self.velocity[i]
+            if gap < 0.0:
+                return True
+            return gap <= COINCIDENCE and gap < -COINCIDENCE * direction * self.slip_acceleration(i)
+        if self.touching[i]:
+            return False
+        gap = 1.0 - self.spring_force(i)
+        if gap < 0.0:
+            return True
+        if gap <= COINCIDENCE * self.stiffness[i]:
+            rate = self.force_rate(i)
+            if gap < COINCIDENCE * rate:
+                return True
+        if self.symmetric:
+            gap = 1.0 + self.spring_force(i)
+            if gap < 0.0:
+                return True
+            if gap <= COINCIDENCE * self.stiffness[i]:
+                return gap < -COINCIDENCE * self.force_rate(i)
+        return False

@@ -1,0 +1,153 @@
+"""The paper's own method, for comparison: Runge-Kutta of fourth order with a fixed step, events at step ends."""
+
+import cython
+import numpy as np
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.events import (
+        ACCUMULATING_EVENTS,
+        COMPLETED,
+        NOT_FINITE,
+        RUNNING,
+        STEPS_PER_CALL,
+        EventLog,
+    )
+    from cython.cimports.burridge_knopoff.kernel.observe import Observer
+    from cython.cimports.burridge_knopoff.kernel.piece import Piece
+    from cython.cimports.burridge_knopoff.kernel.state import State
+else:
+    from burridge_knopoff.kernel.events import (
+        ACCUMULATING_EVENTS,
+        COMPLETED,
+        NOT_FINITE,
+        RUNNING,
+        STEPS_PER_CALL,
+        EventLog,
+    )
+    from burridge_knopoff.kernel.observe import Observer
+    from burridge_knopoff.kernel.piece import Piece
+    from burridge_knopoff.kernel.state import State
+
+CUBIC = 3
+
+
+class TimeStepping:
+    """One run with step h; between step ends the motion is the cubic through both states and their slopes."""
+
+    def __init__(self, state, log, observer, step: float) -> None:
+        n = state.blocks
+        self.state = state
+        self.log = log
+        self.observer = observer
+        self.piece = Piece(n, CUBIC)
+        self.step = step
+        self.steps = 0
+        self.clock = 0.0
+        self.position = np.zeros(n)
+        self.velocity = np.zeros(n)
+        self.speed = np.zeros((4, n))
+        self.acceleration = np.zeros((4, n))
+
+    def run(self) -> int:
+        """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended."""
+        status: cython.int
+        with cython.nogil:
+            status = self._run()
+        return status
+
+    def _run(self):
+        i: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.state.blocks
+        after: cython.double
+        step: cython.double
+        rate: cython.double
+        budget: cython.int = STEPS_PER_CALL
+        if self.steps == 0:
+            self.log.settle(self.state, 0.0)
+        while self.clock < self.observer.end:
+            if budget == 0:
+                return RUNNING
+            budget -= 1
+            after = (self.steps + 1) * self.step
+            if after > self.observer.end:
+                after = self.observer.end
+            step = after - self.clock
+            for i in range(n):
+                self.position[i] = self.state.position[i]
+                self.velocity[i] = self.state.velocity[i]
+            self._slope(0)
+            self._stage(0, 0.5 * step)
+            self._slope(1)
+            self._stage(1, 0.5 * step)
+            self._slope(2)
+            self._stage(2, step)
+            self._slope(3)
+            for i in range(n):
+                rate = self.speed[0, i] + 2.0 * self.speed[1, i] + 2.0 * self.speed[2, i] + self.speed[3, i]
+                self.state.position[i] = self.position[i] + step * rate / 6.0
+                rate = self.acceleration[0, i] + 2.0 * self.acceleration[1, i] + 2.0 * self.acceleration[2, i]
+                rate += self.acceleration[3, i]
+                self.state.velocity[i] = self.velocity[i] + step * rate / 6.0
+                self.state.touching[i] = 0
+                if not abs(self.state.velocity[i]) < 1e300:
+                    return NOT_FINITE
+            self._slope(3)
+            self._interpolate(step)
+            self.observer.observe(self.state, self.piece, self.clock, 0.0, step)
+            self.clock = after
+            self.steps += 1
+            self.log.settle(self.state, self.clock)
+            if self.log.accumulating:
+                return ACCUMULATING_EVENTS
+        return COMPLETED
+
+    def _slope(self, stage):
+        """Write x' and U'' at the current state into row `stage`."""
+        i: cython.Py_ssize_t
+        direction: cython.double
+        for i in range(self.state.blocks):
+            self.speed[stage, i] = self.state.velocity[i] - self.state.v
+            self.acceleration[stage, i] = 0.0
+            if self.state.slip[i] != 0:
+                direction = self.state.slip[i]
+                self.acceleration[stage, i] = self.state.spring_force(i) - direction * self.state.friction(
+                    direction * self.state.velocity[i]
+                )
+
+    def _stage(self, stage, step):
+        """Set the state to the one at the start of the step, moved on by `step` with the slope in row `stage`."""
+        i: cython.Py_ssize_t
+        for i in range(self.state.blocks):
+            self.state.position[i] = self.position[i] + step * self.speed[stage, i]
+            self.state.velocity[i] = self.velocity[i] + step * self.acceleration[stage, i]
+
+    def _interpolate(self, step):
+        """Fill the piece with the cubics through both ends of the step; rows 0 and 3 hold the slopes there."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.state.blocks
+        change: cython.double
+        pull: cython.double
+        for i in range(n):
+            change = (self.state.position[i] - self.position[i]) / step
+            self.piece.position[i, 0] = self.position[i]
+            self.piece.position[i, 1] = self.speed[0, i]
+            self.piece.position[i, 2] = (3.0 * change - 2.0 * self.speed[0, i] - self.speed[3, i]) / step
+            self.piece.position[i, 3] = (self.speed[0, i] + self.speed[3, i] - 2.0 * change) / (step * step)
+            change = (self.state.velocity[i] - self.velocity[i]) / step
+            self.piece.velocity[i, 0] = self.velocity[i]
+            self.piece.velocity[i, 1] = self.acceleration[0, i]
+            self.piece.velocity[i, 2] = (3.0 * change - 2.0 * self.acceleration[0, i] - self.acceleration[3, i]) / step
+            self.piece.velocity[i, 3] = (self.acceleration[0, i] + self.acceleration[3, i] - 2.0 * change) / (
+                step * step
+            )
+        for k in range(CUBIC + 1):
+            for i in range(n):
+                pull = self.state.stiffness[i] * self.piece.position[i, k]
+                if i > 0:
+                    pull -= self.piece.position[i - 1, k]
+                if i < n - 1:
+                    pull -= self.piece.position[i + 1, k]
+                self.piece.force[i, k] = -pull
+        for i in range(n):
+            self.piece.force[i, 0] += self.state.sliding_friction

@@ -1,0 +1,62 @@
+"""Where a result comes from: version, fingerprint of the sources that made it, state of the git checkout.
+
+Nothing here depends on the user, the host or the time of day, so that the same inputs give the same bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+from burridge_knopoff import __version__
+
+PACKAGE = Path(__file__).parent
+
+#: The files whose text decides the numbers in a point file.
+POINT_SOURCES = (
+    "chain.py",
+    "friction.py",
+    "initial.py",
+    "simulation.py",
+    *(f"kernel/{path.name}" for path in sorted((PACKAGE / "kernel").glob("*.p*")) if path.suffix in (".py", ".pxd")),
+)
+
+
+@cache
+def source_fingerprint() -> str:
+    """Return the first 16 hexadecimal digits of the SHA-256 of the point sources."""
+    digest = hashlib.sha256()
+    for name in POINT_SOURCES:
+        digest.update(name.encode())
+        digest.update((PACKAGE / name).read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def git_commit() -> str:
+    """Return the commit that is checked out around the package, or "unknown" outside a checkout."""
+    git = PACKAGE.parent.parent / ".git"
+    try:
+        head = (git / "HEAD").read_text().strip()
+        if not head.startswith("ref: "):
+            return head
+        reference = head.removeprefix("ref: ")
+        loose = git / reference
+        if loose.exists():
+            return loose.read_text().strip()
+        for line in (git / "packed-refs").read_text().splitlines():
+            if line.endswith(f" {reference}"):
+                return line.split()[0]
+    except OSError:
+        pass
+    return "unknown"
+
+
+def provenance() -> dict[str, str]:
+    """Return the provenance attributes of every file that the package writes."""
+    return {
+        "software": f"burridge-knopoff {__version__}",
+        "source_fingerprint": source_fingerprint(),
+        "git_commit": git_commit(),
+    }

@@ -1,0 +1,287 @@
+"""One run of a chain: from chain, friction law and initial state to a trajectory with a readable status."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import CONTACTS, STARTS, InitialState, initial_state
+from burridge_knopoff.kernel.event_driven import EventDriven
+from burridge_knopoff.kernel.events import EventLog
+from burridge_knopoff.kernel.observe import Observer
+from burridge_knopoff.kernel.state import State
+from burridge_knopoff.kernel.time_stepping import TimeStepping
+
+if TYPE_CHECKING:
+    import xarray
+
+SOLVERS = ("map", "series", "rk4")
+DEFAULT_SOLVER = {"linearized": "map", "nonlinear": "series"}
+EVENTS = ("none", "window", "all")
+RUNNING = -1
+STATUS = ("completed", "step_limit", "accumulating_events", "not_finite")
+
+# Terms of the Taylor series: enough for a piece of about one time unit, the usual gap between two events.
+SERIES_ORDER = 24
+RK4_ORDER = 3
+
+# Real sequences stay far below: a block needs at least about a time unit for a slip.
+EVENTS_PER_BLOCK_AND_UNIT = 1000
+STEP_LIMIT = 10**10
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run is made of besides chain, friction law and initial state; times in units of 1/ω.
+
+    v : driver velocity
+    contact : one_sided (a stuck block holds against any pull below 1) or symmetric (it holds while |s| ≤ 1)
+    start : moving (every block slips at τ = 0) or tested (the stick rule is applied at τ = 0)
+    solver : map (linearized law only), series or rk4; by default map for the linearized law, series for the nonlinear
+    step : step of rk4
+    transient, window : J is averaged over [transient, transient + window]
+    batches : number of equal batches of the window for the error of ⟨J⟩
+    sampling : interval between samples of J, from τ = 0
+    trajectory, trajectory_sampling : length and interval of the last part of the run kept as positions and velocities
+    events : which events are kept: window (all of them, those of the last event_window time units of the window with
+        the states of all blocks), all (the whole run with states) or none
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    v: float = 0.1
+    contact: str = "one_sided"
+    start: str = "moving"
+    solver: str = ""
+    step: float = 1e-3
+    transient: float = 3000.0
+    window: float = 7000.0
+    batches: int = 7
+    sampling: float = 5.0
+    trajectory: float = 30.0
+    trajectory_sampling: float = 0.05
+    events: str = "window"
+    event_window: float = 2500.0
+
+    def __post_init__(self) -> None:
+        for key, allowed in (("contact", CONTACTS), ("start", STARTS), ("events", EVENTS)):
+            if getattr(self, key) not in allowed:
+                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: {' | '.join(allowed)}")
+        if self.solver and self.solver not in SOLVERS:
+            raise ValueError(f"solver: {self.solver!r} is not allowed: {' | '.join(SOLVERS)}")
+        _check_range("v", self.v, 1e-6, 1e3)
+        _check_range("step", self.step, 1e-9, 10.0)
+        _check_range("transient", self.transient, 0.0, 1e9)
+        _check_range("window", self.window, 1e-3, 1e9)
+        _check_range("event_window", self.event_window, 0.0, 1e9)
+        _check_range("sampling", self.sampling, 1e-6, 1e9)
+        _check_range("trajectory", self.trajectory, 0.0, 1e9)
+        _check_range("trajectory_sampling", self.trajectory_sampling, 1e-6, 1e9)
+        if isinstance(self.batches, bool) or not isinstance(self.batches, int) or not 2 <= self.batches <= 10_000:
+            raise ValueError(f"batches: {self.batches!r} is not allowed: 2 to 10000")
+        for key, samples in (
+            ("sampling", (self.transient + self.window) / self.sampling),
+            ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
+        ):
+            if samples > 1e7:
+                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: it asks for more than 1e7 samples")
+
+    @property
+    def duration(self) -> float:
+        """End of the run."""
+        return self.transient + self.window
+
+
+def _check_range(key: str, value: float, low: float, high: float) -> None:
+    if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
+        raise ValueError(f"{key}: {value!r} is not allowed: {low:g} to {high:g}")
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """What a run left: settings, status, and the observables; arrays are named as in the point files.
+
+    Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
+    """
+
+    chain: Chain
+    friction: Friction
+    initial: InitialState
+    settings: Settings
+    status: str
+    end_time: float
+    event_count: int
+    step_count: int
+    mean_distance: float
+    mean_distance_error: float
+    batch_mean_distance: np.ndarray = field(repr=False)
+    time: np.ndarray = field(repr=False)
+    distance: np.ndarray = field(repr=False)
+    earlier_event_time: np.ndarray = field(repr=False)
+    earlier_event_block: np.ndarray = field(repr=False)
+    earlier_event_kind: np.ndarray = field(repr=False)
+    event_time: np.ndarray = field(repr=False)
+    event_block: np.ndarray = field(repr=False)
+    event_kind: np.ndarray = field(repr=False)
+    event_position: np.ndarray = field(repr=False)
+    event_velocity: np.ndarray = field(repr=False)
+    crossing_time: np.ndarray = field(repr=False)
+    crossing_velocity: np.ndarray = field(repr=False)
+    crossing_direction: np.ndarray = field(repr=False)
+    trajectory_time: np.ndarray = field(repr=False)
+    position: np.ndarray = field(repr=False)
+    velocity: np.ndarray = field(repr=False)
+    least_friction: float = math.nan
+    least_spring_force: float = math.nan
+    window_least_friction: float = math.nan
+    window_least_spring_force: float = math.nan
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the run as an xarray Dataset, the same as its point file."""
+        from burridge_knopoff.dataset import to_dataset
+
+        return to_dataset(self)
+
+
+def simulate(
+    law: str = "linearized",
+    a: float = 0.08,
+    initial: str | InitialState = "minus",
+    *,
+    chain: Chain | None = None,
+    **settings,
+) -> Trajectory:
+    """Run one simulation and return its trajectory.
+
+    law : linearized or nonlinear; a : friction parameter, 0 ≤ a < 2
+    initial : minus or plus (the paper's, three blocks) or an InitialState; the chain follows from its length
+    settings : see Settings
+
+    Raises ValueError, one line, for anything that the model or the solver does not allow.
+    """
+    state = initial_state(initial) if isinstance(initial, str) else initial
+    chain = Chain(len(state.position)) if chain is None else chain
+    known = {item.name for item in fields(Settings)}
+    for key in settings:
+        if key not in known:
+            raise ValueError(f"{key}: not a setting: {' | '.join(sorted(known))}")
+    return run(chain, Friction(law, a), state, Settings(**settings))
+
+
+def run(chain: Chain, friction: Friction, initial: InitialState, settings: Settings) -> Trajectory:
+    """Run one simulation of a chain; see `simulate`."""
+    if len(initial.position) != chain.blocks:
+        raise ValueError(
+            f"initial: state {initial.name!r} has {len(initial.position)} positions; the chain has {chain.blocks} blocks"
+        )
+    initial.check_contact(settings.contact)
+    solver = settings.solver or DEFAULT_SOLVER[friction.law]
+    if solver == "map" and friction.law == "nonlinear":
+        raise ValueError("solver: 'map' is not allowed for law nonlinear: it has no closed form; series | rk4")
+    solution = _prepare(chain, friction, initial, settings, solver)
+    # Each call makes a limited number of steps, so that a long run can be interrupted from the keyboard.
+    while (code := solution.run()) == RUNNING:
+        pass
+    status = STATUS[code]
+    return _collect(chain, friction, initial, settings, solution, status)
+
+
+def _prepare(
+    chain: Chain, friction: Friction, initial: InitialState, settings: Settings, solver: str
+) -> EventDriven | TimeStepping:
+    sliding_friction = float(friction(settings.v))
+    state = State(
+        2.0 * chain.driving,
+        friction.a,
+        settings.v,
+        sliding_friction,
+        friction.law == "nonlinear",
+        settings.contact == "symmetric",
+    )
+    state.begin(
+        np.array(initial.position) - chain.sliding_offset(sliding_friction),
+        np.array(initial.velocity),
+        settings.start == "tested",
+    )
+    duration = settings.duration
+    trajectory = min(settings.trajectory, duration)
+    count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
+    trajectory_time = duration - settings.trajectory_sampling * np.arange(count, -1, -1)
+    order = RK4_ORDER if solver == "rk4" else SERIES_ORDER
+    observer = Observer(
+        chain.blocks,
+        order,
+        settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches,
+        settings.sampling * np.arange(math.floor(duration / settings.sampling + 1e-9) + 1),
+        trajectory_time,
+    )
+    log = EventLog(
+        chain.blocks,
+        0.0 if settings.events == "all" else duration - min(settings.event_window, settings.window),
+        settings.events != "none",
+        EVENTS_PER_BLOCK_AND_UNIT * chain.blocks,
+    )
+    if solver == "rk4":
+        return TimeStepping(state, log, observer, settings.step)
+    return EventDriven(state, log, observer, order, solver == "map", STEP_LIMIT)
+
+
+def _collect(
+    chain: Chain,
+    friction: Friction,
+    initial: InitialState,
+    settings: Settings,
+    solution: EventDriven | TimeStepping,
+    status: str,
+) -> Trajectory:
+    measured = solution.observer.results()
+    n = chain.blocks
+    offset = chain.sliding_offset(float(friction(settings.v)))
+    events = solution.log.events.values()
+    earlier_events = solution.log.earlier_events.values()
+    batch = measured["batch_integral"] * (settings.batches / settings.window)
+    completed = status == "completed"
+    if not completed:
+        batch[:] = math.nan
+    speed = measured["highest_speed"]
+    force = measured["lowest_force"]
+    least_friction = [float(friction(value)) if value > -1e299 else math.nan for value in (speed.max(), speed[1])]
+    least_force = [float(value) if value < 1e299 else math.nan for value in (force.min(), force[1])]
+    return Trajectory(
+        chain=chain,
+        friction=friction,
+        initial=initial,
+        settings=settings,
+        status=status,
+        end_time=solution.clock,
+        event_count=solution.log.count,
+        step_count=solution.steps,
+        mean_distance=float(batch.mean()),
+        mean_distance_error=float(batch.std(ddof=1) / math.sqrt(len(batch))),
+        batch_mean_distance=batch,
+        time=np.asarray(solution.observer.distance_time),
+        distance=measured["distance"],
+        earlier_event_time=solution.log.earlier_events.times(),
+        earlier_event_block=earlier_events[:, 0].astype(np.int16),
+        earlier_event_kind=earlier_events[:, 1].astype(np.int8),
+        event_time=solution.log.events.times(),
+        event_block=events[:, 0].astype(np.int16),
+        event_kind=events[:, 1].astype(np.int8),
+        event_position=events[:, 2 : 2 + n] + offset,
+        event_velocity=events[:, 2 + n :],
+        crossing_time=measured["crossing_time"],
+        crossing_velocity=measured["crossing"][:, 0],
+        crossing_direction=measured["crossing"][:, 1].astype(np.int8),
+        trajectory_time=np.asarray(solution.observer.trajectory_time),
+        position=measured["position"] + offset,
+        velocity=measured["velocity"],
+        least_friction=least_friction[0],
+        least_spring_force=least_force[0],
+        window_least_friction=least_friction[1],
+        window_least_spring_force=least_force[1],
+    )
