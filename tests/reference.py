@@ -21,7 +21,7 @@ from operator import mul
 from typing import NamedTuple
 
 import gmpy2
-from gmpy2 import mpfr
+from gmpy2 import comb, mpfr
 from mpmath import mp, mpf
 from mpmath.libmp import from_man_exp
 
@@ -58,12 +58,11 @@ def reference_run(
     velocity 0, without an event; a symmetric contact below -1 lets it start backward at time 0).
     digits: decimal digits of the result, as long as the motion does not amplify errors. order: of the Taylor series.
     """
-    if law not in ("linearized", "nonlinear") or contact not in ("one_sided", "symmetric"):
-        raise ValueError(f"unknown law {law!r} or contact {contact!r}")
-    if start not in ("moving", "tested") or not 2 <= len(position) == len(velocity):
-        raise ValueError(f"unknown start {start!r}, or not two or more positions and as many velocities")
-    if contact == "one_sided" and min(velocity) < 0:
-        raise ValueError("one-sided contact has no law for a backward velocity")
+    choices = {"linearized", "nonlinear"}, {"one_sided", "symmetric"}, {"moving", "tested"}
+    if any(name not in names for name, names in zip((law, contact, start), choices, strict=True)):
+        raise ValueError(f"unknown choice among {law!r}, {contact!r}, {start!r}")
+    if not 2 <= len(position) == len(velocity) or (contact == "one_sided" and min(velocity) < 0):
+        raise ValueError("two or more blocks needed; one-sided contact has no law for a backward velocity")
     with gmpy2.context(gmpy2.get_context(), precision=ceil((digits + GUARD_DIGITS) * log2(10))):
         chain = _Chain(law == "linearized", a, position, velocity, v, contact == "symmetric", digits, order)
         chain.begin(start == "tested")
@@ -116,12 +115,10 @@ class _Chain:
             for i, value in enumerate(self.spring_force([coefficients[power] for coefficients in position])):
                 force[i].append(value)
                 position[i].append((velocity[i][power] - (self.v if power == 0 else 0)) / (power + 1))
-                change = mpfr(0)
-                if self.direction[i] != 0:
-                    change = value - self.friction(self.direction[i], velocity[i], reciprocal[i])
-                    if power == 0 and self.known_zeros[i] == 2:
-                        change = mpfr(0)  # s = 1 defines this instant; its rounding must not become motion
-                velocity[i].append(change / (power + 1))
+                friction = self.friction(self.direction[i], velocity[i], reciprocal[i])
+                # a start at the threshold is the instant at which s = 1: its rounding must not become motion
+                at_rest = self.direction[i] == 0 or (power == 0 and self.known_zeros[i] == 2)
+                velocity[i].append(mpfr(0) if at_rest else (value - friction) / (power + 1))
         return position, velocity, force
 
     def friction(self, direction, velocity, reciprocal):
@@ -198,9 +195,8 @@ def _first_root(polynomial):
         return mpfr(0)
     if polynomial[0] + sum(value for value in polynomial if value < 0) > 0:
         return None  # cheap lower bound
-    precision = gmpy2.get_context().precision
-    tolerance = mpfr(2) ** (4 - precision)
-    weights = _bernstein_weights(len(polynomial) - 1, precision)
+    tolerance = mpfr(2) ** (4 - gmpy2.get_context().precision)
+    weights = _bernstein_weights(len(polynomial) - 1, gmpy2.get_context().precision)
     pending = [(mpfr(0), mpfr(1), [sum(map(mul, row, polynomial)) for row in weights])]
     while pending:
         left, right, control = pending.pop()
@@ -222,7 +218,6 @@ def _first_root(polynomial):
 @cache
 def _bernstein_weights(degree, precision):
     """Rows j of C(j, i) / C(degree, i), i <= j, at the precision in use: power coefficients to control values."""
-    comb = gmpy2.comb
     return [[comb(j, i) / mpfr(comb(degree, i), precision) for i in range(j + 1)] for j in range(degree + 1)]
 
 

@@ -50,11 +50,16 @@ def _join(arguments: Sequence[str]) -> list[str]:
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of `bk`."""
     formatter = argparse.RawDescriptionHelpFormatter
-    parser = _Parser(prog="bk", description=DESCRIPTION, formatter_class=formatter)
+    parser = _Parser(prog="bk", description=DESCRIPTION, formatter_class=formatter, allow_abbrev=False)
     parser.add_argument("--version", action="version", version=f"bk {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
     simulate = commands.add_parser(
-        "simulate", help="run one simulation", description=SIMULATE, epilog=EXAMPLES, formatter_class=formatter
+        "simulate",
+        help="run one simulation",
+        description=SIMULATE,
+        epilog=EXAMPLES,
+        formatter_class=formatter,
+        allow_abbrev=False,
     )
     model = simulate.add_argument_group("model")
     model.add_argument("--law", required=True, metavar="LAW", help="friction law: linearized | nonlinear")
@@ -84,14 +89,18 @@ def build_parser() -> argparse.ArgumentParser:
     )
     run.add_argument("--step", type=float, default=1e-3, help="step of rk4 (default: %(default)s)")
     run.add_argument("--transient", type=float, default=3000.0, help="time before the window (default: %(default)s)")
-    run.add_argument("--window", type=float, default=7000.0, help="time over which J is averaged (default: %(default)s)")
+    run.add_argument("--window", type=float, default=7000.0, help="averaging time of J (default: %(default)s)")
     run.add_argument("--batches", type=int, default=7, help="batches for the error of <J> (default: %(default)s)")
     kept = simulate.add_argument_group("what is kept")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
     kept.add_argument("--sampling", type=float, default=5.0, help="interval of the samples of J (default: %(default)s)")
-    kept.add_argument("--events", default="window", help="window: all, the last ones with states | all: with states | none (default: %(default)s)")
     kept.add_argument(
-        "--event-window", type=float, default=2500.0, help="length of the part with states (default: %(default)s)"
+        "--events",
+        default="window",
+        help="window: states of the last ones | all: of all | none: no events (default: %(default)s)",
+    )
+    kept.add_argument(
+        "--event-window", type=float, default=1500.0, help="length of the part with states (default: %(default)s)"
     )
     kept.add_argument(
         "--trajectory", type=float, default=30.0, help="length of the kept last part of the run (default: %(default)s)"
@@ -105,7 +114,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = build_parser()
     options = parser.parse_args(_join(sys.argv[1:] if arguments is None else arguments))
     from burridge_knopoff.chain import Chain
-    from burridge_knopoff.dataset import write_point
+    from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.friction import Friction
     from burridge_knopoff.initial import initial_state
     from burridge_knopoff.simulation import Settings, run

@@ -23,3 +23,8 @@ def write_whole(path: str | Path, write: Callable[[str], None]) -> None:
     finally:
         with contextlib.suppress(FileNotFoundError):
             temporary.unlink()
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    write_whole(path, lambda name: Path(name).write_text(text, encoding="utf-8") and None)

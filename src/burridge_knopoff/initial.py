@@ -51,7 +51,9 @@ PAPER_STATES = {
 }
 
 
-def initial_state(name: str, position: Sequence[float] | None = None, velocity: Sequence[float] | None = None):
+def initial_state(
+    name: str, position: Sequence[float] | None = None, velocity: Sequence[float] | None = None
+) -> InitialState:
     """Return the state of that name: one of the paper's, or the given numbers under this name.
 
     Raises ValueError if the name is unknown and numbers are missing.

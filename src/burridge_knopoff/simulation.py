@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -66,7 +66,7 @@ class Settings:
     trajectory: float = 30.0
     trajectory_sampling: float = 0.05
     events: str = "window"
-    event_window: float = 2500.0
+    event_window: float = 1500.0
 
     def __post_init__(self) -> None:
         for key, allowed in (("contact", CONTACTS), ("start", STARTS), ("events", EVENTS)):
@@ -143,7 +143,7 @@ class Trajectory:
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""
-        from burridge_knopoff.dataset import to_dataset
+        from burridge_knopoff.dataset.point import to_dataset
 
         return to_dataset(self)
 
@@ -154,7 +154,7 @@ def simulate(
     initial: str | InitialState = "minus",
     *,
     chain: Chain | None = None,
-    **settings,
+    **settings: Any,
 ) -> Trajectory:
     """Run one simulation and return its trajectory.
 
@@ -177,7 +177,8 @@ def run(chain: Chain, friction: Friction, initial: InitialState, settings: Setti
     """Run one simulation of a chain; see `simulate`."""
     if len(initial.position) != chain.blocks:
         raise ValueError(
-            f"initial: state {initial.name!r} has {len(initial.position)} positions; the chain has {chain.blocks} blocks"
+            f"blocks: {chain.blocks} is not allowed for initial state {initial.name!r}, "
+            f"which has {len(initial.position)} positions"
         )
     initial.check_contact(settings.contact)
     solver = settings.solver or DEFAULT_SOLVER[friction.law]

@@ -13,9 +13,9 @@ import numpy as np
 from cython.cimports.libc.math import sqrt
 
 if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.piece import Piece
+    pass
 else:
-    from burridge_knopoff.kernel.piece import Piece
+    pass
 
 NODES = 16
 MAXIMUM_DEPTH = 40

@@ -15,14 +15,12 @@ if cython.compiled:
         RUNNING,
         STEP_LIMIT,
         STEPS_PER_CALL,
-        EventLog,
     )
     from cython.cimports.burridge_knopoff.kernel.modes import Modes
-    from cython.cimports.burridge_knopoff.kernel.observe import Observer
     from cython.cimports.burridge_knopoff.kernel.piece import Piece
     from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
     from cython.cimports.burridge_knopoff.kernel.series import Series
-    from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
+    from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 else:
     from burridge_knopoff.kernel.events import (
         ACCUMULATING_EVENTS,
@@ -31,14 +29,13 @@ else:
         RUNNING,
         STEP_LIMIT,
         STEPS_PER_CALL,
-        EventLog,
     )
     from burridge_knopoff.kernel.modes import Modes
-    from burridge_knopoff.kernel.observe import Observer
     from burridge_knopoff.kernel.piece import Piece
     from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
     from burridge_knopoff.kernel.series import Series
-    from burridge_knopoff.kernel.state import YOUNG, State
+    from burridge_knopoff.kernel.state import YOUNG
+
 
 class EventDriven:
     """One run of a solver that goes from event to event; `run` returns its status."""

@@ -4,10 +4,8 @@ import cython
 
 if cython.compiled:
     from cython.cimports.burridge_knopoff.kernel.record import Record
-    from cython.cimports.burridge_knopoff.kernel.state import State
 else:
     from burridge_knopoff.kernel.record import Record
-    from burridge_knopoff.kernel.state import State
 
 RUNNING = -1
 COMPLETED = 0
@@ -21,8 +19,9 @@ STEPS_PER_CALL = 1_000_000
 class EventLog:
     """The event sequence of a run.
 
-    `earlier_events` has rows (time | block, kind) for events before `states_from`; `events` has rows (time | block, kind, x_1 … x_N, U_1' … U_N')
-    for those from `states_from` on. More than `rate_limit` events in one time unit count as an accumulation.
+    `earlier_events` has rows (time | block, kind) for events before `states_from`; `events` has rows
+    (time | block, kind, x_1 … x_N, U_1' … U_N') for those from `states_from` on. More than `rate_limit` events in one
+    time unit count as an accumulation.
     """
 
     def __init__(self, blocks: int, states_from: float, keep: bool, rate_limit: int) -> None:

@@ -21,9 +21,9 @@ import numpy as np
 from cython.cimports.libc.math import cos, exp, sin, sqrt
 
 if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
+    from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 else:
-    from burridge_knopoff.kernel.state import YOUNG, State
+    from burridge_knopoff.kernel.state import YOUNG
 
 
 class Modes:

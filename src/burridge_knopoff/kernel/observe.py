@@ -5,16 +5,12 @@ import numpy as np
 
 if cython.compiled:
     from cython.cimports.burridge_knopoff.kernel.distance import Distance
-    from cython.cimports.burridge_knopoff.kernel.piece import Piece
     from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
     from cython.cimports.burridge_knopoff.kernel.record import Record
-    from cython.cimports.burridge_knopoff.kernel.state import State
 else:
     from burridge_knopoff.kernel.distance import Distance
-    from burridge_knopoff.kernel.piece import Piece
     from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
     from burridge_knopoff.kernel.record import Record
-    from burridge_knopoff.kernel.state import State
 
 TRANSIENT = 0
 WINDOW = 1
@@ -120,6 +116,7 @@ class Observer:
         t: cython.double
         start: cython.double = 0.0
         window: cython.double = (self.transient - clock) - clock_rest
+        value: cython.double
         self.polynomial.degree = piece.degree
         for k in range(piece.degree + 1):
             total = 0.0
@@ -131,7 +128,8 @@ class Observer:
             if window > 0.0:
                 self.polynomial.shift(window)
                 start = window
-        if self.side * self.polynomial.coefficient[0] < 0.0 and abs(self.polynomial.coefficient[0]) < SEAM and self.side * self.polynomial.coefficient[1] > 0.0:
+        value = self.side * self.polynomial.coefficient[0]
+        if -SEAM < value < 0.0 and self.side * self.polynomial.coefficient[1] > 0.0:
             self.polynomial.coefficient[0] = 0.0
             self.polynomial.deflate()
         while start < length:
@@ -159,7 +157,7 @@ class Observer:
             self.crossings.value[row, 1] = self.side
 
     def _extreme(self, state, piece, stage, length):
-        """Follow the highest slip speed and the lowest spring force on a stuck block, in the transient or the window."""
+        """Follow the highest slip speed and the lowest spring force on a stuck block, in transient or window."""
         i: cython.Py_ssize_t
         for i in range(piece.blocks):
             if state.slip[i] != 0:

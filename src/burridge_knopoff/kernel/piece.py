@@ -1,4 +1,4 @@
-"""One piece of the motion: every block's position, velocity and spring force as polynomials of the time since its start.
+"""One piece of the motion: positions, velocities and spring forces as polynomials of the time since its start.
 
 Whatever a solver does, it hands its motion on in this form; events and observables read nothing else.
 """
@@ -7,11 +7,9 @@ import cython
 import numpy as np
 
 if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial
-    from cython.cimports.burridge_knopoff.kernel.state import State
+    pass
 else:
-    from burridge_knopoff.kernel.polynomial import Polynomial
-    from burridge_knopoff.kernel.state import State
+    pass
 
 
 class Piece:

@@ -58,6 +58,7 @@ class Polynomial:
         self.highest = 0.0
 
     def value(self, t):
+        """Return the value at t."""
         k: cython.Py_ssize_t
         total: cython.double = self.coefficient[self.degree]
         for k in range(self.degree - 1, -1, -1):
@@ -65,6 +66,7 @@ class Polynomial:
         return total
 
     def slope(self, t):
+        """Return the derivative at t."""
         k: cython.Py_ssize_t
         total: cython.double = 0.0
         for k in range(self.degree, 0, -1):
@@ -95,6 +97,7 @@ class Polynomial:
                 self.coefficient[k] += t * self.coefficient[k + 1]
 
     def negate(self):
+        """Change the sign of the polynomial."""
         k: cython.Py_ssize_t
         for k in range(self.degree + 1):
             self.coefficient[k] = -self.coefficient[k]
@@ -241,7 +244,7 @@ class Polynomial:
     def _root_between(self, low, high):
         """Return the only root in [low, high], positive at low and negative at high: Newton kept in a bracket."""
         k: cython.Py_ssize_t
-        iteration: cython.int
+        _iteration: cython.int
         t: cython.double
         change: cython.double
         value: cython.double
@@ -253,7 +256,7 @@ class Polynomial:
         if at_high >= 0.0:
             return high
         t = low + (high - low) * at_low / (at_low - at_high)
-        for iteration in range(NEWTON_ITERATIONS):
+        for _iteration in range(NEWTON_ITERATIONS):
             value = self.coefficient[self.degree]
             slope = 0.0
             for k in range(self.degree - 1, -1, -1):
@@ -278,13 +281,13 @@ class Polynomial:
 
     def _peak_between(self, low, high):
         """Return the maximum in [low, high], where the derivative changes its sign once, from + to -."""
-        iteration: cython.int
+        _iteration: cython.int
         k: cython.Py_ssize_t
         t: cython.double = 0.5 * (low + high)
         slope: cython.double
         curvature: cython.double
         change: cython.double
-        for iteration in range(NEWTON_ITERATIONS):
+        for _iteration in range(NEWTON_ITERATIONS):
             slope = 0.0
             curvature = 0.0
             for k in range(self.degree, 0, -1):

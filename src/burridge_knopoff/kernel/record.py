@@ -1,6 +1,5 @@
 """A table that grows: one time and a few values a row, for events and section crossings."""
 
-import cython
 import numpy as np
 
 
@@ -14,6 +13,7 @@ class Record:
         self.value = np.zeros((1024, width))
 
     def append(self, time):
+        """Add a row at this time and return its number."""
         if self.count == self.time.shape[0]:
             self._grow()
         self.time[self.count] = time
@@ -30,7 +30,9 @@ class Record:
         return 0
 
     def times(self) -> np.ndarray:
+        """Return the times, shape (count,)."""
         return np.asarray(self.time)[: self.count].copy()
 
     def values(self) -> np.ndarray:
+        """Return the values, shape (count, width)."""
         return np.asarray(self.value)[: self.count].copy()

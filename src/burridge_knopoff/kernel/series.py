@@ -15,11 +15,9 @@ import numpy as np
 from cython.cimports.libc.math import pow as power
 
 if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.piece import Piece
-    from cython.cimports.burridge_knopoff.kernel.state import State
+    pass
 else:
-    from burridge_knopoff.kernel.piece import Piece
-    from burridge_knopoff.kernel.state import State
+    pass
 
 ORDER = 24
 TRUNCATION = 1e-18
@@ -91,9 +89,9 @@ class Series:
                     self.friction[i, n] = factor
                     piece.velocity[i, n + 1] = (piece.force[i, n] - direction * factor) * self.reciprocal[n + 1]
                 else:
-                    piece.velocity[i, n + 1] = (
-                        piece.force[i, n] + state.a * piece.velocity[i, n]
-                    ) * self.reciprocal[n + 1]
+                    piece.velocity[i, n + 1] = (piece.force[i, n] + state.a * piece.velocity[i, n]) * self.reciprocal[
+                        n + 1
+                    ]
         for i in range(blocks):
             n = piece.order
             pull = state.stiffness[i] * piece.position[i, n]

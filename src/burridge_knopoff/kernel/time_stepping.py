@@ -10,11 +10,8 @@ if cython.compiled:
         NOT_FINITE,
         RUNNING,
         STEPS_PER_CALL,
-        EventLog,
     )
-    from cython.cimports.burridge_knopoff.kernel.observe import Observer
     from cython.cimports.burridge_knopoff.kernel.piece import Piece
-    from cython.cimports.burridge_knopoff.kernel.state import State
 else:
     from burridge_knopoff.kernel.events import (
         ACCUMULATING_EVENTS,
@@ -22,11 +19,8 @@ else:
         NOT_FINITE,
         RUNNING,
         STEPS_PER_CALL,
-        EventLog,
     )
-    from burridge_knopoff.kernel.observe import Observer
     from burridge_knopoff.kernel.piece import Piece
-    from burridge_knopoff.kernel.state import State
 
 CUBIC = 3
 

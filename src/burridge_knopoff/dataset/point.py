@@ -6,51 +6,19 @@ table makes the xarray Dataset of a notebook.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, fill, flag
 from burridge_knopoff.files import write_whole
 from burridge_knopoff.provenance import provenance
 from burridge_knopoff.simulation import DEFAULT_SOLVER, STATUS, Trajectory
 
 if TYPE_CHECKING:
-    import netCDF4
     import xarray
 
-CONVENTIONS = "CF-1.11, ACDD-1.3"
-COMPRESSION_LEVEL = 5
-
-
-@dataclass(frozen=True)
-class Variable:
-    """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes."""
-
-    dimensions: tuple[str, ...]
-    dtype: str
-    long_name: str
-    attributes: Mapping[str, Any] = field(default_factory=dict)
-    coordinate: bool = False
-
-    def all_attributes(self) -> dict[str, Any]:
-        """Return the attributes in the order in which they are written."""
-        attributes: dict[str, Any] = {"long_name": self.long_name}
-        if "flag_values" not in self.attributes:
-            attributes["units"] = "1"
-        attributes.update(self.attributes)
-        return attributes
-
-
-def flag(dtype: str, meanings: Mapping[int, str]) -> dict[str, Any]:
-    """Return the CF attributes of a flag variable."""
-    return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
-
-
-KIND = flag("i1", {0: "stop", 1: "start"})
-DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 STATUS_FLAG = flag("i1", dict(enumerate(STATUS)))
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
@@ -158,47 +126,6 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     write_whole(path, write)
 
 
-def fill(
-    dataset: netCDF4.Dataset,
-    variables: Mapping[str, Variable],
-    values: Mapping[str, Any],
-    attributes: Mapping[str, Any],
-) -> None:
-    """Write attributes, dimensions and variables into an open netCDF file."""
-    dataset.setncatts(dict(attributes))
-    scalars = " ".join(name for name, item in variables.items() if item.coordinate and not item.dimensions)
-    for name, item in variables.items():
-        array = np.asarray(values[name], dtype=item.dtype)
-        for dimension, size in zip(item.dimensions, array.shape, strict=True):
-            if dimension not in dataset.dimensions:
-                dataset.createDimension(dimension, size)
-        large = array.size > 64
-        variable = dataset.createVariable(
-            name,
-            item.dtype,
-            item.dimensions,
-            compression="zlib" if large else None,
-            complevel=COMPRESSION_LEVEL,
-            shuffle=large,
-            chunksizes=array.shape if large else None,
-            fill_value=False,
-        )
-        named = item.all_attributes()
-        if not item.coordinate:
-            named["coordinates"] = _coordinates(item, scalars)
-        variable.setncatts(named)
-        variable[...] = array
-
-
-_AUXILIARY = {"event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
-
-
-def _coordinates(item: Variable, scalars: str) -> str:
-    """Return the CF coordinates attribute: a and v everywhere, and the times of events and crossings."""
-    own = [_AUXILIARY[dimension] for dimension in item.dimensions if dimension in _AUXILIARY]
-    return " ".join([*own, scalars]).strip()
-
-
 def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
     """Return a trajectory as the xarray Dataset that its point file opens as."""
     import xarray
@@ -208,7 +135,7 @@ def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
         name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
         for name, item in POINT_VARIABLES.items()
     }
-    auxiliary = set(_AUXILIARY.values())
+    auxiliary = set(TIMES.values())
     return xarray.Dataset(
         {name: value for name, value in variables.items() if not _is_coordinate(name, auxiliary)},
         {name: value for name, value in variables.items() if _is_coordinate(name, auxiliary)},

@@ -1,0 +1,54 @@
+# The study: config -> points -> summary -> figures. Run `snakemake -c2`; README.md tells more.
+import os
+import sys
+from pathlib import Path
+
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+# Jobs find the `bk` of this environment, activated or not.
+os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+
+from burridge_knopoff.config import ConfigError, all_points, load_study, read_schema
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.provenance import source_fingerprint
+
+# A config given on the command line replaces the default one; Snakemake would merge the two.
+if not workflow.configfiles:
+
+    configfile: workflow.source_path("config/paper.yaml")
+
+
+try:
+    STUDY = load_study(
+        config,
+        read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),
+        os.path.relpath(str(workflow.configfiles[0])),
+    )
+except ConfigError as error:
+    sys.exit(f"{error}")
+
+RESULTS = f"results/{STUDY.name}"
+POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
+
+
+wildcard_constraints:
+    law="|".join(LAWS),
+    initial="|".join(STUDY.initial),
+    a=r"\d+\.\d+",
+
+
+include: "workflow/rules/simulate.smk"
+include: "workflow/rules/summarize.smk"
+include: "workflow/rules/figures.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        rules.points.input,
+        rules.summary.input,
+        rules.figures.input,
+    message:
+        f"study {STUDY.name}: all points, summaries and figures are in {RESULTS}"

@@ -1,0 +1,188 @@
+"""The configuration of a study: validated against the schema, with defaults filled in, and turned into grid points."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from burridge_knopoff.friction import LAWS
+
+MAXIMUM_POINTS = 1_000_000
+
+#: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
+PAPER_A = 0.08
+
+#: Config keys that are options of `bk simulate` under the same name.
+RUN_KEYS = (
+    "v",
+    "contact",
+    "start",
+    "transient",
+    "window",
+    "batches",
+    "sampling",
+    "trajectory",
+    "trajectory_sampling",
+    "events",
+    "event_window",
+)
+
+
+class ConfigError(ValueError):
+    """A config that is not allowed; the message is one line: file, key, value, what is allowed."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A validated study: its config with all defaults, and the grid of a as {name in file names: exact value}."""
+
+    config: Mapping[str, Any]
+    grid: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Name of the study and of its results folder."""
+        return self.config["study"]
+
+    @property
+    def initial(self) -> tuple[str, ...]:
+        """Names of the initial states."""
+        return tuple(self.config["initial"])
+
+    @property
+    def figure_point(self) -> str:
+        """Name of the value of a that the figures of single runs show."""
+        shown = self.config["figures"].get("a", PAPER_A)
+        return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
+
+    def options(self, law: str, initial: str, a: str) -> str:
+        """Return the options of `bk simulate` for one grid point, named by its wildcards."""
+        config = self.config
+        state = config["initial"][initial]
+        options = [("law", law), ("a", repr(self.grid[a])), ("initial", initial)]
+        options += [(key, ",".join(repr(float(value)) for value in state[key])) for key in ("position", "velocity")]
+        options.append(("solver", config["solver"][law]))
+        if config["solver"][law] == "rk4":
+            options.append(("step", repr(config["step"])))
+        options += [(key.replace("_", "-"), str(config[key])) for key in RUN_KEYS]
+        return " ".join(f"--{key}={value}" if value.startswith("-") else f"--{key} {value}" for key, value in options)
+
+
+def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> Study:
+    """Validate a config against its schema and the rules that a schema cannot state.
+
+    file : name of the config file, for messages
+    Raises ConfigError.
+    """
+    filled = _with_defaults(copy.deepcopy(dict(config)), schema)
+    _check_schema(filled, schema, file)
+    grid = _grid(filled, file)
+    _check_states(filled, file)
+    shown = filled["figures"].get("a")
+    if shown is not None and shown not in grid.values():
+        raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
+    return Study(filled, grid)
+
+
+def read_schema(path: str | Path) -> dict[str, Any]:
+    """Return the schema in a YAML file."""
+    import yaml
+
+    return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+
+
+def _with_defaults(config: Any, schema: Mapping[str, Any]) -> Any:
+    if isinstance(config, dict):
+        for key, item in schema.get("properties", {}).items():
+            if key not in config and "default" in item:
+                config[key] = copy.deepcopy(item["default"])
+            if key in config:
+                config[key] = _with_defaults(config[key], item)
+    return config
+
+
+@cache
+def _validator_class() -> Any:
+    import jsonschema
+
+    def number(checker: Any, value: Any) -> bool:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        return is_number and math.isfinite(value)
+
+    base = jsonschema.Draft202012Validator
+    return jsonschema.validators.extend(base, type_checker=base.TYPE_CHECKER.redefine("number", number))
+
+
+def _check_schema(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> None:
+    errors = sorted(_validator_class()(schema).iter_errors(config), key=lambda error: [str(key) for key in error.path])
+    if not errors:
+        return
+    from burridge_knopoff.config_message import explain
+
+    raise ConfigError(f"{file}: {explain(errors[0])}")
+
+
+def _check_states(config: Mapping[str, Any], file: str) -> None:
+    from burridge_knopoff.initial import InitialState
+
+    blocks = {len(state["position"]) for state in config["initial"].values()}
+    if len(blocks) > 1:
+        counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in config["initial"].items())
+        raise ConfigError(f"{file}: initial: states of one study have the same number of positions ({counts})")
+    for name, state in config["initial"].items():
+        try:
+            InitialState(name, state["position"], state["velocity"]).check_contact(config["contact"])
+        except ValueError as error:
+            raise ConfigError(f"{file}: initial.{name}.{error}") from error
+
+
+def _grid_name(a: float, digits: int) -> str:
+    return f"{a:.{digits}f}"
+
+
+def _grid(config: Mapping[str, Any], file: str) -> dict[str, float]:
+    """Return {name: value}, ascending; every value the double nearest to its decimal."""
+    values: list[float] = []
+    for position, item in enumerate(config["a"]):
+        values += [float(item)] if not isinstance(item, dict) else _range(item, f"{file}: a[{position}]")
+        if len(values) > MAXIMUM_POINTS:
+            raise ConfigError(f"{file}: a: more than {MAXIMUM_POINTS} values; at most that many are allowed")
+    grid: dict[str, float] = {}
+    for value in sorted(values):
+        name = _grid_name(value, config["a_digits"])
+        if name in grid:
+            raise ConfigError(
+                f"{file}: a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "
+                "values that differ within a_digits decimals are needed"
+            )
+        grid[name] = value
+    return grid
+
+
+def _range(item: Mapping[str, float], place: str) -> list[float]:
+    try:
+        first, last, step = (Decimal(repr(item[key])) for key in ("from", "to", "step"))
+    except InvalidOperation as error:
+        raise ConfigError(f"{place}: {dict(item)!r} is not allowed: finite numbers") from error
+    if last < first:
+        raise ConfigError(f"{place}.to: {item['to']!r} is not allowed: at least from ({item['from']!r})")
+    count = (last - first) / step
+    if count > MAXIMUM_POINTS:
+        raise ConfigError(f"{place}.step: {item['step']!r} is not allowed: at most {MAXIMUM_POINTS} values in a range")
+    if count != int(count):
+        raise ConfigError(
+            f"{place}.step: {item['step']!r} is not allowed: it does not divide the range "
+            f"{item['from']!r} to {item['to']!r}"
+        )
+    return [float(first + step * k) for k in range(int(count) + 1)]
+
+
+def all_points(study: Study) -> list[tuple[str, str, str]]:
+    """Return (law, initial, a) of every point job, in the order of the summaries."""
+    return [(law, initial, a) for law in LAWS for initial in study.initial for a in study.grid]

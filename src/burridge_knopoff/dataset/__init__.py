@@ -1,0 +1,1 @@
+"""netCDF files: the only place that names their variables, attributes and encodings."""

@@ -1,0 +1,65 @@
+"""Summary files: xarray Datasets with CF attributes, written whole or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
+from burridge_knopoff.files import write_whole
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.provenance import provenance
+
+AXES: dict[str, Variable] = {
+    "law": Variable(("law",), "O", "friction law", coordinate=True),
+    "initial": Variable(("initial",), "O", "initial state", coordinate=True),
+    "a": Variable(("a",), "f8", "friction parameter a", coordinate=True),
+}
+
+
+def axes(initial: Sequence[str], a: Sequence[float]) -> dict[str, Any]:
+    """Return the coordinates of a summary over (law, initial, a)."""
+    values = {"law": np.array(LAWS, dtype=object), "initial": np.array(initial, dtype=object), "a": np.asarray(a)}
+    return {name: (name, values[name], _attributes(item)) for name, item in AXES.items()}
+
+
+def summary(
+    title: str,
+    variables: Mapping[str, Variable],
+    values: Mapping[str, np.ndarray],
+    coordinates: Mapping[str, Any],
+    attributes: Mapping[str, Any],
+) -> xarray.Dataset:
+    """Return a Dataset of the described variables with the values under the same names."""
+    data = {
+        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), _attributes(item))
+        for name, item in variables.items()
+    }
+    head = {"Conventions": CONVENTIONS, "title": title, **attributes, **provenance()}
+    return xarray.Dataset(data, dict(coordinates), head)
+
+
+def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write a summary as netCDF; the same Dataset gives the same bytes."""
+    encoding: dict[str, dict[str, Any]] = {}
+    for name, variable in dataset.variables.items():
+        encoding[str(name)] = {"_FillValue": None}
+        if variable.dtype != object and variable.size >= COMPRESSED_FROM:
+            encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
+    write_whole(path, lambda name: dataset.to_netcdf(name, engine="netcdf4", encoding=encoding))
+
+
+def open_summary(path: str | Path) -> xarray.Dataset:
+    """Return a summary, loaded into memory."""
+    return xarray.load_dataset(path, engine="netcdf4")
+
+
+def _attributes(item: Variable) -> dict[str, Any]:
+    attributes = item.all_attributes()
+    if item.dtype == "O":
+        attributes.pop("units", None)
+    return attributes

@@ -1,0 +1,78 @@
+"""How a netCDF variable is described and written, for every file of the package."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import netCDF4
+
+CONVENTIONS = "CF-1.11, ACDD-1.3"
+COMPRESSION_LEVEL = 5
+COMPRESSED_FROM = 64
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes."""
+
+    dimensions: tuple[str, ...]
+    dtype: str
+    long_name: str
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    coordinate: bool = False
+
+    def all_attributes(self) -> dict[str, Any]:
+        """Return the attributes in the order in which they are written."""
+        attributes: dict[str, Any] = {"long_name": self.long_name}
+        if "flag_values" not in self.attributes:
+            attributes["units"] = "1"
+        attributes.update(self.attributes)
+        return attributes
+
+
+def flag(dtype: str, meanings: Mapping[int, str]) -> dict[str, Any]:
+    """Return the CF attributes of a flag variable."""
+    return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
+
+
+KIND = flag("i1", {0: "stop", 1: "start"})
+DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
+
+#: The time of each row of a dimension that has no coordinate variable of its own.
+TIMES = {"event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
+
+
+def fill(
+    dataset: netCDF4.Dataset,
+    variables: Mapping[str, Variable],
+    values: Mapping[str, Any],
+    attributes: Mapping[str, Any],
+) -> None:
+    """Write attributes, dimensions and variables into an open netCDF file."""
+    dataset.setncatts(dict(attributes))
+    scalars = " ".join(name for name, item in variables.items() if item.coordinate and not item.dimensions)
+    for name, item in variables.items():
+        array = np.asarray(values[name], dtype=item.dtype)
+        for dimension, size in zip(item.dimensions, array.shape, strict=True):
+            if dimension not in dataset.dimensions:
+                dataset.createDimension(dimension, size)
+        storage: dict[str, Any] = {"fill_value": False}
+        if array.size >= COMPRESSED_FROM:
+            storage.update(compression="zlib", complevel=COMPRESSION_LEVEL, shuffle=True, chunksizes=array.shape)
+        variable = dataset.createVariable(name, item.dtype, item.dimensions, **storage)
+        named = item.all_attributes()
+        if not item.coordinate:
+            named["coordinates"] = _coordinates(item, scalars)
+        variable.setncatts(named)
+        variable[...] = array
+
+
+def _coordinates(item: Variable, scalars: str) -> str:
+    """Return the CF coordinates attribute: a and v everywhere, and the times of events and crossings."""
+    own = [TIMES[dimension] for dimension in item.dimensions if dimension in TIMES]
+    return " ".join([*own, scalars]).strip()

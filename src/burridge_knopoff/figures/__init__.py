@@ -1,0 +1,1 @@
+"""Figures: each module takes datasets and returns one matplotlib Figure."""

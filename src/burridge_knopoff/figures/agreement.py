@@ -1,0 +1,52 @@
+"""Agreement of the two friction laws against a."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+
+
+def draw(agreement: xarray.Dataset) -> Figure:
+    """Draw, for each initial state, |Δ⟨J⟩| against its error, the section distance, and the common event order."""
+    states = agreement["initial"].values
+    figure, panels = new_figure(PAGE, 5.6, rows=3, columns=len(states))
+    a = agreement["a"].values
+    for column, initial in enumerate(states):
+        run = agreement.sel(initial=initial)
+        difference, sections, order = panels[column :: len(states)]
+        difference.plot(a, _positive(abs(run["difference"])), "-o", markersize=2.2, linewidth=0.8, color=color(0))
+        difference.plot(a, _positive(3.0 * run["difference_error"]), "--", linewidth=0.8, color=color(1))
+        sections.plot(a, _positive(run["section_distance"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
+        order.plot(a, _positive(run["event_order_time"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
+        for panel in (difference, sections, order):
+            for value in a[run["agrees"].values == 0]:
+                panel.axvspan(*_cell(a, value), color="0.9", linewidth=0, zorder=0)
+        order.set_xlabel("$a$")
+    for row, label in enumerate((r"$|\Delta\langle J\rangle|$", "section distance", r"same event order until $\tau$")):
+        panels[row * len(states)].set_ylabel(label)
+        panels[row * len(states)].set_yscale("log")
+    difference = panels[0]
+    difference.plot([], [], "-o", markersize=2.2, linewidth=0.8, color=color(0), label="difference")
+    difference.plot([], [], "--", linewidth=0.8, color=color(1), label="three standard errors")
+    difference.fill_between([], [], [], color="0.9", label="the laws disagree")
+    difference.legend(loc="lower right")
+    names = ("nonlinear minus linearized", "distributions of $W'$", "event order")
+    label_panels(panels, [f"{initial}: {name}" for name in names for initial in states])
+    return figure
+
+
+def _positive(values: xarray.DataArray) -> np.ndarray:
+    """Return the values with those that a logarithmic axis cannot show left out."""
+    array = np.asarray(values, dtype=float)
+    return np.where(array > 0.0, array, np.nan)
+
+
+def _cell(a: np.ndarray, value: float) -> tuple[float, float]:
+    """Return the interval of a that is nearer to this value of the grid than to any other."""
+    k = int(np.searchsorted(a, value))
+    low = a[k - 1] if k > 0 else value
+    high = a[k + 1] if k + 1 < len(a) else value
+    return 0.5 * (low + value), 0.5 * (value + high)

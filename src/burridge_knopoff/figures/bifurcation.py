@@ -1,0 +1,42 @@
+"""Bifurcation diagrams: section points W' against a, the paper's Figs. 4a and 4b."""
+
+from __future__ import annotations
+
+import xarray
+from matplotlib.figure import Figure
+
+from burridge_knopoff.dataset.variables import DIRECTION
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+from burridge_knopoff.summaries.bifurcation import section_points
+
+_LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"].split(), strict=True))
+
+
+def draw(bifurcation: xarray.Dataset, laws: list[str]) -> Figure:
+    """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
+    initial = bifurcation["initial"].attrs["flag_meanings"].split()
+    figure, panels = new_figure(PAGE, 0.5 + 2.6 * len(laws), rows=len(laws), columns=len(initial))
+    titles = []
+    for number, panel in enumerate(panels):
+        law, state = laws[number // len(initial)], initial[number % len(initial)]
+        for index, direction in enumerate((1, -1)):
+            a, velocity = section_points(bifurcation, law, state, direction)
+            # A cloud of 10^5 points is a picture, not 10^5 shapes: kept as pixels inside the PDF.
+            panel.plot(
+                a,
+                velocity,
+                ".",
+                markersize=0.7,
+                markeredgewidth=0,
+                color=color(index),
+                rasterized=True,
+                label=_LABELS[direction],
+            )
+        if number >= len(panels) - len(initial):
+            panel.set_xlabel("$a$")
+        if number % len(initial) == 0:
+            panel.set_ylabel("$W'$ at $W=0$")
+        titles.append(f"{state}, {law} law")
+    panels[0].legend(title="crossing", markerscale=12, loc="upper left")
+    label_panels(panels, titles)
+    return figure

@@ -1,0 +1,27 @@
+"""Velocities and positions of the blocks at the end of a run: the paper's Figs. 6 and 7."""
+
+from __future__ import annotations
+
+import xarray
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+
+DASHES = ("-", "--", ":", "-.")
+
+
+def draw(point: xarray.Dataset) -> Figure:
+    """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the run."""
+    figure, panels = new_figure(PAGE, 4.0, rows=2)
+    time = point["trajectory_time"].values
+    for panel, name in zip(panels, ("velocity", "position"), strict=True):
+        for index, block in enumerate(point["block"].values):
+            panel.plot(
+                time, point[name].sel(block=block), DASHES[index % len(DASHES)], color=color(index), label=f"{block}"
+            )
+    panels[0].set_ylabel("$U_i'$")
+    panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
+    panels[0].legend(title="block", ncols=min(len(point["block"]), 8), loc="upper right")
+    run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
+    label_panels(panels, [f"velocities: {run}", f"positions relative to the driver: {run}"])
+    return figure

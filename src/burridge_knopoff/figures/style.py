@@ -1,0 +1,66 @@
+"""The common look of the figures, and how they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.files import write_whole
+
+#: Widths of one and two journal columns, in inches.
+COLUMN = 3.4
+PAGE = 7.0
+
+# Okabe and Ito's colours: told apart by colour-blind readers, and by their lightness in print.
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+
+STYLE = {
+    "font.family": "serif",
+    "font.serif": ["STIXGeneral"],
+    "mathtext.fontset": "stix",
+    "font.size": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.linewidth": 0.7,
+    "axes.grid": False,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "lines.linewidth": 1.0,
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "savefig.dpi": 300,
+    "pdf.fonttype": 42,
+}
+
+
+def new_figure(width: float, height: float, rows: int = 1, columns: int = 1) -> tuple[Figure, list[Axes]]:
+    """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        axes = figure.subplots(rows, columns, sharex="col", sharey="row", squeeze=False)
+    return figure, list(axes.flat)
+
+
+def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
+    """Write (a), (b), … and what each panel shows above it."""
+    for letter, (panel, title) in zip("abcdefghijklmnopqrstuvwxyz", zip(axes, titles, strict=True), strict=False):
+        panel.set_title(f"({letter}) {title}", loc="left")
+
+
+def color(index: int) -> str:
+    """Return the colour of the curve of that number."""
+    return COLORS[index % len(COLORS)]
+
+
+def write_figure(figure: Figure, *paths: str | Path) -> None:
+    """Write a figure in the format of each path; the same figure gives the same bytes."""
+    for path in map(Path, paths):
+        # Without this, PDF files record the time of day.
+        metadata = {"CreationDate": None} if path.suffix == ".pdf" else None
+        with mpl.rc_context(STYLE):
+            write_whole(path, lambda name, metadata=metadata: figure.savefig(name, metadata=metadata))

@@ -1,0 +1,146 @@
+"""Linearized against nonlinear friction law, for each initial state and a: do they agree, and where do they part?"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray
+from scipy.stats import wasserstein_distance
+
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED, common_order, motion_kind, section_period
+from burridge_knopoff.summaries.points import Grid, read_point
+
+_POINT = ("law", "initial", "a")
+_PAIR = ("initial", "a")
+_YES_NO = flag("i1", {0: "no", 1: "yes"})
+VARIABLES = {
+    "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
+    "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
+    "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", KINDS)),
+    "section_period": Variable(_POINT, "i2", "upward section points after which W' repeats, 0 if it does not"),
+    "difference": Variable(_PAIR, "f8", "<J> of the nonlinear law minus <J> of the linearized law"),
+    "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
+    "section_distance": Variable(
+        _PAIR, "f8", "Wasserstein distance between the distributions of W' on upward crossings of both laws"
+    ),
+    "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
+    "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
+    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _YES_NO),
+    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _YES_NO),
+    "parting_a": Variable(("initial",), "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
+}
+_EVENT = ("time", "block", "kind")
+_READ = [
+    *("status", "end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
+    *(f"earlier_event_{name}" for name in _EVENT),
+    *(f"event_{name}" for name in _EVENT),
+]
+
+
+def summarize(grid: Grid, synchronization_threshold: float, agreement: Mapping[str, Any]) -> xarray.Dataset:
+    """Compare both laws at every grid point.
+
+    agreement : the config's section of that name: relative_tolerance, standard_errors, period_tolerance, longest_period
+    """
+    values = {}
+    for name, item in VARIABLES.items():
+        shape = {_POINT: grid.shape, _PAIR: grid.shape[1:]}.get(item.dimensions, grid.shape[1:2])
+        values[name] = np.zeros(shape, dtype=item.dtype)
+    for j, initial in enumerate(grid.initial):
+        for k, a in enumerate(grid.a):
+            pair = [read_point(grid, law, initial, a, _READ) for law in LAWS]
+            upward = [point["crossing_velocity"][point["crossing_direction"] > 0] for point in pair]
+            for i, (point, section) in enumerate(zip(pair, upward, strict=True)):
+                period = section_period(section, agreement["period_tolerance"], agreement["longest_period"])
+                mean = float(point["mean_distance"])
+                completed = STATUS[int(point["status"])] == "completed"
+                values["mean_distance"][i, j, k] = mean
+                values["mean_distance_error"][i, j, k] = point["mean_distance_error"]
+                values["section_period"][i, j, k] = period
+                values["kind"][i, j, k] = motion_kind(completed, mean, synchronization_threshold, period)
+            values["section_distance"][j, k] = wasserstein_distance(*upward) if all(map(len, upward)) else np.nan
+            count, until = common_order(*(_sequence(point) for point in pair))
+            values["event_order_count"][j, k] = count
+            values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
+    _judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
+    return summary(
+        "Agreement of the linearized and the nonlinear friction law",
+        VARIABLES,
+        values,
+        axes(grid.initial, list(grid.a.values())),
+        {"synchronization_threshold": synchronization_threshold, **agreement},
+    )
+
+
+def _sequence(point: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, block and kind of all events of a run."""
+    time, block, kind = (np.concatenate([point[f"earlier_event_{name}"], point[f"event_{name}"]]) for name in _EVENT)
+    return time, block, kind
+
+
+def _judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
+    """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance."""
+    linearized, nonlinear = values["mean_distance"]
+    kind = values["kind"]
+    values["difference"][...] = nonlinear - linearized
+    values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
+    values["same_kind"][...] = (kind[0] == kind[1]) & (kind[0] != UNDETERMINED)
+    tolerance = np.maximum.reduce(
+        [
+            agreement["relative_tolerance"] * np.maximum(linearized, nonlinear),
+            agreement["standard_errors"] * values["difference_error"],
+            np.full_like(linearized, threshold),
+        ]
+    )
+    values["agrees"][...] = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)
+    for j, agrees in enumerate(values["agrees"]):
+        apart = a[agrees == 0]
+        values["parting_a"][j] = apart[0] if len(apart) else np.nan
+
+
+def table(dataset: xarray.Dataset) -> str:
+    """Return the comparison as CSV, one line for each initial state and a."""
+    lines = io.StringIO()
+    lines.write(
+        "initial,a,mean_distance_linearized,mean_distance_nonlinear,difference,difference_error,section_distance,"
+        "event_order_time,kind_linearized,kind_nonlinear,agrees\n"
+    )
+    for initial in dataset["initial"].values:
+        for a in dataset["a"].values:
+            row = dataset.sel(initial=initial, a=a)
+            mean = row["mean_distance"].values
+            kind = [KINDS[int(value)] for value in row["kind"].values]
+            lines.write(
+                f"{initial},{a:.10g},{mean[0]:.8e},{mean[1]:.8e},{row['difference'].item():.8e},"
+                f"{row['difference_error'].item():.2e},{row['section_distance'].item():.6e},"
+                f"{row['event_order_time'].item():.3f},{kind[0]},{kind[1]},{'yes' if row['agrees'].item() else 'no'}\n"
+            )
+    return lines.getvalue()
+
+
+def digest(dataset: xarray.Dataset) -> str:
+    """Return, in a line for each initial state, the a at which the laws part."""
+    a = dataset["a"].values
+    lines = []
+    for initial in dataset["initial"].values:
+        row = dataset.sel(initial=initial)
+        apart = a[row["agrees"].values == 0]
+        if not len(apart):
+            lines.append(f"{initial}: the laws agree at all {len(a)} values of a, {a[0]:g} to {a[-1]:g}.")
+            continue
+        before = a[a < apart[0]]
+        agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
+        other_kind = a[row["same_kind"].values == 0]
+        kinds = f"; the kind of motion differs at {len(other_kind)}" if len(other_kind) else ""
+        lines.append(
+            f"{initial}: the laws {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
+            f"the last {apart[-1]:g}{kinds}."
+        )
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,66 @@
+"""All section points W' at W = 0 against a: the paper's Figs. 4a and 4b, as a CF contiguous ragged array."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.variables import DIRECTION, Variable
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.summaries.points import Grid, read_point
+
+VARIABLES = {
+    "crossing_velocity": Variable(("crossing",), "f8", "W' at a crossing of the section W = 0"),
+    "crossing_direction": Variable(("crossing",), "i1", "direction in which W crosses 0", DIRECTION),
+    "crossing_count": Variable(("point",), "i4", "number of crossings of the point", {"sample_dimension": "crossing"}),
+}
+
+
+def summarize(grid: Grid) -> xarray.Dataset:
+    """Return the section points of all runs, one after another in the order (law, initial, a).
+
+    The points of run n are crossing_velocity[start:start + crossing_count[n]], where start is the sum of the counts
+    before; `section_points` picks them by name.
+    """
+    velocity, direction, count, law, initial, a = [], [], [], [], [], []
+    for _, point in grid:
+        read = read_point(grid, *point, ["crossing_velocity", "crossing_direction"])
+        velocity.append(read["crossing_velocity"])
+        direction.append(read["crossing_direction"])
+        count.append(len(read["crossing_velocity"]))
+        law.append(LAWS.index(point[0]))
+        initial.append(grid.initial.index(point[1]))
+        a.append(grid.a[point[2]])
+    coordinates = {
+        "law": ("point", np.array(law, dtype="i1"), _flag("friction law", LAWS)),
+        "initial": ("point", np.array(initial, dtype="i2"), _flag("initial state", grid.initial)),
+        "a": ("point", np.array(a), {"long_name": "friction parameter a", "units": "1"}),
+    }
+    values = {
+        "crossing_velocity": np.concatenate(velocity),
+        "crossing_direction": np.concatenate(direction),
+        "crossing_count": np.array(count),
+    }
+    return summary(
+        "Section points W' at W = 0",
+        VARIABLES,
+        values,
+        coordinates,
+        {},
+    )
+
+
+def _flag(long_name: str, meanings: tuple[str, ...]) -> dict:
+    values = np.arange(len(meanings), dtype="i1" if meanings == LAWS else "i2")
+    return {"long_name": long_name, "flag_values": values, "flag_meanings": " ".join(meanings)}
+
+
+def section_points(dataset: xarray.Dataset, law: str, initial: str, direction: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return (a, W') of all section points of one law and initial state crossed upward (1) or downward (-1)."""
+    a = np.repeat(dataset["a"].values, dataset["crossing_count"].values)
+    chosen = dataset["law"].values == dataset["law"].attrs["flag_meanings"].split().index(law)
+    chosen &= dataset["initial"].values == dataset["initial"].attrs["flag_meanings"].split().index(initial)
+    chosen = np.repeat(chosen, dataset["crossing_count"].values)
+    chosen &= dataset["crossing_direction"].values == direction
+    return a[chosen], dataset["crossing_velocity"].values[chosen]

@@ -1,0 +1,25 @@
+# Points: one simulation for each friction law, initial state and a.
+
+
+rule points:
+    input:
+        [POINT.format(law=law, initial=initial, a=a) for law, initial, a in all_points(STUDY)],
+
+
+rule simulate:
+    output:
+        POINT,
+    params:
+        options=lambda wildcards: STUDY.options(wildcards.law, wildcards.initial, wildcards.a),
+        sources=source_fingerprint(),
+    log:
+        f"{RESULTS}/logs/simulate/{{law}}/{{initial}}/a{{a}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate/{{law}}/{{initial}}/a{{a}}.tsv"
+    resources:
+        mem_mb=150,
+        runtime=10,
+    message:
+        "simulate {wildcards.law} law, initial state {wildcards.initial}, a = {wildcards.a}"
+    shell:
+        "bk simulate {params.options} --out {output} 2> {log}"

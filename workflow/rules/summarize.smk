@@ -1,0 +1,83 @@
+# Summaries: from all points to one netCDF file a question.
+
+SUMMARY = f"{RESULTS}/summary"
+
+
+rule summary:
+    input:
+        f"{SUMMARY}/mean_distance.nc",
+        f"{SUMMARY}/bifurcation.nc",
+        f"{SUMMARY}/agreement.nc",
+        f"{SUMMARY}/agreement.csv",
+        f"{SUMMARY}/agreement.txt",
+
+
+rule mean_distance:
+    input:
+        rules.points.input,
+    output:
+        f"{SUMMARY}/mean_distance.nc",
+    params:
+        folder=f"{RESULTS}/points",
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+        threshold=STUDY.config["synchronization_threshold"],
+    log:
+        f"{RESULTS}/logs/mean_distance.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/mean_distance.tsv"
+    resources:
+        mem_mb=400,
+        runtime=30,
+    message:
+        "<J> over law, initial state and a"
+    script:
+        "../scripts/mean_distance.py"
+
+
+rule bifurcation:
+    input:
+        rules.points.input,
+    output:
+        f"{SUMMARY}/bifurcation.nc",
+    params:
+        folder=f"{RESULTS}/points",
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+    log:
+        f"{RESULTS}/logs/bifurcation.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/bifurcation.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    message:
+        "section points W' of all runs"
+    script:
+        "../scripts/bifurcation.py"
+
+
+rule agreement:
+    input:
+        rules.points.input,
+    output:
+        dataset=f"{SUMMARY}/agreement.nc",
+        table=f"{SUMMARY}/agreement.csv",
+        digest=f"{SUMMARY}/agreement.txt",
+    params:
+        folder=f"{RESULTS}/points",
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+        threshold=STUDY.config["synchronization_threshold"],
+        agreement=STUDY.config["agreement"],
+    log:
+        f"{RESULTS}/logs/agreement.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/agreement.tsv"
+    resources:
+        mem_mb=400,
+        runtime=30,
+    message:
+        "linearized against nonlinear law"
+    script:
+        "../scripts/agreement.py"

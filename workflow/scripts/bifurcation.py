@@ -1,0 +1,12 @@
+"""Summary: all section points."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.summaries.bifurcation import summarize
+from burridge_knopoff.summaries.points import Grid
+
+grid = Grid(snakemake.params.folder, tuple(snakemake.params.initial), snakemake.params.grid)
+write_summary(summarize(grid), snakemake.output[0])
