@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+
+ROUNDING = 1e-17
 
 
+@styled
 def draw(agreement: xarray.Dataset) -> Figure:
     """Draw, for each initial state, |Δ⟨J⟩| against its error, the section distance, and the common event order."""
     states = agreement["initial"].values
@@ -25,14 +29,18 @@ def draw(agreement: xarray.Dataset) -> Figure:
             for value in a[run["agrees"].values == 0]:
                 panel.axvspan(*_cell(a, value), color="0.9", linewidth=0, zorder=0)
         order.set_xlabel("$a$")
+    # Differences of synchronized runs are rounding; they set the scale of nothing.
+    panels[0].set_ylim(ROUNDING, 1.0)
+    panels[len(states)].set_ylim(1e-8, 1.0)
     for row, label in enumerate((r"$|\Delta\langle J\rangle|$", "section distance", r"same event order until $\tau$")):
         panels[row * len(states)].set_ylabel(label)
         panels[row * len(states)].set_yscale("log")
-    difference = panels[0]
-    difference.plot([], [], "-o", markersize=2.2, linewidth=0.8, color=color(0), label="difference")
-    difference.plot([], [], "--", linewidth=0.8, color=color(1), label="three standard errors")
-    difference.fill_between([], [], [], color="0.9", label="the laws disagree")
-    difference.legend(loc="lower right")
+    lines = panels[0].get_lines()
+    panels[0].legend(
+        [lines[0], lines[1], Patch(color="0.9")],
+        ["difference", "three standard errors", "the laws disagree"],
+        loc="center right",
+    )
     names = ("nonlinear minus linearized", "distributions of $W'$", "event order")
     label_panels(panels, [f"{initial}: {name}" for name in names for initial in states])
     return figure

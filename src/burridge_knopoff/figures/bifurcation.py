@@ -6,12 +6,13 @@ import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.dataset.variables import DIRECTION
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
 from burridge_knopoff.summaries.bifurcation import section_points
 
 _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"].split(), strict=True))
 
 
+@styled
 def draw(bifurcation: xarray.Dataset, laws: list[str]) -> Figure:
     """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
     initial = bifurcation["initial"].attrs["flag_meanings"].split()
@@ -26,7 +27,7 @@ def draw(bifurcation: xarray.Dataset, laws: list[str]) -> Figure:
                 a,
                 velocity,
                 ".",
-                markersize=0.7,
+                markersize=1.2,
                 markeredgewidth=0,
                 color=color(index),
                 rasterized=True,
@@ -37,6 +38,6 @@ def draw(bifurcation: xarray.Dataset, laws: list[str]) -> Figure:
         if number % len(initial) == 0:
             panel.set_ylabel("$W'$ at $W=0$")
         titles.append(f"{state}, {law} law")
-    panels[0].legend(title="crossing", markerscale=12, loc="upper left")
+    panels[0].legend(title="crossing", markerscale=8, loc="center")
     label_panels(panels, titles)
     return figure

@@ -5,9 +5,10 @@ from __future__ import annotations
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
 
 
+@styled
 def draw(mean_distance: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩(a), a panel for each law; bars are three standard errors, gaps are runs that did not complete."""
     laws = mean_distance["law"].values

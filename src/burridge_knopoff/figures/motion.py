@@ -5,11 +5,12 @@ from __future__ import annotations
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
 
 DASHES = ("-", "--", ":", "-.")
 
 
+@styled
 def draw(point: xarray.Dataset) -> Figure:
     """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the run."""
     figure, panels = new_figure(PAGE, 4.0, rows=2)
@@ -17,11 +18,15 @@ def draw(point: xarray.Dataset) -> Figure:
     for panel, name in zip(panels, ("velocity", "position"), strict=True):
         for index, block in enumerate(point["block"].values):
             panel.plot(
-                time, point[name].sel(block=block), DASHES[index % len(DASHES)], color=color(index), label=f"{block}"
+                time,
+                point[name].sel(block=block),
+                DASHES[index % len(DASHES)],
+                color=color(index),
+                label=f"block {block}",
             )
     panels[0].set_ylabel("$U_i'$")
     panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
-    panels[0].legend(title="block", ncols=min(len(point["block"]), 8), loc="upper right")
+    panels[0].legend(ncols=min(len(point["block"]), 6), loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
     label_panels(panels, [f"velocities: {run}", f"positions relative to the driver: {run}"])
     return figure

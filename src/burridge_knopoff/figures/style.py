@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from pathlib import Path
+from typing import ParamSpec
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.files import write_whole
+
+Arguments = ParamSpec("Arguments")
 
 #: Widths of one and two journal columns, in inches.
 COLUMN = 3.4
@@ -38,11 +42,23 @@ STYLE = {
 }
 
 
-def new_figure(width: float, height: float, rows: int = 1, columns: int = 1) -> tuple[Figure, list[Axes]]:
-    """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y."""
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(width, height), layout="constrained")
-        axes = figure.subplots(rows, columns, sharex="col", sharey="row", squeeze=False)
+def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
+    """Let a function draw its figure in the common look, whatever the caller's own settings are."""
+
+    @wraps(draw)
+    def wrapper(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
+        with mpl.rc_context(STYLE):
+            return draw(*args, **kwargs)
+
+    return wrapper
+
+
+def new_figure(
+    width: float, height: float, rows: int = 1, columns: int = 1, share_rows: bool = True
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y if asked."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    axes = figure.subplots(rows, columns, sharex="col", sharey="row" if share_rows else False, squeeze=False)
     return figure, list(axes.flat)
 
 

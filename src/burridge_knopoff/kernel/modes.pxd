@@ -2,7 +2,6 @@ from burridge_knopoff.kernel.state cimport State
 
 cdef class Modes:
     cdef readonly Py_ssize_t blocks
-    cdef dict table
     cdef double[::1] eigenvalue
     cdef double[:, ::1] vector
     cdef Py_ssize_t[:, ::1] vector_row
@@ -12,7 +11,7 @@ cdef class Modes:
     cdef Py_ssize_t[::1] row
     cdef Py_ssize_t runs
     cdef double[::1] origin
-    cdef double[::1] offset
+    cdef double[::1] origin_velocity
     cdef double[::1] drift
     cdef double[::1] amplitude
     cdef double[::1] amplitude_rate
