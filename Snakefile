@@ -1,14 +1,12 @@
 # The study: config -> points -> summary -> figures. Run `snakemake -c2`; README.md tells more.
 import os
+import shlex
 import sys
 from pathlib import Path
 
 from snakemake.utils import min_version
 
 min_version("9.0")
-
-# Jobs find the `bk` of this environment, activated or not.
-os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
 
 from burridge_knopoff.config import ConfigError, all_points, load_study, read_schema
 from burridge_knopoff.friction import LAWS
@@ -17,7 +15,7 @@ from burridge_knopoff.provenance import source_fingerprint
 # A config given on the command line replaces the default one; Snakemake would merge the two.
 if not workflow.configfiles:
 
-    configfile: workflow.source_path("config/paper.yaml")
+    configfile: str(Path(workflow.basedir, "config/paper.yaml"))
 
 
 try:
@@ -31,6 +29,16 @@ except ConfigError as error:
 
 RESULTS = f"results/{STUDY.name}"
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
+
+
+# Jobs find the `bk` of this environment, activated or not.
+shell.prefix(
+    f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
+)
+
+
+# The least in which `make setup` works: Python, a C compiler and make. Used only if jobs are to run in containers.
+container: "docker://python:3.11"
 
 
 wildcard_constraints:

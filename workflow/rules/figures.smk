@@ -3,7 +3,9 @@
 FIGURES = f"{RESULTS}/figures"
 FORMATS = ("pdf", "png")
 FIGURE_POINTS = {
-    initial: POINT.format(law=STUDY.config["figures"]["law"], initial=initial, a=STUDY.figure_point)
+    initial: POINT.format(
+        law=STUDY.config["figures"]["law"], initial=initial, a=STUDY.figure_point
+    )
     for initial in STUDY.initial
 }
 
@@ -27,13 +29,13 @@ rule figures:
 rule figure_friction_laws:
     output:
         multiext(f"{FIGURES}/friction_laws", ".pdf", ".png"),
-    params:
-        a=STUDY.grid[STUDY.figure_point],
-        largest=max(STUDY.grid.values()),
     log:
         f"{RESULTS}/logs/figure_friction_laws.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_friction_laws.tsv"
+    params:
+        a=STUDY.grid[STUDY.figure_point],
+        largest=max(STUDY.grid.values()),
     message:
         "figure: friction laws"
     script:

@@ -3,15 +3,15 @@
 
 rule points:
     input:
-        [POINT.format(law=law, initial=initial, a=a) for law, initial, a in all_points(STUDY)],
+        [
+            POINT.format(law=law, initial=initial, a=a)
+            for law, initial, a in all_points(STUDY)
+        ],
 
 
 rule simulate:
     output:
         POINT,
-    params:
-        options=lambda wildcards: STUDY.options(wildcards.law, wildcards.initial, wildcards.a),
-        sources=source_fingerprint(),
     log:
         f"{RESULTS}/logs/simulate/{{law}}/{{initial}}/a{{a}}.log",
     benchmark:
@@ -19,6 +19,11 @@ rule simulate:
     resources:
         mem_mb=150,
         runtime=10,
+    params:
+        options=lambda wildcards: STUDY.options(
+            wildcards.law, wildcards.initial, wildcards.a
+        ),
+        sources=source_fingerprint(),
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, a = {wildcards.a}"
     shell:

@@ -17,11 +17,6 @@ rule mean_distance:
         rules.points.input,
     output:
         f"{SUMMARY}/mean_distance.nc",
-    params:
-        folder=f"{RESULTS}/points",
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
-        threshold=STUDY.config["synchronization_threshold"],
     log:
         f"{RESULTS}/logs/mean_distance.log",
     benchmark:
@@ -29,6 +24,10 @@ rule mean_distance:
     resources:
         mem_mb=400,
         runtime=30,
+    params:
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+        threshold=STUDY.config["synchronization_threshold"],
     message:
         "<J> over law, initial state and a"
     script:
@@ -40,10 +39,6 @@ rule bifurcation:
         rules.points.input,
     output:
         f"{SUMMARY}/bifurcation.nc",
-    params:
-        folder=f"{RESULTS}/points",
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
     log:
         f"{RESULTS}/logs/bifurcation.log",
     benchmark:
@@ -51,6 +46,9 @@ rule bifurcation:
     resources:
         mem_mb=1000,
         runtime=30,
+    params:
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
     message:
         "section points W' of all runs"
     script:
@@ -64,12 +62,6 @@ rule agreement:
         dataset=f"{SUMMARY}/agreement.nc",
         table=f"{SUMMARY}/agreement.csv",
         digest=f"{SUMMARY}/agreement.txt",
-    params:
-        folder=f"{RESULTS}/points",
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
-        threshold=STUDY.config["synchronization_threshold"],
-        agreement=STUDY.config["agreement"],
     log:
         f"{RESULTS}/logs/agreement.log",
     benchmark:
@@ -77,6 +69,11 @@ rule agreement:
     resources:
         mem_mb=400,
         runtime=30,
+    params:
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+        threshold=STUDY.config["synchronization_threshold"],
+        agreement=STUDY.config["agreement"],
     message:
         "linearized against nonlinear law"
     script:

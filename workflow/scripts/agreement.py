@@ -1,6 +1,7 @@
 """Summary: linearized against nonlinear law, as netCDF, CSV and a few lines."""
 
 import sys
+from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
@@ -9,7 +10,7 @@ from burridge_knopoff.files import write_text
 from burridge_knopoff.summaries.agreement import digest, summarize, table
 from burridge_knopoff.summaries.points import Grid
 
-grid = Grid(snakemake.params.folder, tuple(snakemake.params.initial), snakemake.params.grid)
+grid = Grid(Path(snakemake.input[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
 dataset = summarize(grid, snakemake.params.threshold, snakemake.params.agreement)
 write_summary(dataset, snakemake.output.dataset)
 write_text(snakemake.output.table, table(dataset))

@@ -1,6 +1,7 @@
 """Summary: the mean distance over law, initial state and a."""
 
 import sys
+from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
@@ -8,5 +9,5 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries.mean_distance import summarize
 from burridge_knopoff.summaries.points import Grid
 
-grid = Grid(snakemake.params.folder, tuple(snakemake.params.initial), snakemake.params.grid)
+grid = Grid(Path(snakemake.input[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
 write_summary(summarize(grid, snakemake.params.threshold), snakemake.output[0])

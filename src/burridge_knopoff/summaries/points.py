@@ -23,7 +23,7 @@ class Grid:
     `path(law, initial, a)` is the point file below `folder`.
     """
 
-    folder: str
+    folder: Path
     initial: tuple[str, ...]
     a: dict[str, float]
 
@@ -34,7 +34,7 @@ class Grid:
 
     def path(self, law: str, initial: str, a: str) -> Path:
         """Return the path of a point file."""
-        return Path(self.folder, law, initial, f"a{a}.nc")
+        return self.folder / law / initial / f"a{a}.nc"
 
     def __iter__(self) -> Iterator[tuple[tuple[int, int, int], tuple[str, str, str]]]:
         """Yield (index, (law, initial, a)) in the order law, initial, a."""
