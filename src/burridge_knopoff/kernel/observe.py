@@ -59,9 +59,9 @@ class Observer:
         if length > window:
             self._average(clock, clock_rest, length)
             self._cross(state, piece, clock, clock_rest, length)
-            self._extreme(state, piece, WINDOW, length)
+            self._extreme(state, piece, WINDOW, max(0.0, window), length)
         if window > 0.0:
-            self._extreme(state, piece, TRANSIENT, min(length, window))
+            self._extreme(state, piece, TRANSIENT, 0.0, min(length, window))
         self._sample(piece, clock, clock_rest, length)
 
     def _average(self, clock, clock_rest, length):
@@ -156,16 +156,20 @@ class Observer:
             self.crossings.value[row, 0] = total
             self.crossings.value[row, 1] = self.side
 
-    def _extreme(self, state, piece, stage, length):
+    def _extreme(self, state, piece, stage, start, stop):
         """Follow the highest slip speed and the lowest spring force on a stuck block, in transient or window."""
         i: cython.Py_ssize_t
         for i in range(piece.blocks):
             if state.slip[i] != 0:
                 piece.load_speed(state, i, self.polynomial)
-                self.highest_speed[stage] = self.polynomial.maximum(length, self.highest_speed[stage])
+                if start > 0.0:
+                    self.polynomial.shift(start)
+                self.highest_speed[stage] = self.polynomial.maximum(stop - start, self.highest_speed[stage])
             else:
                 piece.load_gap(state, i, 1, self.polynomial)
-                self.lowest_force[stage] = 1.0 - self.polynomial.maximum(length, 1.0 - self.lowest_force[stage])
+                if start > 0.0:
+                    self.polynomial.shift(start)
+                self.lowest_force[stage] = 1.0 - self.polynomial.maximum(stop - start, 1.0 - self.lowest_force[stage])
 
     def results(self) -> dict:
         """Return all that was measured as NumPy arrays."""

@@ -1,6 +1,7 @@
 cdef double COINCIDENCE
 cdef double YOUNG
 cdef double LONG
+cdef double AT_THRESHOLD
 
 cdef class State:
     cdef readonly Py_ssize_t blocks

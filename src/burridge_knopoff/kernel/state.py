@@ -20,6 +20,9 @@ COINCIDENCE = 1e-15
 YOUNG = 1e-6
 LONG = 1e300
 
+# Rounding of a spring force at its threshold, as a share of the terms that make it up.
+AT_THRESHOLD = 1e-13
+
 
 class State:
     """Positions x_i, velocities U_i' and slip directions (0 stuck, 1 forward, −1 backward) of N blocks.
@@ -98,11 +101,14 @@ class State:
             self.acceleration[i] = 0.0
             self.age[i] = LONG
             return 0
-        self.slip[i] = 1 if self.spring_force(i) > 0.0 else -1
+        force: cython.double = self.spring_force(i)
+        self.slip[i] = 1 if force > 0.0 else -1
         self.velocity[i] = 0.0
         self.acceleration[i] = 0.0
-        self.age[i] = 0.0
-        self.touching[i] = 1
+        # A block that stopped beyond its threshold starts again with the acceleration that the excess gives it.
+        if abs(force) - 1.0 <= AT_THRESHOLD * max(1.0, self.stiffness[i] * abs(self.position[i])):
+            self.touching[i] = 1
+            self.age[i] = 0.0
         return 1
 
     def pending(self, i):

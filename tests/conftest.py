@@ -1,0 +1,20 @@
+"""Shared fixtures and settings of the tests."""
+
+import os
+
+# As in a point job: the tests use both cores already.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("study", deadline=None, derandomize=True, print_blob=True)
+settings.load_profile("study")
+
+
+@pytest.fixture(scope="session")
+def repository() -> Path:
+    """Root of the checkout."""
+    return Path(__file__).parent.parent
