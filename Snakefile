@@ -1,5 +1,4 @@
 # The study: config -> points -> summary -> figures. Run `snakemake -c2`; README.md tells more.
-import os
 import shlex
 import sys
 from pathlib import Path
@@ -9,6 +8,7 @@ from snakemake.utils import min_version
 min_version("9.0")
 
 from burridge_knopoff.config import ConfigError, all_points, load_study, read_schema
+from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.provenance import source_fingerprint
 
@@ -22,7 +22,7 @@ try:
     STUDY = load_study(
         config,
         read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),
-        os.path.relpath(str(workflow.configfiles[0])),
+        display_path(workflow.configfiles[0]),
     )
 except ConfigError as error:
     sys.exit(f"{error}")

@@ -62,7 +62,12 @@ class Study:
         return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
 
     def options(self, law: str, initial: str, a: str) -> str:
-        """Return the options of `bk simulate` for one grid point, named by its wildcards."""
+        """Return the options of `bk simulate` for one grid point, named by its wildcards.
+
+        Raises ConfigError if a is not a value of the grid.
+        """
+        if a not in self.grid:
+            raise ConfigError(f"a{a}.nc: not a point of study {self.name}: a is not in its grid")
         config = self.config
         state = config["initial"][initial]
         options = [("law", law), ("a", repr(self.grid[a])), ("initial", initial)]
@@ -129,8 +134,16 @@ def _check_schema(config: Mapping[str, Any], schema: Mapping[str, Any], file: st
 
 
 def _check_states(config: Mapping[str, Any], file: str) -> None:
-    from burridge_knopoff.initial import InitialState
+    from burridge_knopoff.initial import PAPER_STATES, InitialState
 
+    for name, state in config["initial"].items():
+        if not state and name not in PAPER_STATES:
+            raise ConfigError(
+                f"{file}: initial.{name}: unknown initial state; without position and velocity only these are known: "
+                f"{' | '.join(PAPER_STATES)}"
+            )
+        if not state:
+            state.update(position=list(PAPER_STATES[name].position), velocity=list(PAPER_STATES[name].velocity))
     blocks = {len(state["position"]) for state in config["initial"].values()}
     if len(blocks) > 1:
         counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in config["initial"].items())

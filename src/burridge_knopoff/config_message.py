@@ -15,6 +15,9 @@ def explain(error: Any) -> str:
         known = sorted(error.schema.get("properties", {}))
         unknown = sorted(set(map(str, error.instance)) - set(known))[0]
         return f"{_join(key, unknown)}: unknown key; allowed here: {', '.join(known)}"
+    if error.validator == "dependentRequired":
+        present, missing = re.findall(r"'([^']*)'", error.message)[1::-1]
+        return f"{_join(key, missing)}: missing; needed with {present}"
     if error.validator == "required":
         missing = re.findall(r"'([^']*)' is a required property", error.message)[0]
         description = error.schema.get("properties", {}).get(missing, {}).get("description", "")

@@ -26,8 +26,9 @@ class Friction:
     def __post_init__(self) -> None:
         if self.law not in LAWS:
             raise ValueError(f"law: {self.law!r} is not allowed: {' | '.join(LAWS)}")
-        if not 0.0 <= self.a < 2.0:
+        if isinstance(self.a, bool) or not isinstance(self.a, int | float | np.floating) or not 0.0 <= self.a < 2.0:
             raise ValueError(f"a: {self.a!r} is not allowed: 0 ≤ a < 2")
+        object.__setattr__(self, "a", float(self.a))
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ(a·speed), elementwise."""

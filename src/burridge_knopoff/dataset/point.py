@@ -6,6 +6,7 @@ table makes the xarray Dataset of a notebook.
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,7 @@ POINT_VARIABLES: dict[str, Variable] = {
         (),
         "f8",
         "time average <J> of the phase-space distance between the end blocks over the window",
-        {"cell_methods": "time: mean", "ancillary_variables": "mean_distance_error status"},
+        {"ancillary_variables": "mean_distance_error status"},
     ),
     "mean_distance_error": _V((), "f8", "standard error of <J> from the batch means"),
     "batch_mean_distance": _V(("batch",), "f8", "time average of J over one batch of the window"),
@@ -46,8 +47,8 @@ POINT_VARIABLES: dict[str, Variable] = {
     "least_spring_force": _V((), "f8", "least spring force s on a stuck block in the whole run"),
     "window_least_friction": _V((), "f8", "least friction Phi(a U') on a slipping block in the window"),
     "window_least_spring_force": _V((), "f8", "least spring force s on a stuck block in the window"),
-    "time": _V(("time",), "f8", "time tau of a sample of J", coordinate=True),
-    "distance": _V(("time",), "f8", "phase-space distance J(tau) between the end blocks"),
+    "time": _V(("sample",), "f8", "time tau of a sample of J"),
+    "distance": _V(("sample",), "f8", "phase-space distance J(tau) between the end blocks"),
     "earlier_event_time": _V(("earlier_event",), "f8", "time tau of an event before those with states"),
     "earlier_event_block": _V(("earlier_event",), "i2", "block that stops or starts before those with states"),
     "earlier_event_kind": _V(("earlier_event",), "i1", "kind of event before those with states", KIND),
@@ -81,6 +82,18 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
 
 
+def command(trajectory: Trajectory) -> str:
+    """Return the `bk simulate` command that makes this point again."""
+    state, settings = trajectory.initial, trajectory.settings
+    words = [f"bk simulate --law {trajectory.friction.law} --a {trajectory.friction.a!r} --initial {state.name}"]
+    words += [f"--{key}={','.join(map(repr, getattr(state, key)))}" for key in ("position", "velocity")]
+    for item in fields(settings):
+        value = getattr(settings, item.name)
+        if value != item.default:
+            words.append(f"--{item.name.replace('_', '-')} {value}")
+    return " ".join(words)
+
+
 def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     """Return the global attributes of a point file."""
     settings = trajectory.settings
@@ -94,6 +107,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
         ),
         "keywords": "stick-slip, Burridge-Knopoff model, synchronization",
         "source": f"{provenance()['software']}, event-driven or time-stepping simulation",
+        "history": command(trajectory),
         "law": law,
         "solver": settings.solver or DEFAULT_SOLVER[law],
         "initial": trajectory.initial.name,
@@ -117,11 +131,8 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     import netCDF4
 
     def write(name: str) -> None:
-        try:
-            with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
-                fill(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
-        except RuntimeError as error:
-            raise OSError(f"{path}: cannot be written: {error}") from error
+        with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
+            fill(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
 
     write_whole(path, write)
 

@@ -39,7 +39,13 @@ def summary(
         name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), _attributes(item))
         for name, item in variables.items()
     }
-    head = {"Conventions": CONVENTIONS, "title": title, **attributes, **provenance()}
+    head = {
+        "Conventions": CONVENTIONS,
+        "title": title,
+        "history": "snakemake, from the point files",
+        **attributes,
+        **provenance(),
+    }
     return xarray.Dataset(data, dict(coordinates), head)
 
 

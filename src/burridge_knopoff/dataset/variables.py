@@ -44,7 +44,7 @@ KIND = flag("i1", {0: "stop", 1: "start"})
 DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 
 #: The time of each row of a dimension that has no coordinate variable of its own.
-TIMES = {"event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
+TIMES = {"sample": "time", "event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
 
 
 def fill(

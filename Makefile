@@ -1,0 +1,60 @@
+# `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
+# `make benchmark`: the tables of docs/performance.md (about half an hour).
+
+PYTHON ?= python3
+BIN := .venv/bin
+KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd)
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: study setup test benchmark lock clean
+
+study: setup
+	$(BIN)/snakemake -c2
+
+setup: .venv/kernel
+
+.venv/study: requirements/study.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
+	$(PYTHON) -m venv .venv
+	$(PIP) install --require-hashes --requirement $<
+	@touch $@
+
+.venv/kernel: .venv/study setup.py pyproject.toml $(KERNEL)
+	$(PIP) install --no-build-isolation --no-deps --editable .
+	@touch $@
+
+.venv/test: requirements/test.lock .venv/study
+	$(PIP) install --require-hashes --requirement $<
+	@touch $@
+
+test: .venv/kernel .venv/test
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/snakemake --lint
+	$(BIN)/python -m pytest
+
+# The peers live apart from the study's environment.
+.venv-benchmark/ready: requirements/benchmark.lock setup.py pyproject.toml $(KERNEL)
+	$(PYTHON) -m venv .venv-benchmark
+	.venv-benchmark/bin/python -m pip --disable-pip-version-check --quiet install --require-hashes --requirement $<
+	.venv-benchmark/bin/python -m pip --disable-pip-version-check --quiet install --no-build-isolation --no-deps --editable .
+	@touch $@
+
+benchmark: .venv/kernel .venv-benchmark/ready
+	.venv-benchmark/bin/python benchmarks/peers.py
+	.venv-benchmark/bin/python benchmarks/chain_length.py
+	.venv-benchmark/bin/python benchmarks/point_job.py
+	.venv-benchmark/bin/python benchmarks/study.py
+
+# Needs uv. The lock files hold names, versions and hashes only.
+lock:
+	cd requirements && uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+		--no-emit-find-links --no-annotate --no-header study.in -o study.lock
+	cd requirements && for name in test benchmark; do uv pip compile --universal --python-version 3.11 \
+		--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header -c study.lock \
+		$$name.in -o $$name.lock; done
+
+clean:
+	rm -rf .venv .venv-benchmark build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so

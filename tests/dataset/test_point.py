@@ -1,0 +1,117 @@
+"""Point files: what is in them, CF compliance, the same bytes every time, size."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
+from burridge_knopoff.simulation import simulate
+
+
+@pytest.fixture(scope="module")
+def trajectory():
+    return simulate("linearized", 0.08, "plus", transient=100.0, window=200.0, batches=4, event_window=50.0)
+
+
+@pytest.fixture
+def path(trajectory, tmp_path):
+    write_point(trajectory, tmp_path / "point.nc")
+    return tmp_path / "point.nc"
+
+
+def test_the_file_and_the_dataset_are_the_same(trajectory, path):
+    with xr.open_dataset(path) as file:
+        xr.testing.assert_identical(file.load().drop_attrs(deep=True), trajectory.to_dataset().drop_attrs(deep=True))
+        assert set(file.variables) == set(POINT_VARIABLES)
+        assert file.attrs["law"] == "linearized"
+        assert file.attrs["initial"] == "plus"
+        assert file["a"].item() == 0.08
+        for name, variable in file.variables.items():
+            assert variable.attrs["long_name"], name
+            assert "_FillValue" not in variable.encoding or np.isnan(variable.encoding["_FillValue"]) is None
+
+
+def test_events_of_the_whole_run(trajectory):
+    """Earlier events, then those of the event window with their states, together the whole sequence."""
+    everything = simulate("linearized", 0.08, "plus", transient=100.0, window=200.0, batches=4, events="all")
+    time = np.concatenate([trajectory.earlier_event_time, trajectory.event_time])
+    assert (time == everything.event_time).all()
+    block = np.concatenate([trajectory.earlier_event_block, trajectory.event_block])
+    assert (block == everything.event_block).all()
+    assert trajectory.event_time.min() >= 250.0 > trajectory.earlier_event_time.max()
+    assert (trajectory.event_position == everything.event_position[-len(trajectory.event_time) :]).all()
+    own = trajectory.event_velocity[np.arange(len(trajectory.event_time)), trajectory.event_block - 1]
+    assert (own == 0.0).all()
+    kinds = everything.event_kind[everything.event_block == 2]
+    assert (kinds[1:] != kinds[:-1]).all()
+
+
+def test_positions_are_relative_to_the_driver(trajectory):
+    first = simulate("linearized", 0.08, "plus", transient=0.0, window=20.0, trajectory=20.0)
+    assert np.allclose(first.position[0], first.initial.position, atol=1e-14)
+    assert (first.velocity[0] == first.initial.velocity).all()
+    assert np.abs(trajectory.position).max() < 2.0
+
+
+def test_same_inputs_same_bytes(tmp_path):
+    command = [str(Path(sys.executable).parent / "bk"), "simulate", "--law", "nonlinear", "--a", "0.2"]
+    for name in ("one", "two"):
+        subprocess.run([*command, "--window", "300", "--transient", "10", "--out", str(tmp_path / name)], check=True)
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+
+
+def test_history_is_the_command_that_makes_the_file(path, tmp_path):
+    with xr.open_dataset(path) as dataset:
+        command = dataset.attrs["history"].split()
+    again = tmp_path / "again.nc"
+    command[0] = str(Path(sys.executable).parent / "bk")
+    subprocess.run([*command, "--out", str(again)], check=True)
+    assert again.read_bytes() == path.read_bytes()
+
+
+def test_no_cf_error(path, tmp_path):
+    checker = str(Path(sys.executable).parent / "compliance-checker")
+    run = subprocess.run(
+        [checker, "--test=cf:1.11", "--criteria=strict", str(path)], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert "All tests passed!" in run.stdout, run.stdout
+    assert run.returncode == 0
+
+
+@pytest.mark.parametrize(("law", "a"), [("linearized", 0.08), ("nonlinear", 0.095), ("nonlinear", 0.25)])
+def test_a_default_point_is_small(tmp_path, law, a):
+    """Under 300 KB, also where the motion never repeats and nothing compresses."""
+    write_point(simulate(law, a, "plus"), tmp_path / "point.nc")
+    assert 50_000 < (tmp_path / "point.nc").stat().st_size < 300_000
+
+
+def test_a_run_that_did_not_complete_has_nan(tmp_path, monkeypatch):
+    monkeypatch.setattr("burridge_knopoff.simulation.STEP_LIMIT", 10)
+    write_point(simulate("linearized", 0.08, "plus"), tmp_path / "point.nc")
+    with xr.open_dataset(tmp_path / "point.nc") as dataset:
+        meanings = dataset["status"].attrs["flag_meanings"].split()
+        assert meanings[dataset["status"].item()] == "step_limit"
+        assert np.isnan(dataset["mean_distance"].item())
+        assert np.isnan(dataset["distance"].values[-1])
+
+
+def test_provenance_names_sources_but_no_person(path):
+    import getpass
+    import socket
+
+    with xr.open_dataset(path) as dataset:
+        text = str(dataset.attrs)
+        assert len(dataset.attrs["source_fingerprint"]) == 16
+        assert len(dataset.attrs["git_commit"]) == 40 or dataset.attrs["git_commit"] == "unknown"
+    for word in (socket.gethostname(), getpass.getuser(), "2026"):
+        assert f" {word} " not in text
+
+
+def test_the_data_dictionary_describes_every_variable(repository):
+    text = (repository / "docs" / "data.md").read_text()
+    for name in POINT_VARIABLES:
+        assert f"`{name}`" in text, name

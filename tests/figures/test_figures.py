@@ -1,0 +1,65 @@
+"""Figures show what they are given: data of the curves, gaps for missing values, the caller's style untouched."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff.figures import distance, friction_laws, mean_distance, motion
+from burridge_knopoff.figures.style import write_figure
+from burridge_knopoff.simulation import simulate
+
+
+@pytest.fixture(scope="module")
+def point():
+    return simulate("linearized", 0.08, "plus", transient=50.0, window=50.0, batches=2).to_dataset()
+
+
+def test_mean_distance_leaves_a_gap_where_a_run_has_no_result():
+    shape = (2, 1, 3)
+    values = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
+    dataset = xr.Dataset(
+        {
+            "mean_distance": (("law", "initial", "a"), values),
+            "mean_distance_error": (("law", "initial", "a"), np.full(shape, 0.01)),
+        },
+        {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.1, 0.2]},
+    )
+    panels = mean_distance.draw(dataset).axes
+    curve = panels[0].get_lines()[0]
+    assert np.array_equal(curve.get_ydata(), values[0, 0], equal_nan=True)
+    assert panels[0].get_title(loc="left") == "(a) linearized law"
+
+
+def test_motion_draws_every_block(point):
+    figure = motion.draw(point)
+    for panel, name in zip(figure.axes, ("velocity", "position"), strict=True):
+        assert len(panel.get_lines()) == 3
+        assert (panel.get_lines()[2].get_ydata() == point[name].values[:, 2]).all()
+
+
+def test_distance_draws_both_scales(point):
+    figure = distance.draw({"plus": point})
+    assert (figure.axes[0].get_lines()[0].get_ydata() == point["distance"].values).all()
+    assert figure.axes[1].get_yscale() == "log"
+
+
+def test_friction_laws_are_the_models():
+    lines = {line.get_label(): line for line in friction_laws.draw([0.3]).axes[0].get_lines()}
+    speed, linearized = lines["$a=0.3$, linearized"].get_data()
+    assert np.allclose(linearized, 1.0 - 0.3 * speed)
+    assert np.allclose(lines["$a=0.3$, nonlinear"].get_ydata(), 1.0 / (1.0 + 0.3 * speed))
+
+
+def test_the_callers_style_is_untouched(point):
+    before = dict(mpl.rcParams)
+    motion.draw(point)
+    assert dict(mpl.rcParams) == before
+
+
+@pytest.mark.parametrize("suffix", ["pdf", "png"])
+def test_the_same_figure_gives_the_same_bytes(tmp_path, point, suffix):
+    for name in ("one", "two"):
+        write_figure(motion.draw(point), tmp_path / f"{name}.{suffix}")
+    assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
+    assert len(list(tmp_path.iterdir())) == 2

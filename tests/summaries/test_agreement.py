@@ -1,0 +1,65 @@
+"""Verdicts on agreement follow the data, both ways."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.summaries import agreement, mean_distance
+from burridge_knopoff.summaries.points import Grid, PointError
+
+SETTINGS = {"relative_tolerance": 0.1, "standard_errors": 3.0, "period_tolerance": 1e-6, "longest_period": 60}
+
+
+def grid_of(folder, change=lambda law, trajectory: trajectory):
+    """Write a grid of one initial state and two a, with altered nonlinear points if asked."""
+    grid = Grid(folder, ("minus",), {"0.0500": 0.05, "0.0800": 0.08})
+    for _, (law, initial, a) in grid:
+        trajectory = simulate(law, grid.a[a], initial, transient=2000.0, window=400.0, batches=4)
+        write_point(change(law, trajectory), grid.path(law, initial, a))
+    return grid
+
+
+def test_two_synchronized_laws_agree(tmp_path):
+    dataset = agreement.summarize(grid_of(tmp_path), 1e-6, SETTINGS)
+    assert (dataset["agrees"] == 1).all()
+    assert (dataset["kind"] == 0).all()
+    assert np.isnan(dataset["parting_a"].item())
+    assert agreement.digest(dataset) == "minus: the laws agree at all 2 values of a, 0.05 to 0.08.\n"
+
+
+def test_altered_data_changes_the_verdict(tmp_path):
+    def change(law, trajectory):
+        if law == "nonlinear" and trajectory.friction.a == 0.08:
+            return dataclasses.replace(trajectory, mean_distance=0.2)
+        return trajectory
+
+    dataset = agreement.summarize(grid_of(tmp_path, change), 1e-6, SETTINGS)
+    assert dataset["agrees"].values.tolist() == [[1, 0]]
+    assert dataset["parting_a"].item() == 0.08
+    assert "agree up to a = 0.05 and part at a = 0.08" in agreement.digest(dataset)
+
+
+def test_a_run_without_result_agrees_with_nothing(tmp_path):
+    def change(law, trajectory):
+        if law == "linearized":
+            return dataclasses.replace(trajectory, status="step_limit", mean_distance=np.nan)
+        return trajectory
+
+    grid = grid_of(tmp_path, change)
+    dataset = agreement.summarize(grid, 1e-6, SETTINGS)
+    assert (dataset["agrees"] == 0).all()
+    assert (dataset["kind"].sel(law="linearized") == -1).all()
+    means = mean_distance.summarize(grid, 1e-6)
+    assert np.isnan(means["mean_distance"].sel(law="linearized")).all()
+    assert (means["synchronized"].sel(law="linearized") == 0).all()
+    assert (means["status"].sel(law="linearized") == 1).all()
+
+
+def test_a_missing_point_is_named(tmp_path):
+    grid = grid_of(tmp_path)
+    grid.path("nonlinear", "minus", "0.0800").unlink()
+    with pytest.raises(PointError, match=r"nonlinear/minus/a0\.0800\.nc: not a readable point file"):
+        mean_distance.summarize(grid, 1e-6)

@@ -1,0 +1,175 @@
+"""Configs: defaults, grids, and one line for everything that is wrong."""
+
+import copy
+import re
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from burridge_knopoff.config import ConfigError, all_points, load_study, read_schema
+
+NAN = float("nan")
+INFINITE = float("inf")
+STATES = {"minus": {}, "plus": {}}
+RANGE = {"from": 0, "to": 0.3, "step": 0.0025}
+PAIR = {"position": [-1.0, -1.0], "velocity": [0.1, 0.1]}
+
+# (keys to change, what the one line must say: the key, and the value or what is allowed)
+BAD = [
+    ({"study": None}, ["study: missing"]),
+    ({"a": None}, ["a: missing"]),
+    ({"initial": None}, ["initial: missing"]),
+    ({"transients": 10}, ["transients: unknown key", "transient"]),
+    ({"agreement": {"tolerance": 1}}, ["agreement.tolerance: unknown key", "relative_tolerance"]),
+    ({"figures": {"colour": 1}}, ["figures.colour: unknown key"]),
+    ({"solver": {"linear": "map"}}, ["solver.linear: unknown key"]),
+    ({"study": ""}, ["study: ''"]),
+    ({"study": "a/b"}, ["study: 'a/b'"]),
+    ({"study": ".."}, ["study: '..'"]),
+    ({"study": 7}, ["study: 7"]),
+    ({"study": "x" * 70}, ["study: 'xxx"]),
+    ({"a": []}, ["a: []", "at least 1"]),
+    ({"a": 0.1}, ["a: 0.1", "list"]),
+    ({"a": "0.1"}, ["a: '0.1'"]),
+    ({"a": ["0.1"]}, ["a[0]: '0.1'"]),
+    ({"a": [True]}, ["a[0]: True"]),
+    ({"a": [None]}, ["a[0]: None"]),
+    ({"a": [-0.1]}, ["a[0]: -0.1", "≥ 0"]),
+    ({"a": [0.1, 2.0]}, ["a[1]: 2.0", "< 2"]),
+    ({"a": [NAN]}, ["a[0]: nan"]),
+    ({"a": [INFINITE]}, ["a[0]: inf"]),
+    ({"a": [0.1, 0.1]}, ["a: 0.1 and 0.1 share the file name"]),
+    ({"a": [0.1, 0.10001]}, ["share the file name a0.1000.nc", "a_digits"]),
+    ({"a": [RANGE, 0.0025]}, ["share the file name"]),
+    ({"a": [{"from": 0, "to": 0.3}]}, ["a[0].step: missing"]),
+    ({"a": [{"from": 0, "to": 0.3, "stepp": 0.1}]}, ["a[0].stepp: unknown key"]),
+    ({"a": [{"from": 0, "to": 0.3, "step": 0.007}]}, ["a[0].step: 0.007", "divide"]),
+    ({"a": [{"from": 0, "to": 0.3, "step": 0}]}, ["a[0].step: 0", "> 0"]),
+    ({"a": [{"from": 0, "to": 0.3, "step": -0.1}]}, ["a[0].step: -0.1"]),
+    ({"a": [{"from": 0, "to": 0.3, "step": 1e-9}]}, ["a[0].step: 1e-09", "1000000"]),
+    ({"a": [{"from": 0.3, "to": 0.1, "step": 0.1}]}, ["a[0].to: 0.1"]),
+    ({"a": [{"from": 0, "to": INFINITE, "step": 0.1}]}, ["a[0].to: inf"]),
+    ({"a": [{"from": NAN, "to": 1, "step": 0.1}]}, ["a[0].from: nan"]),
+    ({"a_digits": 0}, ["a_digits: 0"]),
+    ({"a_digits": 2.5}, ["a_digits: 2.5"]),
+    ({"initial": {}}, ["initial: {}", "at least 1"]),
+    ({"initial": "plus"}, ["initial: 'plus'"]),
+    ({"initial": ["plus"]}, ["initial: ['plus']"]),
+    ({"initial": {"middle": {}}}, ["initial.middle: unknown initial state", "minus | plus"]),
+    ({"initial": {"two words": PAIR}}, ["'two words'"]),
+    ({"initial": {"x": {"position": [0, 0]}}}, ["initial.x.velocity: missing"]),
+    ({"initial": {"x": {**PAIR, "speed": 1}}}, ["initial.x.speed: unknown key"]),
+    ({"initial": {"x": {**PAIR, "velocity": [0.1]}}}, ["initial.x.velocity: [0.1]"]),
+    ({"initial": {"x": {**PAIR, "velocity": [0.1, 0.1, 0.1]}}}, ["initial.x.velocity: 3 numbers for 2"]),
+    ({"initial": {"x": {**PAIR, "velocity": [0.1, -0.1]}}}, ["initial.x.velocity: -0.1", "one_sided"]),
+    ({"initial": {"x": {**PAIR, "position": [0.1, NAN]}}}, ["initial.x.position[1]: nan"]),
+    ({"initial": {"x": {**PAIR, "position": [0.1, "b"]}}}, ["initial.x.position[1]: 'b'"]),
+    ({"initial": {"x": PAIR, "plus": {}}}, ["initial: states of one study", "x: 2", "plus: 3"]),
+    ({"v": 0}, ["v: 0"]),
+    ({"v": "fast"}, ["v: 'fast'"]),
+    ({"v": True}, ["v: True"]),
+    ({"contact": "sticky"}, ["contact: 'sticky'", "one_sided | symmetric"]),
+    ({"start": "later"}, ["start: 'later'", "moving | tested"]),
+    ({"solver": {"linearized": "euler"}}, ["solver.linearized: 'euler'", "map | series | rk4"]),
+    ({"solver": {"nonlinear": "map"}}, ["solver.nonlinear: 'map'", "series | rk4"]),
+    ({"solver": "map"}, ["solver: 'map'"]),
+    ({"transient": 0}, ["transient: 0", "> 0"]),
+    ({"transient": -1}, ["transient: -1"]),
+    ({"transient": NAN}, ["transient: nan"]),
+    ({"window": 0}, ["window: 0"]),
+    ({"window": INFINITE}, ["window: inf"]),
+    ({"window": None, "windows": 10}, ["windows: unknown key"]),
+    ({"batches": 1}, ["batches: 1"]),
+    ({"batches": 2.5}, ["batches: 2.5", "whole number"]),
+    ({"sampling": 0}, ["sampling: 0"]),
+    ({"events": "none"}, ["events: 'none'", "window | all"]),
+    ({"synchronization_threshold": 0}, ["synchronization_threshold: 0"]),
+    ({"synchronization_threshold": "1e-6"}, ["synchronization_threshold: '1e-6'", "1.0e-6"]),
+    ({"agreement": None, "agreement ": {}}, ["unknown key"]),
+    ({"agreement": []}, ["agreement: []"]),
+    ({"figures": {"a": 0.0801}}, ["figures.a: 0.0801", "grid"]),
+]
+
+
+@pytest.fixture(scope="module")
+def schema(repository):
+    return read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")
+
+
+def load(schema, **changes):
+    config = {"study": "test", "a": [RANGE], "initial": copy.deepcopy(STATES), **changes}
+    return load_study({key: value for key, value in config.items() if value is not None}, schema, "config/test.yaml")
+
+
+@pytest.mark.parametrize(("changes", "words"), BAD)
+def test_bad_configs_get_one_line(schema, changes, words):
+    with pytest.raises(ConfigError) as caught:
+        load(schema, **changes)
+    message = str(caught.value)
+    assert message.startswith("config/test.yaml: ")
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+@pytest.mark.parametrize("name", ["paper", "smoke"])
+def test_the_shipped_configs_are_valid(repository, schema, name):
+    path = repository / "config" / f"{name}.yaml"
+    study = load_study(yaml.safe_load(path.read_text()), schema, str(path))
+    assert study.name == name
+    if name == "paper":
+        assert len(all_points(study)) == 484
+        assert study.grid["0.0800"] == 0.08
+        assert study.grid["0.3000"] == 0.3
+        assert study.figure_point == "0.0800"
+
+
+def test_every_key_of_the_schema_is_described(schema):
+    def walk(node, path):
+        for key, item in node.get("properties", {}).items():
+            assert item.get("description"), f"{path}{key}"
+            walk(item, f"{path}{key}.")
+            if item.get("type") == "object" and "properties" in item:
+                assert item["additionalProperties"] is False
+
+    walk(schema, "")
+    assert schema["additionalProperties"] is False
+
+
+def test_lists_and_several_ranges(schema):
+    study = load(schema, a=[0.2, {"from": 0.08, "to": 0.1, "step": 0.01}, 0.095, {"from": 0, "to": 0, "step": 1}])
+    assert list(study.grid) == ["0.0000", "0.0800", "0.0900", "0.0950", "0.1000", "0.2000"]
+    assert list(study.grid.values()) == [0.0, 0.08, 0.09, 0.095, 0.1, 0.2]
+
+
+def test_options_of_a_point(schema):
+    study = load(schema, solver={"nonlinear": "rk4"}, step=0.01)
+    assert "--solver map" in study.options("linearized", "plus", "0.0800")
+    options = study.options("nonlinear", "plus", "0.0800")
+    assert "--a 0.08 " in options
+    assert "--position=" not in options
+    assert "--position 0.989,-0.993,-0.991" in options
+    assert "--step 0.01" in options
+    assert "--position=-0.989,-0.993,-0.991" in study.options("nonlinear", "minus", "0.0800")
+    with pytest.raises(ConfigError, match=re.escape("a0.0801.nc")):
+        study.options("linearized", "plus", "0.0801")
+
+
+@given(
+    st.integers(0, 1000),
+    st.integers(1, 50),
+    st.sampled_from(["0.001", "0.0025", "0.0001", "0.0005"]),
+    st.integers(0, 3),
+)
+def test_ranges_are_exact_decimals(first, count, step):
+    """Every grid value is the double nearest to its decimal, so that a0.0800 is 0.08 and not 0.08000000000000002."""
+    from decimal import Decimal
+
+    from burridge_knopoff.config import _range
+
+    start = Decimal(first) * Decimal(step)
+    stop = start + count * Decimal(step)
+    values = _range({"from": float(start), "to": float(stop), "step": float(step)}, "a[0]")
+    assert values == [float(start + k * Decimal(step)) for k in range(count + 1)]

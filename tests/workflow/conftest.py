@@ -1,0 +1,83 @@
+"""The real Snakefile on a small study in a temporary folder."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).parent.parent.parent
+
+TINY = """
+study: tiny
+a: [0.05, 0.08, {from: 0.2, to: 0.22, step: 0.02}]
+initial: {minus: {}, plus: {}}
+transient: 100
+window: 200
+batches: 4
+"""
+
+
+class Study:
+    """A folder in which Snakemake runs a config through the repository's Snakefile."""
+
+    def __init__(self, folder: Path, config: str = TINY) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.folder = folder
+        self.config = folder / "study.yaml"
+        self.config.write_text(config)
+
+    def command(self, *arguments: str, cores: int = 2) -> list[str]:
+        """Return the command line; arguments follow the usual ones."""
+        snakemake = str(Path(sys.executable).parent / "snakemake")
+        return [
+            *(snakemake, f"-c{cores}", "-s", str(REPOSITORY / "Snakefile")),
+            *("--configfile", str(self.config), "--nocolor", *arguments),
+        ]
+
+    def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
+        """Run Snakemake to its end; standard output and error are captured."""
+        environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+        return subprocess.run(
+            self.command(*arguments, cores=cores), cwd=self.folder, capture_output=True, text=True, env=environment
+        )
+
+    def ok(self, *arguments: str, cores: int = 2) -> str:
+        """Run Snakemake, require success, and return all that it wrote."""
+        run = self.run(*arguments, cores=cores)
+        assert run.returncode == 0, run.stderr
+        return run.stdout + run.stderr
+
+    def files(self, *folders: str) -> dict[str, bytes]:
+        """Return {path below results/<study>: bytes} of the results in these folders."""
+        results = next((self.folder / "results").iterdir())
+        return {
+            str(path.relative_to(results)): path.read_bytes()
+            for folder in folders
+            for path in sorted((results / folder).rglob("*"))
+            if path.is_file()
+        }
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    """A tiny study that has run to its end; tests only read it."""
+    study = Study(tmp_path_factory.mktemp("finished"))
+    study.ok()
+    return study
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Study:
+    """A tiny study that has not run yet."""
+    return Study(tmp_path / "study")
+
+
+@pytest.fixture
+def copy(finished: Study, tmp_path: Path) -> Study:
+    """A copy of the finished study to spoil and rerun; modification times are kept."""
+    subprocess.run(["cp", "-a", str(finished.folder), str(tmp_path / "copy")], check=True)
+    return Study(tmp_path / "copy", finished.config.read_text())

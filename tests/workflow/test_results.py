@@ -1,0 +1,100 @@
+"""What a study leaves: points, summaries and figures, opened and held against the package."""
+
+import csv
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.image import imread
+
+from burridge_knopoff.simulation import simulate
+
+GRID = [0.05, 0.08, 0.2, 0.22]
+NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]
+OPTIONS = {"transient": 100.0, "window": 200.0, "batches": 4}
+
+
+@pytest.fixture
+def results(finished):
+    return finished.folder / "results" / "tiny"
+
+
+def test_every_point_is_there(results):
+    found = sorted(str(path.relative_to(results / "points")) for path in (results / "points").rglob("*.nc"))
+    assert found == sorted(
+        f"{law}/{initial}/a{a}.nc"
+        for law in ("linearized", "nonlinear")
+        for initial in ("minus", "plus")
+        for a in NAMES
+    )
+    assert not list(results.rglob(".*"))
+
+
+def test_mean_distance_summary(results):
+    with xr.open_dataset(results / "summary" / "mean_distance.nc") as summary:
+        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4}
+        assert summary["a"].values.tolist() == GRID
+        for law in ("linearized", "nonlinear"):
+            run = simulate(law, 0.2, "plus", **OPTIONS)
+            point = summary.sel(law=law, initial="plus", a=0.2)
+            assert point["mean_distance"].item() == run.mean_distance
+            assert point["mean_distance_error"].item() == run.mean_distance_error
+            assert point["event_count"].item() == run.event_count
+            assert point["synchronized"].item() == 0
+        synchronized = summary["mean_distance"] < summary.attrs["synchronization_threshold"]
+        assert (summary["synchronized"] == synchronized).all()
+
+
+def test_bifurcation_summary(results):
+    from burridge_knopoff.summaries.bifurcation import section_points
+
+    with xr.open_dataset(results / "summary" / "bifurcation.nc") as summary:
+        assert summary["crossing_count"].attrs["sample_dimension"] == "crossing"
+        assert summary["crossing_count"].sum() == summary.sizes["crossing"]
+        run = simulate("nonlinear", 0.22, "minus", **OPTIONS)
+        for direction in (1, -1):
+            a, velocity = section_points(summary, "nonlinear", "minus", direction)
+            mine = run.crossing_velocity[run.crossing_direction == direction]
+            assert (velocity[a == 0.22] == mine).all()
+            assert len(mine) > 10
+            assert set(a) <= set(GRID)
+
+
+def test_agreement_summary(results):
+    with xr.open_dataset(results / "summary" / "agreement.nc") as agreement:
+        pair = [simulate(law, 0.2, "plus", **OPTIONS) for law in ("linearized", "nonlinear")]
+        point = agreement.sel(initial="plus", a=0.2)
+        assert point["difference"].item() == pair[1].mean_distance - pair[0].mean_distance
+        assert point["difference_error"].item() == np.hypot(*(run.mean_distance_error for run in pair))
+        whole = [simulate(law, 0.2, "plus", events="all", **OPTIONS) for law in ("linearized", "nonlinear")]
+        codes = [list(zip(run.event_block, run.event_kind, strict=True)) for run in whole]
+        common = next(n for n, (one, two) in enumerate(zip(*codes, strict=False)) if one != two)
+        assert point["event_order_count"].item() == common
+        assert point["event_order_time"].item() == min(run.event_time[common] for run in whole)
+    with open(results / "summary" / "agreement.csv") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 8
+    row = next(row for row in rows if row["initial"] == "plus" and float(row["a"]) == 0.2)
+    assert float(row["mean_distance_linearized"]) == pytest.approx(pair[0].mean_distance, rel=1e-8)
+    lines = (results / "summary" / "agreement.txt").read_text().splitlines()
+    assert [line.split(":")[0] for line in lines] == ["minus", "plus"]
+
+
+@pytest.mark.parametrize(
+    "name", ["friction_laws", "mean_distance", "bifurcation", "distance", "motion_minus", "motion_plus", "agreement"]
+)
+def test_figures_are_pictures(results, name):
+    picture = imread(results / "figures" / f"{name}.png")
+    assert picture.shape[0] > 600
+    assert picture.shape[1] > 900
+    ink = (picture[..., :3].min(axis=2) < 0.9).mean()
+    assert 0.005 < ink < 0.5
+    assert (results / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_logs_and_benchmarks(results):
+    for folder, suffix in (("logs", ".log"), ("benchmarks", ".tsv")):
+        names = {path.name for path in (results / folder).glob(f"*{suffix}")}
+        assert {f"{rule}{suffix}" for rule in ("mean_distance", "agreement", "figure_bifurcation")} <= names
+        assert len(list((results / folder / "simulate").rglob(f"*{suffix}"))) == 16
+    assert all(path.read_text() == "" for path in (results / "logs" / "simulate").rglob("*.log"))
