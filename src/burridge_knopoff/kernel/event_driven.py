@@ -17,7 +17,7 @@ if cython.compiled:
         STEPS_PER_CALL,
     )
     from cython.cimports.burridge_knopoff.kernel.modes import Modes
-    from cython.cimports.burridge_knopoff.kernel.piece import Piece
+    from cython.cimports.burridge_knopoff.kernel.piece import UNKNOWN, Piece
     from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
     from cython.cimports.burridge_knopoff.kernel.series import Series
     from cython.cimports.burridge_knopoff.kernel.state import YOUNG
@@ -31,7 +31,7 @@ else:
         STEPS_PER_CALL,
     )
     from burridge_knopoff.kernel.modes import Modes
-    from burridge_knopoff.kernel.piece import Piece
+    from burridge_knopoff.kernel.piece import UNKNOWN, Piece
     from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
     from burridge_knopoff.kernel.series import Series
     from burridge_knopoff.kernel.state import YOUNG
@@ -110,6 +110,7 @@ class EventDriven:
         """Return the block that stops or starts first within the horizon, its time in event_time; -1 if none does."""
         i: cython.Py_ssize_t
         side: cython.int
+        zeros: cython.Py_ssize_t
         t: cython.double
         block: cython.Py_ssize_t = -1
         self.event_time = horizon
@@ -120,8 +121,10 @@ class EventDriven:
                 else:
                     self.piece.load_gap(self.state, i, side, self.polynomial)
                 # The zeros at the start of the piece are known exactly: a block that has just started has U' = U'' = 0.
-                self.polynomial.deflate()
+                zeros = self.polynomial.deflate()
                 t = self.polynomial.first_root(self.event_time)
+                if side == 1:
+                    self.piece.highest[i] = UNKNOWN if zeros > 0 else self.polynomial.highest
                 if t >= 0.0 and (t < self.event_time or block < 0):
                     self.event_time = t
                     block = i
@@ -134,15 +137,16 @@ class EventDriven:
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         slope: cython.double
+        if not self.closed_form:
+            self.piece.move(self.state, t)
         for i in range(self.state.blocks):
-            self.state.position[i] = evaluate(self.piece.position, i, self.piece.degree, t)
             if t > 0.0:
                 self.state.touching[i] = 0
             if self.state.slip[i] == 0:
                 continue
-            self.state.velocity[i] = evaluate(self.piece.velocity, i, self.piece.degree, t)
             self.state.age[i] += t
             if self.state.age[i] < YOUNG:
+                self.state.velocity[i] = evaluate(self.piece.velocity, i, self.piece.degree, t)
                 slope = 0.0
                 for k in range(self.piece.degree, 0, -1):
                     slope = slope * t + k * self.piece.velocity[i, k]

@@ -25,6 +25,10 @@ if cython.compiled:
 else:
     from burridge_knopoff.kernel.state import YOUNG
 
+# Longest run whose modes are refined: long double has no fast matrix product, and beyond this the solution of the
+# modes would take longer than the simulation.
+REFINED = 32
+
 
 def _refined(matrix, eigenvalue, vector):
     """Return eigenvalues and eigenvectors (columns) correct to the last bit or so: one Newton step in long double.
@@ -176,7 +180,9 @@ class Modes:
         """Diagonalise the run's matrix, append eigenvalues and eigenvectors (as rows), and return their first row."""
         length = last - first + 1
         matrix = np.diag(np.asarray(state.stiffness)[first : last + 1]) - np.eye(length, k=1) - np.eye(length, k=-1)
-        eigenvalue, vector = _refined(matrix, *np.linalg.eigh(matrix))
+        eigenvalue, vector = np.linalg.eigh(matrix)
+        if length <= REFINED:
+            eigenvalue, vector = _refined(matrix, eigenvalue, vector)
         row = self.rows
         if row + length > self.vector.shape[0]:
             grown = np.zeros((2 * (row + length), self.blocks))

@@ -31,10 +31,11 @@ cdef class Observer:
     cdef double[::1] highest_speed
     cdef double[::1] lowest_force
     cdef Distance distance
+    cdef bint loaded
     cdef Polynomial polynomial
 
     cdef void observe(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
-    cdef void _average(self, double clock, double clock_rest, double length) noexcept nogil
+    cdef void _average(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _sample(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _cross(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _extreme(self, State state, Piece piece, int stage, double start, double stop) noexcept nogil

@@ -50,21 +50,22 @@ class Observer:
         self.highest_speed = np.full(2, NOTHING)
         self.lowest_force = np.full(2, -NOTHING)
         self.distance = Distance(order)
+        self.loaded = False
         self.polynomial = Polynomial(order)
 
     def observe(self, state, piece, clock, clock_rest, length):
         """Take everything from the first `length` of a piece that starts at time clock + clock_rest."""
         window: cython.double = (self.transient - clock) - clock_rest
-        self.distance.load(piece, length)
+        self.loaded = False
         if length > window:
-            self._average(clock, clock_rest, length)
+            self._average(piece, clock, clock_rest, length)
             self._cross(state, piece, clock, clock_rest, length)
             self._extreme(state, piece, WINDOW, max(0.0, window), length)
         if window > 0.0:
             self._extreme(state, piece, TRANSIENT, 0.0, min(length, window))
         self._sample(piece, clock, clock_rest, length)
 
-    def _average(self, clock, clock_rest, length):
+    def _average(self, piece, clock, clock_rest, length):
         """Add the integral of J to the batches that the piece touches (compensated sums)."""
         start: cython.double = max(0.0, (self.edge[self.batch] - clock) - clock_rest)
         stop: cython.double
@@ -75,6 +76,9 @@ class Observer:
             edge = (self.edge[self.batch + 1] - clock) - clock_rest
             stop = min(edge, length)
             if stop > start:
+                if not self.loaded:
+                    self.distance.load(piece, length)
+                    self.loaded = True
                 term = self.distance.integral(start, stop)
                 total = self.batch_integral[self.batch] + term
                 self.batch_rest[self.batch] += (self.batch_integral[self.batch] - total) + term
@@ -92,6 +96,9 @@ class Observer:
             t = (self.distance_time[self.next_distance] - clock) - clock_rest
             if t > length:
                 break
+            if not self.loaded:
+                self.distance.load(piece, length)
+                self.loaded = True
             self.distance_sample[self.next_distance] = self.distance.value(t)
             self.next_distance += 1
         while self.next_trajectory < self.trajectory_time.shape[0]:
@@ -161,11 +168,13 @@ class Observer:
         i: cython.Py_ssize_t
         for i in range(piece.blocks):
             if state.slip[i] != 0:
+                if piece.highest[i] <= self.highest_speed[stage]:
+                    continue
                 piece.load_speed(state, i, self.polynomial)
                 if start > 0.0:
                     self.polynomial.shift(start)
                 self.highest_speed[stage] = self.polynomial.maximum(stop - start, self.highest_speed[stage])
-            else:
+            elif piece.highest[i] > 1.0 - self.lowest_force[stage]:
                 piece.load_gap(state, i, 1, self.polynomial)
                 if start > 0.0:
                     self.polynomial.shift(start)

@@ -1,6 +1,8 @@
 from burridge_knopoff.kernel.polynomial cimport Polynomial
 from burridge_knopoff.kernel.state cimport State
 
+cdef double UNKNOWN
+
 cdef class Piece:
     cdef readonly Py_ssize_t blocks
     cdef readonly Py_ssize_t order
@@ -9,5 +11,8 @@ cdef class Piece:
     cdef double[:, ::1] velocity
     cdef double[:, ::1] force
 
+    cdef double[::1] highest
+
+    cdef void move(self, State state, double t) noexcept nogil
     cdef void load_speed(self, State state, Py_ssize_t i, Polynomial polynomial) noexcept nogil
     cdef void load_gap(self, State state, Py_ssize_t i, int side, Polynomial polynomial) noexcept nogil

@@ -11,9 +11,14 @@ if cython.compiled:
 else:
     pass
 
+UNKNOWN = 1e300
+
 
 class Piece:
-    """Coefficient tables of shape (blocks, order + 1), lowest power first, of x_i, U_i' and s_i; `degree` ≤ order."""
+    """Coefficient tables of shape (blocks, order + 1), lowest power first, of x_i, U_i' and s_i; `degree` ≤ order.
+
+    `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used.
+    """
 
     def __init__(self, blocks: int, order: int) -> None:
         self.blocks = blocks
@@ -22,6 +27,19 @@ class Piece:
         self.position = np.zeros((blocks, order + 1))
         self.velocity = np.zeros((blocks, order + 1))
         self.force = np.zeros((blocks, order + 1))
+        self.highest = np.full(blocks, UNKNOWN)
+
+    def move(self, state, t):
+        """Set positions and velocities of the state to those at time t."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        for i in range(self.blocks):
+            state.position[i] = self.position[i, self.degree]
+            state.velocity[i] = self.velocity[i, self.degree]
+        for k in range(self.degree - 1, -1, -1):
+            for i in range(self.blocks):
+                state.position[i] = state.position[i] * t + self.position[i, k]
+                state.velocity[i] = state.velocity[i] * t + self.velocity[i, k]
 
     def load_speed(self, state, i, polynomial):
         """Load the speed |U_i'| of a slipping block: the block stops where it becomes negative."""

@@ -29,6 +29,10 @@ NEGLIGIBLE = 1e-19
 # A root is found when Newton's method moves it by no more than half an ulp.
 RESOLUTION = 1.2e-16
 
+# Degree of the first, cheap test of an interval, and number of Newton steps with that degree.
+LOW_DEGREE = 8
+GUESSES = 3
+
 
 def evaluate(coefficient, row, degree, t):
     """Return the value at t of the polynomial whose coefficients are one row of a table, lowest power first."""
@@ -54,6 +58,8 @@ class Polynomial:
             for k in range(n + 1):
                 inverse[n, k] = 1.0 / math.comb(n, k)
         self.inverse_binomial = inverse
+        self.power = np.zeros(capacity + 1)
+        self.length = -1.0
         self.lowest = 0.0
         self.highest = 0.0
 
@@ -116,7 +122,11 @@ class Polynomial:
         n = self._scale(length)
         if self.lowest > 0.0:
             return -1.0
-        self._convert(n)
+        if n > LOW_DEGREE:
+            self._bound(n)
+            if self.lowest > 0.0:
+                return -1.0
+        self._convert(0, n)
         top = 0
         self.left[0] = 0.0
         self.right[0] = length
@@ -138,7 +148,7 @@ class Polynomial:
             if changes == 0:
                 top -= 1
             elif changes == 1:
-                return self._root_between(self.left[top], self.right[top])
+                return self._root_between(top, n)
             elif top >= MAXIMUM_DEPTH or self.right[top] - self.left[top] <= 4e-15 * self.right[top]:
                 if sign < 0:
                     return self.right[top]
@@ -161,7 +171,11 @@ class Polynomial:
         n = self._scale(length)
         if self.highest <= floor:
             return floor
-        self._convert(n)
+        if n > LOW_DEGREE:
+            self._bound(n)
+            if self.highest <= floor:
+                return floor
+        self._convert(0, n)
         top = 0
         self.left[0] = 0.0
         self.right[0] = length
@@ -196,37 +210,70 @@ class Polynomial:
         return floor
 
     def _scale(self, length):
-        """Put the terms at t = length into the first Bernstein row; return the degree that matters there."""
+        """Put the terms at t = length into the first Bernstein row; return the degree that matters there.
+
+        `lowest` and `highest` become bounds of the polynomial over [0, length]: the sums of its negative and of its
+        positive terms.
+        """
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.degree
-        power: cython.double = 1.0
         scaled: cython.double
-        largest: cython.double = 0.0
-        self.lowest = self.coefficient[0]
-        self.highest = self.coefficient[0]
-        for k in range(self.degree + 1):
-            scaled = self.coefficient[k] * power
+        negative: cython.double = 0.0
+        positive: cython.double = 0.0
+        if length != self.length:
+            self.length = length
+            self.power[0] = 1.0
+            for k in range(1, self.capacity + 1):
+                self.power[k] = self.power[k - 1] * length
+        self.bernstein[0, 0] = self.coefficient[0]
+        for k in range(1, n + 1):
+            scaled = self.coefficient[k] * self.power[k]
             self.bernstein[0, k] = scaled
-            power *= length
-            largest = max(largest, abs(scaled))
-            if k > 0:
-                if scaled < 0.0:
-                    self.lowest += scaled
-                else:
-                    self.highest += scaled
-        while n > 0 and abs(self.bernstein[0, n]) <= NEGLIGIBLE * largest:
+            negative += min(scaled, 0.0)
+            positive += max(scaled, 0.0)
+        self.lowest = self.coefficient[0] + negative
+        self.highest = self.coefficient[0] + positive
+        scaled = NEGLIGIBLE * (abs(self.coefficient[0]) + positive - negative)
+        while n > 0 and abs(self.bernstein[0, n]) <= scaled:
             n -= 1
         return n
 
-    def _convert(self, degree):
-        """Turn the scaled terms in the first row into Bernstein coefficients."""
+    def _bound(self, degree):
+        """Tighten `lowest` and `highest` by the Bernstein coefficients of the first terms and the sum of the others.
+
+        Far cheaper than all coefficients, and enough wherever the polynomial keeps clear of 0.
+        """
+        k: cython.Py_ssize_t
+        rest: cython.double = 0.0
+        least: cython.double
+        largest: cython.double
+        for k in range(LOW_DEGREE + 1, degree + 1):
+            rest += abs(self.bernstein[0, k])
+        for k in range(LOW_DEGREE + 1):
+            self.bernstein[1, k] = self.bernstein[0, k]
+        self._convert(1, LOW_DEGREE)
+        least = self.bernstein[1, 0]
+        largest = self.bernstein[1, 0]
+        for k in range(1, LOW_DEGREE + 1):
+            least = min(least, self.bernstein[1, k])
+            largest = max(largest, self.bernstein[1, k])
+        self.lowest = max(self.lowest, least - rest)
+        self.highest = min(self.highest, largest + rest)
+
+    def _convert(self, row, degree):
+        """Turn the scaled terms in a row into Bernstein coefficients."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
+        before: cython.double
+        here: cython.double
         for k in range(1, degree + 1):
-            self.bernstein[0, k] *= self.inverse_binomial[degree, k]
+            self.bernstein[row, k] *= self.inverse_binomial[degree, k]
         for j in range(1, degree + 1):
-            for k in range(degree, j - 1, -1):
-                self.bernstein[0, k] += self.bernstein[0, k - 1]
+            before = self.bernstein[row, j - 1]
+            for k in range(j, degree + 1):
+                here = self.bernstein[row, k]
+                self.bernstein[row, k] = here + before
+                before = here
 
     def _split(self, top, degree):
         """Halve the interval in row top: its right half stays there, its left half goes to row top + 1."""
@@ -241,25 +288,40 @@ class Polynomial:
             for k in range(degree - j):
                 self.bernstein[top, k] = 0.5 * (self.bernstein[top, k] + self.bernstein[top, k + 1])
 
-    def _root_between(self, low, high):
-        """Return the only root in [low, high], positive at low and negative at high: Newton kept in a bracket."""
+    def _root_between(self, top, degree):
+        """Return the only root in the interval of row top, where the sign falls: Newton kept in a bracket."""
         k: cython.Py_ssize_t
         _iteration: cython.int
         t: cython.double
         change: cython.double
         value: cython.double
         slope: cython.double
-        at_low: cython.double = self.value(low)
-        at_high: cython.double = self.value(high)
+        low: cython.double = self.left[top]
+        high: cython.double = self.right[top]
+        at_low: cython.double = self.bernstein[top, 0]
+        at_high: cython.double = self.bernstein[top, degree]
         if at_low <= 0.0:
             return low
         if at_high >= 0.0:
             return high
         t = low + (high - low) * at_low / (at_low - at_high)
+        if degree > LOW_DEGREE:
+            # A first guess from the first terms, at a third of the cost of a step with all.
+            change = t
+            for _iteration in range(GUESSES):
+                value = self.coefficient[LOW_DEGREE]
+                slope = 0.0
+                for k in range(LOW_DEGREE - 1, -1, -1):
+                    slope = slope * change + value
+                    value = value * change + self.coefficient[k]
+                if slope < 0.0:
+                    change -= value / slope
+            if low < change < high:
+                t = change
         for _iteration in range(NEWTON_ITERATIONS):
-            value = self.coefficient[self.degree]
+            value = self.coefficient[degree]
             slope = 0.0
-            for k in range(self.degree - 1, -1, -1):
+            for k in range(degree - 1, -1, -1):
                 slope = slope * t + value
                 value = value * t + self.coefficient[k]
             if value == 0.0:

@@ -5,7 +5,6 @@ cdef double TRUNCATION
 
 cdef class Series:
     cdef double[:, ::1] friction
-    cdef double[:, ::1] speed
     cdef double[::1] reciprocal
     cdef double step_power_last
     cdef double step_power_previous

@@ -24,11 +24,13 @@ TRUNCATION = 1e-18
 
 
 class Series:
-    """Work space of the recursion for chains of `blocks` blocks at the given order."""
+    """Work space of the recursion for chains of `blocks` blocks at the given order.
+
+    `friction` holds the series of Φ highest power first, so that products of series run through memory one way.
+    """
 
     def __init__(self, blocks: int, order: int) -> None:
         self.friction = np.zeros((blocks, order + 1))
-        self.speed = np.zeros((blocks, order + 1))
         self.reciprocal = 1.0 / np.maximum(np.arange(order + 2, dtype=float), 1.0)
         self.step_power_last = 1.0 / order
         self.step_power_previous = 1.0 / (order - 1)
@@ -40,8 +42,12 @@ class Series:
         n: cython.Py_ssize_t
         blocks: cython.Py_ssize_t = state.blocks
         pull: cython.double
+        start: cython.Py_ssize_t
+        first: cython.double
+        second: cython.double
+        third: cython.double
+        fourth: cython.double
         total: cython.double
-        other: cython.double
         factor: cython.double
         direction: cython.double
         for i in range(blocks):
@@ -65,9 +71,7 @@ class Series:
                     piece.force[i, 0] += state.sliding_friction
                     piece.velocity[i, 1] = 0.0 if state.slip[i] == 0 else state.slip_acceleration(i)
                     if state.nonlinear and state.slip[i] != 0:
-                        direction = state.slip[i]
-                        self.speed[i, 0] = 1.0 + state.a * direction * state.velocity[i]
-                        self.friction[i, 0] = 1.0 / self.speed[i, 0]
+                        self.friction[i, piece.order] = 1.0 / (1.0 + state.a * abs(state.velocity[i]))
                 continue
             for i in range(blocks):
                 if state.slip[i] == 0:
@@ -75,19 +79,24 @@ class Series:
                     continue
                 if state.nonlinear:
                     direction = state.slip[i]
-                    self.speed[i, n] = state.a * direction * piece.velocity[i, n]
-                    total = 0.0
-                    other = 0.0
+                    # Four sums, which a processor forms at the same time; one would wait for each addition.
+                    first = second = third = fourth = 0.0
+                    start = piece.order - n
                     j = 1
-                    while j < n:
-                        total += self.speed[i, j] * self.friction[i, n - j]
-                        other += self.speed[i, j + 1] * self.friction[i, n - j - 1]
-                        j += 2
-                    if j == n:
-                        total += self.speed[i, n] * self.friction[i, 0]
-                    factor = -(total + other) * self.friction[i, 0]
-                    self.friction[i, n] = factor
-                    piece.velocity[i, n + 1] = (piece.force[i, n] - direction * factor) * self.reciprocal[n + 1]
+                    while j + 3 <= n:
+                        first += piece.velocity[i, j] * self.friction[i, start + j]
+                        second += piece.velocity[i, j + 1] * self.friction[i, start + j + 1]
+                        third += piece.velocity[i, j + 2] * self.friction[i, start + j + 2]
+                        fourth += piece.velocity[i, j + 3] * self.friction[i, start + j + 3]
+                        j += 4
+                    while j <= n:
+                        first += piece.velocity[i, j] * self.friction[i, start + j]
+                        j += 1
+                    total = (first + third) + (second + fourth)
+                    # direction · Φ_n, from (1 + a direction U') Φ = 1.
+                    factor = -state.a * total * self.friction[i, piece.order]
+                    self.friction[i, start] = direction * factor
+                    piece.velocity[i, n + 1] = (piece.force[i, n] - factor) * self.reciprocal[n + 1]
                 else:
                     piece.velocity[i, n + 1] = (piece.force[i, n] + state.a * piece.velocity[i, n]) * self.reciprocal[
                         n + 1

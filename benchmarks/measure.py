@@ -1,0 +1,46 @@
+"""What the benchmarks share: CPU times of contestants in alternation, and tables in Markdown."""
+
+from __future__ import annotations
+
+import gc
+import statistics
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+
+def cpu_times(contestants: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:
+    """Return the median CPU time in seconds of each contestant.
+
+    They run in turn, `rounds` times, so that a change of clock frequency or of the load meets all of them alike. Each
+    should have run once before: imports, compilation just in time and cold caches are not what is compared.
+    """
+    times: dict[str, list[float]] = {name: [] for name in contestants}
+    for _ in range(rounds):
+        for name, contestant in contestants.items():
+            gc.collect()
+            begin = time.process_time()
+            contestant()
+            times[name].append(time.process_time() - begin)
+    return {name: statistics.median(values) for name, values in times.items()}
+
+
+def print_table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
+    """Print a table in Markdown; numbers are aligned to the right."""
+    cells = [[str(value) for value in row] for row in (header, *rows)]
+    width = [max(len(row[i]) for row in cells) for i in range(len(header))]
+    right = [bool(rows) and cells[1][i][:1] in set("0123456789-") for i in range(len(header))]
+
+    def line(row: Sequence[str]) -> str:
+        padded = [c.rjust(w) if r else c.ljust(w) for c, w, r in zip(row, width, right, strict=True)]
+        return f"| {' | '.join(padded)} |"
+
+    print(line(cells[0]))
+    print("|" + "|".join("-" * (w + 1) + (":" if r else "-") for w, r in zip(width, right, strict=True)) + "|")
+    for row in cells[1:]:
+        print(line(row))
+    print()
+
+
+def verdict(value: float, limit: float, *, at_least: bool = False) -> str:
+    """Say whether a measured value keeps its limit."""
+    return "yes" if (value >= limit if at_least else value <= limit) else "NO"

@@ -1,0 +1,60 @@
+"""CPU time and memory of one point job of the study against a Python process that only imports what it needs.
+
+`bk simulate` computes a whole grid point and writes its file. User and system time of the process, the contestants in
+alternation; the ratio is the median over the rounds. The import is measured as typed at a prompt, where NumPy starts
+threads of the linear-algebra library that nobody uses, and without them, as `bk` runs itself.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from measure import print_table, verdict
+from process import AS_TYPED, IMPORTS, ONE_THREAD, run
+
+LAWS = ("linearized", "nonlinear")
+RATIO_LIMIT = 1.5
+MEMORY_LIMIT = 150.0
+
+
+def main() -> None:
+    """Measure both laws and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
+    parser.add_argument("--pairs", type=int, default=15, help="rounds (default: %(default)s)")
+    pairs = parser.parse_args().pairs
+    # Beside the interpreter as it was called: a virtual environment's interpreter is a link out of it.
+    bk = Path(sys.executable).parent / "bk"
+    imports = [sys.executable, "-c", IMPORTS]
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for law in LAWS:
+            job = [str(bk), "simulate", "--law", law, "--a", "0.08", "--initial", "plus", "--out", f"{folder}/tmp.nc"]
+            run(imports), run(job)
+            used = [(run(job), run(imports, AS_TYPED), run(imports, ONE_THREAD)) for _ in range(pairs)]
+            ratio = statistics.median(point.cpu / typed.cpu for point, typed, _ in used)
+            single = statistics.median(point.cpu / bare.cpu for point, _, bare in used)
+            memory = max(point.memory for point, _, _ in used)
+            rows.append(
+                [
+                    f"{ratio:.2f}",
+                    f"{RATIO_LIMIT:g}, {verdict(ratio, RATIO_LIMIT)}",
+                    f"{single:.2f}",
+                    f"{memory:.0f}",
+                    f"{MEMORY_LIMIT:g}, {verdict(memory, MEMORY_LIMIT)}",
+                    law,
+                    *(f"{1e3 * statistics.median(run[i].cpu for run in used):.0f}" for i in range(3)),
+                    f"{max(typed.memory for _, typed, _ in used):.0f}",
+                ]
+            )
+    print(f"\n`bk simulate --a 0.08 --initial plus` against `python -c '{IMPORTS}'`, {pairs} rounds.\n")
+    header = ["ratio", "limit, kept", "ratio, one thread", "peak MB", "limit, kept", "law"]
+    header += ["job ms", "imports ms", "imports ms, one thread", "imports MB"]
+    print_table(header, rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,35 @@
+"""Runs a process to its end and returns what it has used."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+#: As typed at a prompt: importing NumPy starts a thread of the linear-algebra library for every core.
+AS_TYPED = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
+#: Without those threads, as `bk` runs itself.
+ONE_THREAD = AS_TYPED | {"OPENBLAS_NUM_THREADS": "1"}
+
+#: The least that a Python job writing netCDF can do.
+IMPORTS = "import numpy, netCDF4"
+
+
+@dataclass(frozen=True)
+class Usage:
+    """CPU time (user and system) in seconds and peak memory in MB of one process and what it has waited for."""
+
+    cpu: float
+    memory: float
+
+
+def run(command: Sequence[str], environment: Mapping[str, str] = AS_TYPED) -> Usage:
+    """Run a command; raise CalledProcessError if it fails."""
+    process = subprocess.Popen(command, env=dict(environment))
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    # Linux counts ru_maxrss in KiB.
+    return Usage(used.ru_utime + used.ru_stime, used.ru_maxrss * 1024 / 1e6)

@@ -1,0 +1,113 @@
+"""Wall time of the whole study against the same workflow with point jobs that only import what they need.
+
+The baseline is a copy of the workflow with one line changed: instead of `bk simulate`, a point job imports NumPy and
+netCDF4 and links to the point file made by the first run of the study. Jobs, dependencies, scheduler and all other
+rules are the same, so the ratio is what the simulations add to a workflow of that many Python processes. The two run
+in alternation, each in an empty folder; the ratio is the median over the pairs. It needs an otherwise idle machine:
+where other programs take cores away, only the ratio of CPU times, given beside it, says something.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import resource
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from measure import print_table, verdict
+from process import AS_TYPED, IMPORTS, ONE_THREAD
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+RATIO_LIMIT = 1.5
+POINT_RULE = "workflow/rules/simulate.smk"
+POINT_COMMAND = '"bk simulate {params.options} --out {output} 2> {log}"'
+FINISHED = re.compile(r"(\d+) of \1 steps \(100%\) done")
+
+
+def make_baseline(folder: Path, made: Path) -> Path:
+    """Copy the workflow with point jobs that import and link; return its Snakefile.
+
+    made : folder of a finished run of the study
+    """
+    shutil.copytree(REPOSITORY / "workflow", folder / "workflow")
+    shutil.copytree(REPOSITORY / "config", folder / "config")
+    shutil.copy(REPOSITORY / "Snakefile", folder)
+    rule = folder / POINT_RULE
+    text = rule.read_text(encoding="utf-8")
+    if text.count(POINT_COMMAND) != 1:
+        raise RuntimeError(f"{POINT_RULE} has changed: the line {POINT_COMMAND} is not in it")
+    # A link costs next to nothing in the process that has imported already; `cp` would be one more process.
+    script = f"{IMPORTS}, os; os.link('{made}/{{output}}', '{{output}}')"
+    rule.write_text(text.replace(POINT_COMMAND, f'"python -c \\"{script}\\" 2> {{log}}"'), encoding="utf-8")
+    return folder / "Snakefile"
+
+
+def children_cpu() -> float:
+    """Return the user and system time in seconds of all processes run so far, theirs included."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run_study(
+    snakefile: Path, folder: Path, cores: int, config: Path | None, environment: dict[str, str]
+) -> tuple[float, float, int]:
+    """Run a workflow in an empty folder; return its wall time and CPU time in seconds and its number of jobs."""
+    command = [str(Path(sys.executable).parent / "snakemake"), f"-c{cores}", "-s", str(snakefile), "-d", str(folder)]
+    if config is not None:
+        command += ["--configfile", str(config.resolve())]
+    folder.mkdir()
+    cpu = -children_cpu()
+    begin = time.perf_counter()
+    # In the repository, for both: Snakemake looks for the profile of the workflow beside the Snakefile and here.
+    result = subprocess.run(
+        command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    wall = time.perf_counter() - begin
+    cpu += children_cpu()
+    finished = FINISHED.search(result.stderr)
+    if result.returncode or finished is None:
+        sys.exit(f"{' '.join(command)} failed:\n{result.stderr[-4000:]}")
+    return wall, cpu, int(finished[1])
+
+
+def main() -> None:
+    """Measure the pairs and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
+    parser.add_argument("--pairs", type=int, default=2, help="pairs of runs (default: %(default)s)")
+    parser.add_argument("--cores", type=int, default=2, help="cores of Snakemake (default: %(default)s)")
+    parser.add_argument("--configfile", type=Path, help="config of the study (default: that of the Snakefile)")
+    parser.add_argument("--one-thread", action="store_true", help="no threads of the linear-algebra library")
+    options = parser.parse_args()
+    environment = ONE_THREAD if options.one_thread else AS_TYPED
+    studies, baselines = [], []
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        baseline = make_baseline(folder / "workflow_of_imports", folder / "study_0")
+        for number in range(options.pairs):
+            for name, snakefile, runs in (
+                ("study", REPOSITORY / "Snakefile", studies),
+                ("imports", baseline, baselines),
+            ):
+                target = folder / f"{name}_{number}"
+                runs.append(run_study(snakefile, target, options.cores, options.configfile, environment))
+                print(f"{name} {number + 1}: {runs[-1][0]:.1f} s, CPU {runs[-1][1]:.1f} s", file=sys.stderr)
+            if studies[-1][2] != baselines[-1][2]:
+                sys.exit(f"not the same workflow: {studies[-1][2]} and {baselines[-1][2]} jobs")
+    wall, cpu = (
+        statistics.median(study[i] / base[i] for study, base in zip(studies, baselines, strict=True)) for i in (0, 1)
+    )
+    row = [f"{wall:.2f}", f"{RATIO_LIMIT:g}, {verdict(wall, RATIO_LIMIT)}", f"{cpu:.2f}"]
+    row += [f"{statistics.median(run[i] for run in runs):.1f}" for i in (0, 1) for runs in (studies, baselines)]
+    print(f"\nThe study, `snakemake -c{options.cores}`, against point jobs that are `python -c '{IMPORTS}'`.\n")
+    header = ["wall ratio", "limit, kept", "CPU ratio", "study s", "imports s", "study CPU s", "imports CPU s"]
+    print_table([*header, "jobs", "pairs"], [[*row, studies[0][2], len(studies)]])
+
+
+if __name__ == "__main__":
+    main()
