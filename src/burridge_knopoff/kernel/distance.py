@@ -49,15 +49,15 @@ class Distance:
     def load(self, piece, length):
         """Take d and d' from a piece that is used up to `length`, leaving out terms that cannot matter there."""
         k: cython.Py_ssize_t
-        end: cython.Py_ssize_t = piece.blocks - 1
+        end: cython.Py_ssize_t = piece.blocks
         power: cython.double = 1.0
         largest: cython.double = 0.0
         scaled: cython.double
         self.degree = 0
         self.resting = True
         for k in range(piece.degree + 1):
-            self.position[k] = piece.position[end, k] - piece.position[0, k]
-            self.velocity[k] = piece.velocity[end, k] - piece.velocity[0, k]
+            self.position[k] = piece.position[k, end] - piece.position[k, 1]
+            self.velocity[k] = piece.velocity[k, end] - piece.velocity[k, 1]
             scaled = max(abs(self.position[k]), abs(self.velocity[k])) * power
             largest = max(largest, scaled)
             if scaled > NEGLIGIBLE * largest:
@@ -105,9 +105,12 @@ class Distance:
             self.position_at[j] = self.position[self.degree]
             self.velocity_at[j] = self.velocity[self.degree]
         for k in range(self.degree - 1, -1, -1):
+            value = self.position[k]
             for j in range(NODES):
-                self.position_at[j] = self.position_at[j] * self.time_at[j] + self.position[k]
-                self.velocity_at[j] = self.velocity_at[j] * self.time_at[j] + self.velocity[k]
+                self.position_at[j] = self.position_at[j] * self.time_at[j] + value
+            value = self.velocity[k]
+            for j in range(NODES):
+                self.velocity_at[j] = self.velocity_at[j] * self.time_at[j] + value
         for j in range(NODES):
             value = sqrt(self.position_at[j] * self.position_at[j] + self.velocity_at[j] * self.velocity_at[j])
             mean += self.weight[j] * value

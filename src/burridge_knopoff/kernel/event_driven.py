@@ -146,8 +146,8 @@ class EventDriven:
                 continue
             self.state.age[i] += t
             if self.state.age[i] < YOUNG:
-                self.state.velocity[i] = evaluate(self.piece.velocity, i, self.piece.degree, t)
+                self.state.velocity[i] = evaluate(self.piece.velocity, i + 1, self.piece.degree, t)
                 slope = 0.0
                 for k in range(self.piece.degree, 0, -1):
-                    slope = slope * t + k * self.piece.velocity[i, k]
+                    slope = slope * t + k * self.piece.velocity[k, i + 1]
                 self.state.acceleration[i] = slope

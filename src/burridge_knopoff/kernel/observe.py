@@ -106,8 +106,8 @@ class Observer:
             if t > length:
                 break
             for i in range(piece.blocks):
-                self.trajectory_position[self.next_trajectory, i] = evaluate(piece.position, i, piece.degree, t)
-                self.trajectory_velocity[self.next_trajectory, i] = evaluate(piece.velocity, i, piece.degree, t)
+                self.trajectory_position[self.next_trajectory, i] = evaluate(piece.position, i + 1, piece.degree, t)
+                self.trajectory_velocity[self.next_trajectory, i] = evaluate(piece.velocity, i + 1, piece.degree, t)
             self.next_trajectory += 1
 
     def _cross(self, state, piece, clock, clock_rest, length):
@@ -128,7 +128,7 @@ class Observer:
         for k in range(piece.degree + 1):
             total = 0.0
             for i in range(piece.blocks):
-                total += piece.position[i, k]
+                total += piece.position[k, i + 1]
             self.polynomial.coefficient[k] = total
         if self.side == 0:
             self.side = DOWNWARD if self.polynomial.value(max(0.0, window)) < 0.0 else UPWARD
@@ -158,7 +158,7 @@ class Observer:
             self.side = -self.side
             total = 0.0
             for i in range(piece.blocks):
-                total += evaluate(piece.velocity, i, piece.degree, start) - state.v
+                total += evaluate(piece.velocity, i + 1, piece.degree, start) - state.v
             row = self.crossings.append(clock + (clock_rest + start))
             self.crossings.value[row, 0] = total
             self.crossings.value[row, 1] = self.side

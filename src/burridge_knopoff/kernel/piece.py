@@ -15,7 +15,10 @@ UNKNOWN = 1e300
 
 
 class Piece:
-    """Coefficient tables of shape (blocks, order + 1), lowest power first, of x_i, U_i' and s_i; `degree` ≤ order.
+    """Coefficient tables of x_i, U_i' and s_i, of shape (order + 1, blocks + 2); `degree` ≤ order.
+
+    Row k holds the coefficients of t^k, column i + 1 those of block i. The first and the last column stay 0: they are
+    the neighbours that the end blocks do not have.
 
     `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used.
     """
@@ -24,9 +27,9 @@ class Piece:
         self.blocks = blocks
         self.order = order
         self.degree = order
-        self.position = np.zeros((blocks, order + 1))
-        self.velocity = np.zeros((blocks, order + 1))
-        self.force = np.zeros((blocks, order + 1))
+        self.position = np.zeros((order + 1, blocks + 2))
+        self.velocity = np.zeros((order + 1, blocks + 2))
+        self.force = np.zeros((order + 1, blocks + 2))
         self.highest = np.full(blocks, UNKNOWN)
 
     def move(self, state, t):
@@ -34,12 +37,12 @@ class Piece:
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         for i in range(self.blocks):
-            state.position[i] = self.position[i, self.degree]
-            state.velocity[i] = self.velocity[i, self.degree]
+            state.position[i] = self.position[self.degree, i + 1]
+            state.velocity[i] = self.velocity[self.degree, i + 1]
         for k in range(self.degree - 1, -1, -1):
             for i in range(self.blocks):
-                state.position[i] = state.position[i] * t + self.position[i, k]
-                state.velocity[i] = state.velocity[i] * t + self.velocity[i, k]
+                state.position[i] = state.position[i] * t + self.position[k, i + 1]
+                state.velocity[i] = state.velocity[i] * t + self.velocity[k, i + 1]
 
     def load_speed(self, state, i, polynomial):
         """Load the speed |U_i'| of a slipping block: the block stops where it becomes negative."""
@@ -47,17 +50,17 @@ class Piece:
         polynomial.degree = self.degree
         if state.slip[i] < 0:
             for k in range(self.degree + 1):
-                polynomial.coefficient[k] = -self.velocity[i, k]
+                polynomial.coefficient[k] = -self.velocity[k, i + 1]
         else:
             for k in range(self.degree + 1):
-                polynomial.coefficient[k] = self.velocity[i, k]
+                polynomial.coefficient[k] = self.velocity[k, i + 1]
 
     def load_gap(self, state, i, side, polynomial):
         """Load 1 − side·s_i of a stuck block: the block starts where it becomes negative."""
         k: cython.Py_ssize_t
         polynomial.degree = self.degree
         for k in range(self.degree + 1):
-            polynomial.coefficient[k] = -side * self.force[i, k]
+            polynomial.coefficient[k] = -side * self.force[k, i + 1]
         polynomial.coefficient[0] += 1.0
         # At its threshold by construction: what rounding leaves of 1 - s must not start the block a second time.
         if state.touching[i] and abs(polynomial.coefficient[0]) < 0.5:

@@ -5,7 +5,7 @@ cdef double RESOLUTION
 cdef int LOW_DEGREE
 cdef int GUESSES
 
-cdef double evaluate(double[:, ::1] coefficient, Py_ssize_t row, Py_ssize_t degree, double t) noexcept nogil
+cdef double evaluate(double[:, ::1] coefficient, Py_ssize_t column, Py_ssize_t degree, double t) noexcept nogil
 
 cdef class Polynomial:
     cdef readonly Py_ssize_t capacity

@@ -34,12 +34,12 @@ LOW_DEGREE = 8
 GUESSES = 3
 
 
-def evaluate(coefficient, row, degree, t):
-    """Return the value at t of the polynomial whose coefficients are one row of a table, lowest power first."""
+def evaluate(coefficient, column, degree, t):
+    """Return the value at t of the polynomial whose coefficients are one column of a table, lowest power first."""
     k: cython.Py_ssize_t
-    total: cython.double = coefficient[row, degree]
+    total: cython.double = coefficient[degree, column]
     for k in range(degree - 1, -1, -1):
-        total = total * t + coefficient[row, k]
+        total = total * t + coefficient[k, column]
     return total
 
 

@@ -26,11 +26,14 @@ TRUNCATION = 1e-18
 class Series:
     """Work space of the recursion for chains of `blocks` blocks at the given order.
 
-    `friction` holds the series of Φ highest power first, so that products of series run through memory one way.
+    `friction` holds the series of Φ highest power first and `speed` that of U' lowest power first, so that their
+    product runs through memory one way.
     """
 
     def __init__(self, blocks: int, order: int) -> None:
         self.friction = np.zeros((blocks, order + 1))
+        self.speed = np.zeros((blocks, order + 1))
+        self.slipping = np.zeros(blocks)
         self.reciprocal = 1.0 / np.maximum(np.arange(order + 2, dtype=float), 1.0)
         self.step_power_last = 1.0 / order
         self.step_power_previous = 1.0 / (order - 1)
@@ -38,78 +41,87 @@ class Series:
     def expand(self, state, piece):
         """Fill the piece with the motion that starts from the state; return the time for which it is valid."""
         i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
         n: cython.Py_ssize_t
+        order: cython.Py_ssize_t = piece.order
         blocks: cython.Py_ssize_t = state.blocks
-        pull: cython.double
-        start: cython.Py_ssize_t
+        a: cython.double = state.a
+        factor: cython.double
+        for i in range(blocks):
+            piece.position[0, i + 1] = state.position[i]
+            piece.velocity[0, i + 1] = state.velocity[i]
+            piece.position[1, i + 1] = state.velocity[i] - state.v
+            piece.velocity[1, i + 1] = 0.0
+            self.slipping[i] = 0.0
+            if state.slip[i] != 0:
+                self.slipping[i] = 1.0
+                piece.velocity[1, i + 1] = state.slip_acceleration(i)
+        self._force(state, piece, 0)
+        for i in range(blocks):
+            piece.force[0, i + 1] += state.sliding_friction
+        if state.nonlinear:
+            self._start_friction(state, piece)
+        for n in range(1, order):
+            factor = self.reciprocal[n + 1]
+            for i in range(blocks):
+                piece.position[n + 1, i + 1] = piece.velocity[n, i + 1] * factor
+            self._force(state, piece, n)
+            if state.nonlinear:
+                self._nonlinear(state, piece, n)
+            else:
+                for i in range(blocks):
+                    piece.velocity[n + 1, i + 1] = (
+                        self.slipping[i] * factor * (piece.force[n, i + 1] + a * piece.velocity[n, i + 1])
+                    )
+        self._force(state, piece, order)
+        return self._step(piece)
+
+    def _force(self, state, piece, n):
+        """Fill row n of the spring forces from row n of the positions; the constant part of s is not in it."""
+        i: cython.Py_ssize_t
+        for i in range(state.blocks):
+            piece.force[n, i + 1] = (piece.position[n, i] + piece.position[n, i + 2]) - state.stiffness[
+                i
+            ] * piece.position[n, i + 1]
+
+    def _start_friction(self, state, piece):
+        """Set the constant and linear terms from which the series of the nonlinear friction grows."""
+        i: cython.Py_ssize_t
+        for i in range(state.blocks):
+            if state.slip[i] != 0:
+                self.friction[i, piece.order] = 1.0 / (1.0 + state.a * abs(state.velocity[i]))
+                self.speed[i, 1] = piece.velocity[1, i + 1]
+
+    def _nonlinear(self, state, piece, n):
+        """Fill row n + 1 of the velocities: the term of Φ follows from (1 + a |U'|) Φ = 1."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        start: cython.Py_ssize_t = piece.order - n
         first: cython.double
         second: cython.double
         third: cython.double
         fourth: cython.double
-        total: cython.double
         factor: cython.double
-        direction: cython.double
-        for i in range(blocks):
-            piece.position[i, 0] = state.position[i]
-            piece.velocity[i, 0] = state.velocity[i]
-        for n in range(piece.order):
-            for i in range(blocks):
-                piece.position[i, n + 1] = piece.velocity[i, n] * self.reciprocal[n + 1]
-            if n == 0:
-                for i in range(blocks):
-                    piece.position[i, 1] -= state.v
-            for i in range(blocks):
-                pull = state.stiffness[i] * piece.position[i, n]
-                if i > 0:
-                    pull -= piece.position[i - 1, n]
-                if i < blocks - 1:
-                    pull -= piece.position[i + 1, n]
-                piece.force[i, n] = -pull
-            if n == 0:
-                for i in range(blocks):
-                    piece.force[i, 0] += state.sliding_friction
-                    piece.velocity[i, 1] = 0.0 if state.slip[i] == 0 else state.slip_acceleration(i)
-                    if state.nonlinear and state.slip[i] != 0:
-                        self.friction[i, piece.order] = 1.0 / (1.0 + state.a * abs(state.velocity[i]))
+        for i in range(state.blocks):
+            if state.slip[i] == 0:
+                piece.velocity[n + 1, i + 1] = 0.0
                 continue
-            for i in range(blocks):
-                if state.slip[i] == 0:
-                    piece.velocity[i, n + 1] = 0.0
-                    continue
-                if state.nonlinear:
-                    direction = state.slip[i]
-                    # Four sums, which a processor forms at the same time; one would wait for each addition.
-                    first = second = third = fourth = 0.0
-                    start = piece.order - n
-                    j = 1
-                    while j + 3 <= n:
-                        first += piece.velocity[i, j] * self.friction[i, start + j]
-                        second += piece.velocity[i, j + 1] * self.friction[i, start + j + 1]
-                        third += piece.velocity[i, j + 2] * self.friction[i, start + j + 2]
-                        fourth += piece.velocity[i, j + 3] * self.friction[i, start + j + 3]
-                        j += 4
-                    while j <= n:
-                        first += piece.velocity[i, j] * self.friction[i, start + j]
-                        j += 1
-                    total = (first + third) + (second + fourth)
-                    # direction · Φ_n, from (1 + a direction U') Φ = 1.
-                    factor = -state.a * total * self.friction[i, piece.order]
-                    self.friction[i, start] = direction * factor
-                    piece.velocity[i, n + 1] = (piece.force[i, n] - factor) * self.reciprocal[n + 1]
-                else:
-                    piece.velocity[i, n + 1] = (piece.force[i, n] + state.a * piece.velocity[i, n]) * self.reciprocal[
-                        n + 1
-                    ]
-        for i in range(blocks):
-            n = piece.order
-            pull = state.stiffness[i] * piece.position[i, n]
-            if i > 0:
-                pull -= piece.position[i - 1, n]
-            if i < blocks - 1:
-                pull -= piece.position[i + 1, n]
-            piece.force[i, n] = -pull
-        return self._step(piece)
+            # Four sums, which a processor forms at the same time; one would wait for each addition.
+            first = second = third = fourth = 0.0
+            j = 1
+            while j + 3 <= n:
+                first += self.speed[i, j] * self.friction[i, start + j]
+                second += self.speed[i, j + 1] * self.friction[i, start + j + 1]
+                third += self.speed[i, j + 2] * self.friction[i, start + j + 2]
+                fourth += self.speed[i, j + 3] * self.friction[i, start + j + 3]
+                j += 4
+            while j <= n:
+                first += self.speed[i, j] * self.friction[i, start + j]
+                j += 1
+            # Signed by the direction of slip, as friction is.
+            factor = -state.a * ((first + third) + (second + fourth)) * self.friction[i, piece.order]
+            self.friction[i, start] = factor if state.slip[i] > 0 else -factor
+            piece.velocity[n + 1, i + 1] = (piece.force[n, i + 1] - factor) * self.reciprocal[n + 1]
+            self.speed[i, n + 1] = piece.velocity[n + 1, i + 1]
 
     def _step(self, piece):
         """Return the time over which the first neglected terms stay below TRUNCATION (infinite if nothing slips)."""
@@ -117,8 +129,8 @@ class Series:
         last: cython.double = 0.0
         previous: cython.double = 0.0
         for i in range(piece.blocks):
-            last = max(last, abs(piece.velocity[i, piece.order]))
-            previous = max(previous, abs(piece.velocity[i, piece.order - 1]))
+            last = max(last, abs(piece.velocity[piece.order, i + 1]))
+            previous = max(previous, abs(piece.velocity[piece.order - 1, i + 1]))
         if last == 0.0 and previous == 0.0:
             return 1e300
         if not (last + previous < 1e300):

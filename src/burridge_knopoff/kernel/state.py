@@ -61,12 +61,12 @@ class State:
 
     def spring_force(self, i):
         """Return s_i."""
-        pull: cython.double = self.stiffness[i] * self.position[i]
+        pull: cython.double = 0.0
         if i > 0:
-            pull -= self.position[i - 1]
+            pull = self.position[i - 1]
         if i < self.blocks - 1:
-            pull -= self.position[i + 1]
-        return self.sliding_friction - pull
+            pull += self.position[i + 1]
+        return self.sliding_friction + (pull - self.stiffness[i] * self.position[i])
 
     def force_rate(self, i):
         """Return ds_i/dτ."""

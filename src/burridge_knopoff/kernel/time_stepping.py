@@ -121,27 +121,25 @@ class TimeStepping:
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.state.blocks
         change: cython.double
-        pull: cython.double
         for i in range(n):
             change = (self.state.position[i] - self.position[i]) / step
-            self.piece.position[i, 0] = self.position[i]
-            self.piece.position[i, 1] = self.speed[0, i]
-            self.piece.position[i, 2] = (3.0 * change - 2.0 * self.speed[0, i] - self.speed[3, i]) / step
-            self.piece.position[i, 3] = (self.speed[0, i] + self.speed[3, i] - 2.0 * change) / (step * step)
+            self.piece.position[0, i + 1] = self.position[i]
+            self.piece.position[1, i + 1] = self.speed[0, i]
+            self.piece.position[2, i + 1] = (3.0 * change - 2.0 * self.speed[0, i] - self.speed[3, i]) / step
+            self.piece.position[3, i + 1] = (self.speed[0, i] + self.speed[3, i] - 2.0 * change) / (step * step)
             change = (self.state.velocity[i] - self.velocity[i]) / step
-            self.piece.velocity[i, 0] = self.velocity[i]
-            self.piece.velocity[i, 1] = self.acceleration[0, i]
-            self.piece.velocity[i, 2] = (3.0 * change - 2.0 * self.acceleration[0, i] - self.acceleration[3, i]) / step
-            self.piece.velocity[i, 3] = (self.acceleration[0, i] + self.acceleration[3, i] - 2.0 * change) / (
+            self.piece.velocity[0, i + 1] = self.velocity[i]
+            self.piece.velocity[1, i + 1] = self.acceleration[0, i]
+            self.piece.velocity[2, i + 1] = (
+                3.0 * change - 2.0 * self.acceleration[0, i] - self.acceleration[3, i]
+            ) / step
+            self.piece.velocity[3, i + 1] = (self.acceleration[0, i] + self.acceleration[3, i] - 2.0 * change) / (
                 step * step
             )
         for k in range(CUBIC + 1):
             for i in range(n):
-                pull = self.state.stiffness[i] * self.piece.position[i, k]
-                if i > 0:
-                    pull -= self.piece.position[i - 1, k]
-                if i < n - 1:
-                    pull -= self.piece.position[i + 1, k]
-                self.piece.force[i, k] = -pull
+                self.piece.force[k, i + 1] = (
+                    self.piece.position[k, i] + self.piece.position[k, i + 2]
+                ) - self.state.stiffness[i] * self.piece.position[k, i + 1]
         for i in range(n):
-            self.piece.force[i, 0] += self.state.sliding_friction
+            self.piece.force[0, i + 1] += self.state.sliding_friction
