@@ -2,7 +2,7 @@ from burridge_knopoff.kernel.events cimport EventLog
 from burridge_knopoff.kernel.modes cimport Modes
 from burridge_knopoff.kernel.observe cimport Observer
 from burridge_knopoff.kernel.piece cimport Piece
-from burridge_knopoff.kernel.polynomial cimport Polynomial
+from burridge_knopoff.kernel.bernstein cimport SearchedPolynomial
 from burridge_knopoff.kernel.series cimport Series
 from burridge_knopoff.kernel.state cimport State
 
@@ -12,7 +12,7 @@ cdef class EventDriven:
     cdef readonly Observer observer
     cdef Series series
     cdef Piece piece
-    cdef Polynomial polynomial
+    cdef SearchedPolynomial polynomial
     cdef Modes modes
     cdef bint closed_form
     cdef readonly double clock

@@ -1,6 +1,6 @@
 """The event-driven solvers `map` and `series`: smooth motion from event to event, each event where it truly lies.
 
-Both look for events on the Taylor polynomials of the motion, in which none can be missed (see `polynomial`). `series`
+Both look for events on the Taylor polynomials of the motion, in which none can be missed (see `bernstein`). `series`
 also takes the state at the end of a piece from them; `map` takes it from the normal modes since the last event, so that
 its only approximation is the event time.
 """
@@ -8,6 +8,7 @@ its only approximation is the event time.
 import cython
 
 if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
     from cython.cimports.burridge_knopoff.kernel.events import (
         ACCUMULATING_EVENTS,
         COMPLETED,
@@ -18,10 +19,11 @@ if cython.compiled:
     )
     from cython.cimports.burridge_knopoff.kernel.modes import Modes
     from cython.cimports.burridge_knopoff.kernel.piece import UNKNOWN, Piece
-    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
     from cython.cimports.burridge_knopoff.kernel.series import Series
     from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 else:
+    from burridge_knopoff.kernel.bernstein import SearchedPolynomial
     from burridge_knopoff.kernel.events import (
         ACCUMULATING_EVENTS,
         COMPLETED,
@@ -32,7 +34,7 @@ else:
     )
     from burridge_knopoff.kernel.modes import Modes
     from burridge_knopoff.kernel.piece import UNKNOWN, Piece
-    from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from burridge_knopoff.kernel.polynomial import evaluate
     from burridge_knopoff.kernel.series import Series
     from burridge_knopoff.kernel.state import YOUNG
 
@@ -46,7 +48,7 @@ class EventDriven:
         self.observer = observer
         self.series = Series(state.blocks, order)
         self.piece = Piece(state.blocks, order)
-        self.polynomial = Polynomial(order)
+        self.polynomial = SearchedPolynomial(order)
         self.modes = Modes(state.blocks)
         self.closed_form = closed_form
         self.clock = 0.0

@@ -1,6 +1,6 @@
 from burridge_knopoff.kernel.distance cimport Distance
 from burridge_knopoff.kernel.piece cimport Piece
-from burridge_knopoff.kernel.polynomial cimport Polynomial
+from burridge_knopoff.kernel.bernstein cimport SearchedPolynomial
 from burridge_knopoff.kernel.record cimport Record
 from burridge_knopoff.kernel.state cimport State
 
@@ -32,7 +32,7 @@ cdef class Observer:
     cdef double[::1] lowest_force
     cdef Distance distance
     cdef bint loaded
-    cdef Polynomial polynomial
+    cdef SearchedPolynomial polynomial
 
     cdef void observe(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _average(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil

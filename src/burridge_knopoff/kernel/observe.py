@@ -4,12 +4,14 @@ import cython
 import numpy as np
 
 if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
     from cython.cimports.burridge_knopoff.kernel.distance import Distance
-    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
     from cython.cimports.burridge_knopoff.kernel.record import Record
 else:
+    from burridge_knopoff.kernel.bernstein import SearchedPolynomial
     from burridge_knopoff.kernel.distance import Distance
-    from burridge_knopoff.kernel.polynomial import Polynomial, evaluate
+    from burridge_knopoff.kernel.polynomial import evaluate
     from burridge_knopoff.kernel.record import Record
 
 TRANSIENT = 0
@@ -51,7 +53,7 @@ class Observer:
         self.lowest_force = np.full(2, -NOTHING)
         self.distance = Distance(order)
         self.loaded = False
-        self.polynomial = Polynomial(order)
+        self.polynomial = SearchedPolynomial(order)
 
     def observe(self, state, piece, clock, clock_rest, length):
         """Take everything from the first `length` of a piece that starts at time clock + clock_rest."""

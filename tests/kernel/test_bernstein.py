@@ -5,7 +5,7 @@ from tests.kernel.pure import run_uncompiled
 ROOTS = """
 import random
 from fractions import Fraction
-from burridge_knopoff.kernel.polynomial import Polynomial
+from burridge_knopoff.kernel.bernstein import SearchedPolynomial as Polynomial
 
 def product(roots):
     c = [Fraction(1)]
@@ -62,7 +62,7 @@ assert checked > 250
 """
 
 DIPS = """
-from burridge_knopoff.kernel.polynomial import Polynomial
+from burridge_knopoff.kernel.bernstein import SearchedPolynomial as Polynomial
 # ((t - 0.371)^2 - depth) (1 + t): two roots 2 sqrt(depth) apart, or none for a negative depth.
 for exponent in range(2, 14):
     for sign in (1, -1):
@@ -83,7 +83,7 @@ print("ok")
 MAXIMA = """
 import random
 import numpy as np
-from burridge_knopoff.kernel.polynomial import Polynomial
+from burridge_knopoff.kernel.bernstein import SearchedPolynomial as Polynomial
 random.seed(3)
 for trial in range(300):
     p = Polynomial(24)
@@ -103,7 +103,7 @@ print("ok")
 
 SHIFT = """
 from fractions import Fraction
-from burridge_knopoff.kernel.polynomial import Polynomial
+from burridge_knopoff.kernel.bernstein import SearchedPolynomial as Polynomial
 p = Polynomial(8)
 p.degree = 4
 c = [0.0, 0.0, 1.5, -2.0, 0.25]

@@ -1,0 +1,321 @@
+"""One polynomial over one piece of the motion: its first root and its maximum, neither of which can be missed.
+
+A polynomial of degree n over [0, h] is a convex combination of its n + 1 Bernstein coefficients. Hence
+
+- no negative coefficient: no root, however close to zero the polynomial comes between its ends;
+- exactly one change of sign in the coefficients: exactly one root, and it is simple (Descartes' rule of signs);
+- otherwise the interval is halved (de Casteljau) and the left half is searched first.
+
+Every interval that is passed over is passed over by the first statement, so a grazing touch is found at any
+distance from the ends of the piece. What remains undecided are dips that rounding alone can fill: the halving ends at
+intervals of 2^-48 of the piece. The conversion has positive weights of at most 1, so its error is a few ulp of
+the largest scaled coefficient.
+
+Reference: R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospective", Comput. Aided Geom. Des. 29
+(2012) 379-419.
+"""
+
+import math
+
+import cython
+import numpy as np
+
+if cython.compiled:
+    from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial
+else:
+    from burridge_knopoff.kernel.polynomial import Polynomial
+
+MAXIMUM_DEPTH = 48
+NEWTON_ITERATIONS = 80
+
+# Scaled coefficients below this share of the largest one cannot change a double-precision value of the polynomial.
+NEGLIGIBLE = 1e-19
+
+# A root is found when Newton's method moves it by no more than half an ulp.
+RESOLUTION = 1.2e-16
+
+# Degree of the first, cheap test of an interval, and number of Newton steps with that degree.
+LOW_DEGREE = 8
+GUESSES = 3
+
+
+class SearchedPolynomial(Polynomial):
+    """A polynomial with the work space to find its first root and its maximum over [0, length].
+
+    After a search `lowest` and `highest` are bounds of the polynomial over that interval.
+    """
+
+    def __init__(self, capacity: int) -> None:
+        super().__init__(capacity)
+        self.bernstein = np.zeros((MAXIMUM_DEPTH + 2, capacity + 1))
+        self.left = np.zeros(MAXIMUM_DEPTH + 2)
+        self.right = np.zeros(MAXIMUM_DEPTH + 2)
+        inverse = np.zeros((capacity + 1, capacity + 1))
+        for n in range(capacity + 1):
+            for k in range(n + 1):
+                inverse[n, k] = 1.0 / math.comb(n, k)
+        self.inverse_binomial = inverse
+        self.power = np.zeros(capacity + 1)
+        self.length = -1.0
+        self.lowest = 0.0
+        self.highest = 0.0
+
+    def first_root(self, length):
+        """Return the first t in [0, length] at which the polynomial becomes negative, or -1.0 if it never does.
+
+        The value at 0 must not be negative by more than rounding: a negative one is answered with 0.
+        """
+        n: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        top: cython.Py_ssize_t
+        changes: cython.Py_ssize_t
+        sign: cython.int
+        first: cython.int
+        n = self._scale(length)
+        if self.lowest > 0.0:
+            return -1.0
+        if n > LOW_DEGREE:
+            self._bound(n)
+            if self.lowest > 0.0:
+                return -1.0
+        self._convert(0, n)
+        top = 0
+        self.left[0] = 0.0
+        self.right[0] = length
+        while top >= 0:
+            changes = 0
+            sign = 0
+            first = 0
+            for k in range(n + 1):
+                if self.bernstein[top, k] > 0.0:
+                    changes += sign < 0
+                    sign = 1
+                elif self.bernstein[top, k] < 0.0:
+                    changes += sign > 0
+                    sign = -1
+                if first == 0:
+                    first = sign
+            if first < 0:
+                return self.left[top]
+            if changes == 0:
+                top -= 1
+            elif changes == 1:
+                return self._root_between(top, n)
+            elif top >= MAXIMUM_DEPTH or self.right[top] - self.left[top] <= 4e-15 * self.right[top]:
+                if sign < 0:
+                    return self.right[top]
+                top -= 1
+            else:
+                self._split(top, n)
+                top += 1
+        return -1.0
+
+    def maximum(self, length, floor):
+        """Return the larger of floor and the maximum over [0, length]."""
+        n: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        top: cython.Py_ssize_t
+        changes: cython.Py_ssize_t
+        sign: cython.int
+        first: cython.int
+        step: cython.double
+        largest: cython.double
+        n = self._scale(length)
+        if self.highest <= floor:
+            return floor
+        if n > LOW_DEGREE:
+            self._bound(n)
+            if self.highest <= floor:
+                return floor
+        self._convert(0, n)
+        top = 0
+        self.left[0] = 0.0
+        self.right[0] = length
+        while top >= 0:
+            floor = max(floor, self.bernstein[top, 0], self.bernstein[top, n])
+            largest = floor
+            changes = 0
+            sign = 0
+            first = 0
+            for k in range(n + 1):
+                largest = max(largest, self.bernstein[top, k])
+                if k < n:
+                    step = self.bernstein[top, k + 1] - self.bernstein[top, k]
+                    if step > 0.0:
+                        changes += sign < 0
+                        sign = 1
+                    elif step < 0.0:
+                        changes += sign > 0
+                        sign = -1
+                    if first == 0:
+                        first = sign
+            if largest <= floor:
+                top -= 1
+            elif changes == 1 and first > 0:
+                floor = max(floor, self._peak_between(self.left[top], self.right[top]))
+                top -= 1
+            elif changes <= 1 or top >= MAXIMUM_DEPTH:
+                top -= 1
+            else:
+                self._split(top, n)
+                top += 1
+        return floor
+
+    def _scale(self, length):
+        """Put the terms at t = length into the first Bernstein row; return the degree that matters there.
+
+        `lowest` and `highest` become bounds of the polynomial over [0, length]: the sums of its negative and of its
+        positive terms.
+        """
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.degree
+        scaled: cython.double
+        negative: cython.double = 0.0
+        positive: cython.double = 0.0
+        if length != self.length:
+            self.length = length
+            self.power[0] = 1.0
+            for k in range(1, self.capacity + 1):
+                self.power[k] = self.power[k - 1] * length
+        self.bernstein[0, 0] = self.coefficient[0]
+        for k in range(1, n + 1):
+            scaled = self.coefficient[k] * self.power[k]
+            self.bernstein[0, k] = scaled
+            negative += min(scaled, 0.0)
+            positive += max(scaled, 0.0)
+        self.lowest = self.coefficient[0] + negative
+        self.highest = self.coefficient[0] + positive
+        scaled = NEGLIGIBLE * (abs(self.coefficient[0]) + positive - negative)
+        while n > 0 and abs(self.bernstein[0, n]) <= scaled:
+            n -= 1
+        return n
+
+    def _bound(self, degree):
+        """Tighten `lowest` and `highest` by the Bernstein coefficients of the first terms and the sum of the others.
+
+        Far cheaper than all coefficients, and enough wherever the polynomial keeps clear of 0.
+        """
+        k: cython.Py_ssize_t
+        rest: cython.double = 0.0
+        least: cython.double
+        largest: cython.double
+        for k in range(LOW_DEGREE + 1, degree + 1):
+            rest += abs(self.bernstein[0, k])
+        for k in range(LOW_DEGREE + 1):
+            self.bernstein[1, k] = self.bernstein[0, k]
+        self._convert(1, LOW_DEGREE)
+        least = self.bernstein[1, 0]
+        largest = self.bernstein[1, 0]
+        for k in range(1, LOW_DEGREE + 1):
+            least = min(least, self.bernstein[1, k])
+            largest = max(largest, self.bernstein[1, k])
+        self.lowest = max(self.lowest, least - rest)
+        self.highest = min(self.highest, largest + rest)
+
+    def _convert(self, row, degree):
+        """Turn the scaled terms in a row into Bernstein coefficients."""
+        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        before: cython.double
+        here: cython.double
+        for k in range(1, degree + 1):
+            self.bernstein[row, k] *= self.inverse_binomial[degree, k]
+        for j in range(1, degree + 1):
+            before = self.bernstein[row, j - 1]
+            for k in range(j, degree + 1):
+                here = self.bernstein[row, k]
+                self.bernstein[row, k] = here + before
+                before = here
+
+    def _split(self, top, degree):
+        """Halve the interval in row top: its right half stays there, its left half goes to row top + 1."""
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        middle: cython.double = 0.5 * (self.left[top] + self.right[top])
+        self.left[top + 1] = self.left[top]
+        self.right[top + 1] = middle
+        self.left[top] = middle
+        for j in range(degree + 1):
+            self.bernstein[top + 1, j] = self.bernstein[top, 0]
+            for k in range(degree - j):
+                self.bernstein[top, k] = 0.5 * (self.bernstein[top, k] + self.bernstein[top, k + 1])
+
+    def _root_between(self, top, degree):
+        """Return the only root in the interval of row top, where the sign falls: Newton kept in a bracket."""
+        k: cython.Py_ssize_t
+        _iteration: cython.int
+        t: cython.double
+        change: cython.double
+        value: cython.double
+        slope: cython.double
+        low: cython.double = self.left[top]
+        high: cython.double = self.right[top]
+        at_low: cython.double = self.bernstein[top, 0]
+        at_high: cython.double = self.bernstein[top, degree]
+        if at_low <= 0.0:
+            return low
+        if at_high >= 0.0:
+            return high
+        t = low + (high - low) * at_low / (at_low - at_high)
+        if degree > LOW_DEGREE:
+            # A first guess from the first terms, at a third of the cost of a step with all.
+            change = t
+            for _iteration in range(GUESSES):
+                value = self.coefficient[LOW_DEGREE]
+                slope = 0.0
+                for k in range(LOW_DEGREE - 1, -1, -1):
+                    slope = slope * change + value
+                    value = value * change + self.coefficient[k]
+                if slope < 0.0:
+                    change -= value / slope
+            if low < change < high:
+                t = change
+        for _iteration in range(NEWTON_ITERATIONS):
+            value = self.coefficient[degree]
+            slope = 0.0
+            for k in range(degree - 1, -1, -1):
+                slope = slope * t + value
+                value = value * t + self.coefficient[k]
+            if value == 0.0:
+                return t
+            if value > 0.0:
+                low = t
+            else:
+                high = t
+            change = 0.5 * (low + high) - t
+            if slope < 0.0:
+                if abs(value) <= -RESOLUTION * slope * t:
+                    return t
+                if low < t - value / slope < high:
+                    change = -value / slope
+            t += change
+            if abs(change) <= RESOLUTION * t:
+                return t
+        return t
+
+    def _peak_between(self, low, high):
+        """Return the maximum in [low, high], where the derivative changes its sign once, from + to -."""
+        _iteration: cython.int
+        k: cython.Py_ssize_t
+        t: cython.double = 0.5 * (low + high)
+        slope: cython.double
+        curvature: cython.double
+        change: cython.double
+        for _iteration in range(NEWTON_ITERATIONS):
+            slope = 0.0
+            curvature = 0.0
+            for k in range(self.degree, 0, -1):
+                curvature = curvature * t + slope
+                slope = slope * t + k * self.coefficient[k]
+            if slope > 0.0:
+                low = t
+            else:
+                high = t
+            change = 0.5 * (low + high) - t
+            if curvature < 0.0 and low < t - slope / curvature < high:
+                change = -slope / curvature
+            t += change
+            # The maximum is flat: half of the digits of its place give all digits of its value.
+            if abs(change) <= 1e-9 * high:
+                break
+        return self.value(t)
