@@ -37,7 +37,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
         panels[row * len(states)].set_yscale("log")
     lines = panels[0].get_lines()
     panels[0].legend(
-        [lines[0], lines[1], Patch(color="0.9")],
+        [lines[0], lines[1], Patch(facecolor="0.9", edgecolor="0.6")],
         ["difference", "three standard errors", "the laws disagree"],
         loc="center right",
     )
