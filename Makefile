@@ -13,6 +13,10 @@ study: setup
 
 setup: .venv/kernel
 
+ifneq ($(words $(CURDIR)),1)
+$(error $(CURDIR): Snakemake cannot run scripts from a path with a space: move the checkout)
+endif
+
 .venv/study: requirements/study.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv

@@ -7,7 +7,13 @@ from snakemake.utils import min_version
 
 min_version("9.0")
 
-from burridge_knopoff.config import ConfigError, all_points, load_study, read_schema
+from burridge_knopoff.config import (
+    ConfigError,
+    all_points,
+    check_file,
+    load_study,
+    read_schema,
+)
 from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.provenance import source_fingerprint
@@ -18,7 +24,15 @@ if not workflow.configfiles:
     configfile: str(Path(workflow.basedir, "config/paper.yaml"))
 
 
+if len(workflow.configfiles) > 1:
+    sys.exit("--configfile: several files are not allowed: one file is one study")
+if " " in sys.executable:
+    sys.exit(
+        f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
+    )
+
 try:
+    check_file(workflow.configfiles[0])
     STUDY = load_study(
         config,
         read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),

@@ -1,5 +1,6 @@
 """`bk`: results, help, and one line with exit code 2 for bad input."""
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -92,6 +93,9 @@ def test_no_events(tmp_path):
         ([*RUN, "--out", "/proc/x.nc"], "/proc/x.nc: cannot be written"),
         ([*RUN, "--out", "."], "cannot be written"),
         ([*RUN, "--event", "all", "--out", "x.nc"], "--event"),
+        ([*RUN, "--out", "/dev/null"], "/dev/null: cannot be written: it is not a regular file"),
+        ([*RUN, "--initial", "two words", "--out", "x.nc"], "'two words' is not allowed"),
+        ([*RUN, "--position", "", "--out", "x.nc"], "numbers with commas"),
     ],
 )
 def test_bad_input(tmp_path, arguments, words):
@@ -100,6 +104,38 @@ def test_bad_input(tmp_path, arguments, words):
     assert run.stdout == ""
     assert run.stderr.count("\n") == 1
     assert words in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_ends_early_says_so(tmp_path):
+    run = bk(
+        *RUN[:4], "1.9", "--contact", "symmetric", "--transient", "0", "--window", "1000", "--out", "x.nc", cwd=tmp_path
+    )
+    assert run.returncode == 0
+    assert run.stderr.count("\n") == 1
+    assert "status diverged" in run.stderr
+    with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
+        assert 0.0 < dataset["end_time"][...] < 1000.0
+        assert dataset["mean_distance"][...] != dataset["mean_distance"][...]
+
+
+def test_a_link_stays_and_its_target_is_written(tmp_path):
+    (tmp_path / "target.nc").write_text("old")
+    (tmp_path / "link.nc").symlink_to("target.nc")
+    assert main([*RUN, "--out", str(tmp_path / "link.nc")]) == 0
+    assert (tmp_path / "link.nc").is_symlink()
+    assert (tmp_path / "target.nc").stat().st_size > 10_000
+
+
+def test_an_interrupt_ends_a_long_run_with_one_line(tmp_path):
+    command = [BK, *RUN, "--solver", "rk4", "--step", "1e-7", "--out", "x.nc"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    with pytest.raises(subprocess.TimeoutExpired):
+        process.wait(timeout=3)
+    process.send_signal(signal.SIGINT)
+    _, message = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert message == "bk simulate: interrupted, nothing was written\n"
     assert list(tmp_path.iterdir()) == []
 
 

@@ -8,7 +8,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.config import ConfigError, all_points, load_study, read_schema
+from burridge_knopoff.config import ConfigError, all_points, check_file, load_study, read_schema
 
 NAN = float("nan")
 INFINITE = float("inf")
@@ -40,9 +40,10 @@ BAD = [
     ({"a": [0.1, 2.0]}, ["a[1]: 2.0", "< 2"]),
     ({"a": [NAN]}, ["a[0]: nan"]),
     ({"a": [INFINITE]}, ["a[0]: inf"]),
-    ({"a": [0.1, 0.1]}, ["a: 0.1 and 0.1 share the file name"]),
+    ({"a": [0.1, 0.1]}, ["a: 0.1 is listed twice"]),
+    ({"a": [0.0, -0.0]}, ["a: 0.0 is listed twice"]),
     ({"a": [0.1, 0.10001]}, ["share the file name a0.1000.nc", "a_digits"]),
-    ({"a": [RANGE, 0.0025]}, ["share the file name"]),
+    ({"a": [RANGE, 0.0025]}, ["a: 0.0025 is listed twice"]),
     ({"a": [{"from": 0, "to": 0.3}]}, ["a[0].step: missing"]),
     ({"a": [{"from": 0, "to": 0.3, "stepp": 0.1}]}, ["a[0].stepp: unknown key"]),
     ({"a": [{"from": 0, "to": 0.3, "step": 0.007}]}, ["a[0].step: 0.007", "divide"]),
@@ -83,6 +84,12 @@ BAD = [
     ({"window": None, "windows": 10}, ["windows: unknown key"]),
     ({"batches": 1}, ["batches: 1"]),
     ({"batches": 2.5}, ["batches: 2.5", "whole number"]),
+    ({"batches": 7.0}, ["batches: 7.0", "whole number"]),
+    ({"window": 10**400}, ["window: 1000"]),
+    ({"sampling": 1e-5}, ["sampling: 1e-05", "samples"]),
+    ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "samples"]),
+    ({"study": "x\n"}, ["study: 'x\\n'"]),
+    ({"initial": {1: PAIR}}, ["initial.1 is not allowed as a key"]),
     ({"sampling": 0}, ["sampling: 0"]),
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"synchronization_threshold": 0}, ["synchronization_threshold: 0"]),
@@ -114,9 +121,26 @@ def test_bad_configs_get_one_line(schema, changes, words):
         assert word in message
 
 
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("study: x\nstudy: y\n", "study"),
+        ("a: [0.1]\nstudy: x\na: [0.2]\n", "a"),
+        ("initial: {minus: {}, minus: {}}\n", "minus"),
+        ("a:\n  - {from: 0, to: 1, from: 0.5, step: 0.5}\n", "from"),
+    ],
+)
+def test_a_key_that_stands_twice_is_refused(tmp_path, text, key):
+    path = tmp_path / "twice.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=rf"twice\.yaml: {key}: stands twice \(line \d\)"):
+        check_file(path)
+
+
 @pytest.mark.parametrize("name", ["paper", "smoke"])
 def test_the_shipped_configs_are_valid(repository, schema, name):
     path = repository / "config" / f"{name}.yaml"
+    check_file(path)
     study = load_study(yaml.safe_load(path.read_text()), schema, str(path))
     assert study.name == name
     if name == "paper":

@@ -122,6 +122,15 @@ def test_accumulating_events_end_the_run(monkeypatch):
     assert run.end_time < 50.0
 
 
+@pytest.mark.parametrize(("law", "solver"), [("linearized", "map"), ("linearized", "series"), ("linearized", "rk4")])
+def test_motion_without_bound_ends_the_run(law, solver):
+    """Backward slip under the linearized law is fed without limit: friction 1 − a|U'| turns negative."""
+    run = simulate(law, 1.9, "minus", solver=solver, contact="symmetric", transient=0.0, window=1e4)
+    assert run.status == "diverged"
+    assert run.end_time < 1000.0
+    assert np.isnan(run.mean_distance)
+
+
 def test_the_step_limit_ends_the_run(monkeypatch):
     monkeypatch.setattr("burridge_knopoff.simulation.STEP_LIMIT", 10)
     run = simulate("linearized", 0.08, "minus", transient=0.0, window=50.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Sequence
 from dataclasses import fields
@@ -33,7 +34,16 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _numbers(text: str) -> tuple[float, ...]:
-    return tuple(float(part) for part in text.split(","))
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: numbers with commas between them") from None
+
+
+def _name(text: str) -> str:
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,31}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: letters, digits and _, at most 32, a letter first")
+    return text
 
 
 def _join(arguments: Sequence[str]) -> list[str]:
@@ -69,6 +79,7 @@ def build_parser() -> argparse.ArgumentParser:
     state = simulate.add_argument_group("initial state")
     state.add_argument(
         "--initial",
+        type=_name,
         default="minus",
         metavar="NAME",
         help="minus | plus, or a name for the numbers given below (default: %(default)s)",
@@ -115,16 +126,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(_join(sys.argv[1:] if arguments is None else arguments))
     from burridge_knopoff.chain import Chain
     from burridge_knopoff.dataset.point import write_point
+    from burridge_knopoff.files import check_target
     from burridge_knopoff.friction import Friction
     from burridge_knopoff.initial import initial_state
     from burridge_knopoff.simulation import Settings, run
 
     try:
+        check_target(options.out)
         state = initial_state(options.initial, options.position, options.velocity)
         chain = Chain(len(state.position) if options.blocks is None else options.blocks)
         settings = Settings(**{item.name: getattr(options, item.name) for item in fields(Settings)})
-        write_point(run(chain, Friction(options.law, options.a), state, settings), options.out)
+        trajectory = run(chain, Friction(options.law, options.a), state, settings)
+        write_point(trajectory, options.out)
     except (ValueError, OSError) as error:
         print(f"bk simulate: {error}", file=sys.stderr)
         return 2
+    except MemoryError:
+        print("bk simulate: not enough memory for so many events or samples", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("bk simulate: interrupted, nothing was written", file=sys.stderr)
+        return 130
+    if trajectory.status != "completed":
+        print(
+            f"bk simulate: {options.out}: the run ended at tau = {trajectory.end_time:g} with status "
+            f"{trajectory.status}; its averages are NaN",
+            file=sys.stderr,
+        )
     return 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
@@ -11,9 +10,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
 
 MAXIMUM_POINTS = 1_000_000
+LARGEST = 1e300
 
 #: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
 PAPER_A = 0.08
@@ -85,14 +86,37 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     file : name of the config file, for messages
     Raises ConfigError.
     """
+    _check_names(config, file)
     filled = _with_defaults(copy.deepcopy(dict(config)), schema)
     _check_schema(filled, schema, file)
     grid = _grid(filled, file)
     _check_states(filled, file)
+    _check_runs(filled, file)
     shown = filled["figures"].get("a")
     if shown is not None and shown not in grid.values():
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
     return Study(filled, grid)
+
+
+def check_file(path: str | Path) -> None:
+    """Raise ConfigError if a key stands twice in one place of a YAML file: the first would be dropped in silence."""
+    import yaml
+
+    def walk(node: Any) -> None:
+        if isinstance(node, yaml.MappingNode):
+            seen = set()
+            for key, value in node.value:
+                if key.value in seen:
+                    line = key.start_mark.line + 1
+                    raise ConfigError(f"{display_path(path)}: {key.value}: stands twice (line {line}); once is allowed")
+                seen.add(key.value)
+                walk(value)
+        elif isinstance(node, yaml.SequenceNode):
+            for item in node.value:
+                walk(item)
+
+    # Without aliases resolved: an anchor's content is walked where it is written.
+    walk(yaml.compose(Path(path).read_text(encoding="utf-8"), Loader=yaml.SafeLoader))
 
 
 def read_schema(path: str | Path) -> dict[str, Any]:
@@ -118,10 +142,14 @@ def _validator_class() -> Any:
 
     def number(checker: Any, value: Any) -> bool:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        return is_number and math.isfinite(value)
+        return is_number and -LARGEST <= value <= LARGEST
+
+    def integer(checker: Any, value: Any) -> bool:
+        return isinstance(value, int) and number(checker, value)
 
     base = jsonschema.Draft202012Validator
-    return jsonschema.validators.extend(base, type_checker=base.TYPE_CHECKER.redefine("number", number))
+    checker = base.TYPE_CHECKER.redefine("number", number).redefine("integer", integer)
+    return jsonschema.validators.extend(base, type_checker=checker)
 
 
 def _check_schema(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> None:
@@ -131,6 +159,28 @@ def _check_schema(config: Mapping[str, Any], schema: Mapping[str, Any], file: st
     from burridge_knopoff.config_message import explain
 
     raise ConfigError(f"{file}: {explain(errors[0])}")
+
+
+def _check_names(config: Any, file: str, place: str = "") -> None:
+    """Refuse keys that are not text, and names that end in a line break, which a pattern does not see."""
+    if isinstance(config, Mapping):
+        for key, value in config.items():
+            if not isinstance(key, str) or key != key.strip():
+                raise ConfigError(f"{file}: {place}{key!r} is not allowed as a key: text without spaces around it")
+            _check_names(value, file, f"{place}{key}.")
+    if place == "study." and isinstance(config, str) and config != config.strip():
+        raise ConfigError(f"{file}: study: {config!r} is not allowed: text without spaces or line breaks around it")
+
+
+def _check_runs(config: Mapping[str, Any], file: str) -> None:
+    """Let the settings of the runs be checked by the code that will run them."""
+    from burridge_knopoff.simulation import Settings
+
+    for solver in config["solver"].values():
+        try:
+            Settings(solver=solver, step=config["step"], **{key: config[key] for key in RUN_KEYS})
+        except ValueError as error:
+            raise ConfigError(f"{file}: {error}") from error
 
 
 def _check_states(config: Mapping[str, Any], file: str) -> None:
@@ -163,12 +213,15 @@ def _grid(config: Mapping[str, Any], file: str) -> dict[str, float]:
     """Return {name: value}, ascending; every value the double nearest to its decimal."""
     values: list[float] = []
     for position, item in enumerate(config["a"]):
-        values += [float(item)] if not isinstance(item, dict) else _range(item, f"{file}: a[{position}]")
+        # Adding 0 turns -0.0 into 0.0.
+        values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{file}: a[{position}]")
         if len(values) > MAXIMUM_POINTS:
             raise ConfigError(f"{file}: a: more than {MAXIMUM_POINTS} values; at most that many are allowed")
     grid: dict[str, float] = {}
     for value in sorted(values):
         name = _grid_name(value, config["a_digits"])
+        if grid.get(name) == value:
+            raise ConfigError(f"{file}: a: {value!r} is listed twice, as a number or by two ranges; once is allowed")
         if name in grid:
             raise ConfigError(
                 f"{file}: a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "

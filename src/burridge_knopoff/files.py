@@ -13,9 +13,9 @@ def write_whole(path: str | Path, write: Callable[[str], None]) -> None:
 
     Raises OSError, one line that names the file, if it or its folder cannot be written.
     """
-    path = Path(path)
-    if path.is_dir():
-        raise OSError(f"{path}: cannot be written: it is a folder")
+    check_target(path)
+    # A link stays, and the file that it leads to is replaced.
+    path = Path(os.path.realpath(path))
     # The suffix stays last: matplotlib and others tell the format from it.
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
@@ -31,9 +31,27 @@ def write_whole(path: str | Path, write: Callable[[str], None]) -> None:
             temporary.unlink()
 
 
+def check_target(path: str | Path) -> None:
+    """Raise OSError, one line, if a file of that name could not be written: better before hours of work than after."""
+    path = Path(os.path.realpath(path))
+    if path.is_dir():
+        raise OSError(f"{path}: cannot be written: it is a folder")
+    if path.exists() and not path.is_file():
+        raise OSError(f"{path}: cannot be written: it is not a regular file")
+    folder = path.parent
+    while not folder.exists():
+        folder = folder.parent
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise OSError(f"{path}: cannot be written: {folder} is not a folder that can be written to")
+
+
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file, whole or not at all."""
-    write_whole(path, lambda name: Path(name).write_text(text, encoding="utf-8") and None)
+
+    def write(name: str) -> None:
+        Path(name).write_text(text, encoding="utf-8")
+
+    write_whole(path, write)
 
 
 def display_path(path: str | Path) -> str:

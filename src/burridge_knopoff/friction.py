@@ -28,7 +28,8 @@ class Friction:
             raise ValueError(f"law: {self.law!r} is not allowed: {' | '.join(LAWS)}")
         if isinstance(self.a, bool) or not isinstance(self.a, int | float | np.floating) or not 0.0 <= self.a < 2.0:
             raise ValueError(f"a: {self.a!r} is not allowed: 0 ≤ a < 2")
-        object.__setattr__(self, "a", float(self.a))
+        # Adding 0 turns -0.0 into 0.0: the same number must not make two different files.
+        object.__setattr__(self, "a", float(self.a) + 0.0)
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ(a·speed), elementwise."""

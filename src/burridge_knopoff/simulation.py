@@ -24,7 +24,7 @@ SOLVERS = ("map", "series", "rk4")
 DEFAULT_SOLVER = {"linearized": "map", "nonlinear": "series"}
 EVENTS = ("none", "window", "all")
 RUNNING = -1
-STATUS = ("completed", "step_limit", "accumulating_events", "not_finite")
+STATUS = ("completed", "step_limit", "accumulating_events", "diverged")
 
 # Terms of the Taylor series: enough for a piece of about one time unit, the usual gap between two events.
 SERIES_ORDER = 24

@@ -106,7 +106,6 @@ def test_provenance_names_sources_but_no_person(path):
     with xr.open_dataset(path) as dataset:
         text = str(dataset.attrs)
         assert len(dataset.attrs["source_fingerprint"]) == 16
-        assert len(dataset.attrs["git_commit"]) == 40 or dataset.attrs["git_commit"] == "unknown"
     for word in (socket.gethostname(), getpass.getuser(), "2026"):
         assert f" {word} " not in text
 

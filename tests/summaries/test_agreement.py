@@ -27,7 +27,7 @@ def test_two_synchronized_laws_agree(tmp_path):
     assert (dataset["agrees"] == 1).all()
     assert (dataset["kind"] == 0).all()
     assert np.isnan(dataset["parting_a"].item())
-    assert agreement.digest(dataset) == "minus: the laws agree at all 2 values of a, 0.05 to 0.08.\n"
+    assert agreement.digest(dataset) == "minus: the laws agree at all 2 values of a that were compared, 0.05 to 0.08.\n"
 
 
 def test_altered_data_changes_the_verdict(tmp_path):
@@ -50,7 +50,11 @@ def test_a_run_without_result_agrees_with_nothing(tmp_path):
 
     grid = grid_of(tmp_path, change)
     dataset = agreement.summarize(grid, 1e-6, SETTINGS)
-    assert (dataset["agrees"] == 0).all()
+    assert (dataset["agrees"] == -1).all()
+    assert (dataset["same_kind"] == -1).all()
+    assert np.isnan(dataset["parting_a"].item())
+    assert "2 values of a are undetermined: a run did not complete." in agreement.digest(dataset)
+    assert agreement.table(dataset).count("undetermined") == 4
     assert (dataset["kind"].sel(law="linearized") == -1).all()
     means = mean_distance.summarize(grid, 1e-6)
     assert np.isnan(means["mean_distance"].sel(law="linearized")).all()

@@ -120,6 +120,8 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     if attributes["solver"] == "rk4":
         attributes["step"] = settings.step
     attributes.update(provenance())
+    # The sources are told by their fingerprint; a commit that changes a text must not change the bytes of a point.
+    del attributes["git_commit"]
     return attributes
 
 

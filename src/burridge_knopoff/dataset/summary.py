@@ -60,8 +60,14 @@ def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
 
 
 def open_summary(path: str | Path) -> xarray.Dataset:
-    """Return a summary, loaded into memory."""
-    return xarray.load_dataset(path, engine="netcdf4")
+    """Return a summary or a point file, loaded into memory.
+
+    Raises ValueError, one line that names the file, if it cannot be read.
+    """
+    try:
+        return xarray.load_dataset(path, engine="netcdf4")
+    except (OSError, RuntimeError) as error:
+        raise ValueError(f"{path}: not a readable file ({error}); delete it and run snakemake again") from None
 
 
 def _attributes(item: Variable) -> dict[str, Any]:

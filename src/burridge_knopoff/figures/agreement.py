@@ -14,7 +14,10 @@ ROUNDING = 1e-17
 
 @styled
 def draw(agreement: xarray.Dataset) -> Figure:
-    """Draw, for each initial state, |Δ⟨J⟩| against its error, the section distance, and the common event order."""
+    """Draw, for each initial state, |Δ⟨J⟩| against both tolerances, the section distance, and the common event order.
+
+    Shaded: the laws disagree, in ⟨J⟩ (by more than both tolerances) or in the kind of motion.
+    """
     states = agreement["initial"].values
     figure, panels = new_figure(PAGE, 5.6, rows=3, columns=len(states))
     a = agreement["a"].values
@@ -22,7 +25,10 @@ def draw(agreement: xarray.Dataset) -> Figure:
         run = agreement.sel(initial=initial)
         difference, sections, order = panels[column :: len(states)]
         difference.plot(a, _positive(abs(run["difference"])), "-o", markersize=2.2, linewidth=0.8, color=color(0))
-        difference.plot(a, _positive(3.0 * run["difference_error"]), "--", linewidth=0.8, color=color(1))
+        noise = _positive(agreement.attrs["standard_errors"] * run["difference_error"])
+        difference.plot(a, noise, "--", linewidth=0.8, color=color(1))
+        share = _positive(agreement.attrs["relative_tolerance"] * run["mean_distance"].max("law"))
+        difference.plot(a, share, ":", linewidth=0.9, color=color(2))
         sections.plot(a, _positive(run["section_distance"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
         order.plot(a, _positive(run["event_order_time"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
         for panel in (difference, sections, order):
@@ -30,18 +36,28 @@ def draw(agreement: xarray.Dataset) -> Figure:
                 panel.axvspan(*_cell(a, value), color="0.9", linewidth=0, zorder=0)
         order.set_xlabel("$a$")
     # Differences of synchronized runs are rounding; they set the scale of nothing.
-    panels[0].set_ylim(ROUNDING, 1.0)
-    panels[len(states)].set_ylim(1e-8, 1.0)
-    for row, label in enumerate((r"$|\Delta\langle J\rangle|$", "section distance", r"same event order until $\tau$")):
+    for panel, floor in ((panels[0], ROUNDING), (panels[len(states)], 1e-8)):
+        panel.set_ylim(floor, max(1.0, panel.get_ylim()[1]))
+    for row, label in enumerate(
+        (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")
+    ):
         panels[row * len(states)].set_ylabel(label)
         panels[row * len(states)].set_yscale("log")
     lines = panels[0].get_lines()
     panels[0].legend(
-        [lines[0], lines[1], Patch(facecolor="0.9", edgecolor="0.6")],
-        ["difference", "three standard errors", "the laws disagree"],
-        loc="center right",
+        [*lines[:3], Patch(facecolor="0.9", edgecolor="0.6")],
+        [
+            "difference",
+            f"{agreement.attrs['standard_errors']:g} standard errors",
+            rf"{100 * agreement.attrs['relative_tolerance']:g} % of $\langle J\rangle$",
+            "the laws disagree",
+        ],
+        loc="lower right",
+        frameon=True,
+        framealpha=1.0,
+        edgecolor="none",
     )
-    names = ("nonlinear minus linearized", "distributions of $W'$", "event order")
+    names = (r"difference of $\langle J\rangle$ between the laws", "distance of the section points $W'$", "event order")
     label_panels(panels, [f"{initial}: {name}" for name in names for initial in states])
     return figure
 
@@ -55,6 +71,8 @@ def _positive(values: xarray.DataArray) -> np.ndarray:
 def _cell(a: np.ndarray, value: float) -> tuple[float, float]:
     """Return the interval of a that is nearer to this value of the grid than to any other."""
     k = int(np.searchsorted(a, value))
-    low = a[k - 1] if k > 0 else value
-    high = a[k + 1] if k + 1 < len(a) else value
+    if len(a) == 1:
+        return value - 0.5, value + 0.5
+    low = a[k - 1] if k > 0 else 2 * value - a[k + 1]
+    high = a[k + 1] if k + 1 < len(a) else 2 * value - a[k - 1]
     return 0.5 * (low + value), 0.5 * (value + high)

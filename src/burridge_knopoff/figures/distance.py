@@ -18,7 +18,8 @@ FLOOR = 1e-16
 def draw(points: Mapping[str, xarray.Dataset]) -> Figure:
     """Draw J(τ), a panel for each {initial state: point file}, with the same run on a logarithmic scale below.
 
-    The linear panels leave out the first relaxation, which is up to a hundred times what follows.
+    The linear panels leave out the first relaxation, which is up to a hundred times what follows; a run that ended
+    early leaves the rest of its panel empty.
     """
     figure, panels = new_figure(PAGE, 4.0, rows=2, columns=len(points), share_rows=False)
     titles = []
@@ -28,13 +29,21 @@ def draw(points: Mapping[str, xarray.Dataset]) -> Figure:
             distance = point["distance"].values
             panel.plot(point["time"], np.maximum(distance, FLOOR) if row else distance, color=color(0), linewidth=0.5)
             if row == 0:
-                panel.set_ylim(0.0, 1.25 * distance[len(distance) // 100 :].max() or None)
-            panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8)
+                panel.set_ylim(0.0, _top(distance))
+            panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
         panel.set_xlabel(r"$\tau$")
         titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")
     for panel in (panels[0], panels[len(points)]):
         panel.set_ylabel(r"$J(\tau)$")
     for panel in panels[len(points) :]:
         panel.set(yscale="log", ylim=(FLOOR, 10.0))
-    label_panels(panels, titles + titles)
+    panels[0].legend(loc="upper right", handlelength=1.2)
+    label_panels(panels, titles + [f"{title}, logarithmic" for title in points])
     return figure
+
+
+def _top(distance: np.ndarray) -> float | None:
+    """Return the upper end of a linear axis for J after its first relaxation; None if there is no value."""
+    settled = distance[len(distance) // 100 :]
+    settled = settled[np.isfinite(settled)]
+    return 1.25 * float(settled.max()) or None if len(settled) else None

@@ -21,16 +21,16 @@ def draw(mean_distance: xarray.Dataset) -> Figure:
                 a,
                 run["mean_distance"].values,
                 3.0 * run["mean_distance_error"].values,
-                fmt="-o",
-                markersize=2.2,
+                fmt="-o" if index == 0 else "-D",
+                markersize=2.8 if index == 0 else 1.8,
                 linewidth=0.8,
                 elinewidth=0.6,
                 color=color(index),
                 label=initial,
             )
-        panel.set(xlabel="$a$", xlim=(a.min(), a.max()) if len(a) > 1 else None)
+        panel.set_xlabel("$a$")
     panels[0].set_ylabel(r"$\langle J\rangle$")
     panels[0].set_ylim(bottom=-0.01)
-    panels[0].legend(title="initial state")
+    panels[0].legend(title="initial state", loc="upper left")
     label_panels(panels, [f"{law} law" for law in laws])
     return figure

@@ -7,7 +7,10 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
 
-DASHES = ("-", "--", ":", "-.")
+# Later blocks lie above earlier ones and are thinner or broken, so that blocks in synchrony are all seen.
+DASHES = ("-", (0, (5, 2)), (0, (1.2, 2.2)), "-.")
+WIDTHS = (2.2, 1.1, 1.4, 1.0)
+SHADES = ("#7FB2DA", "#D55E00", "#000000")
 
 
 @styled
@@ -20,13 +23,15 @@ def draw(point: xarray.Dataset) -> Figure:
             panel.plot(
                 time,
                 point[name].sel(block=block),
-                DASHES[index % len(DASHES)],
-                color=color(index),
+                linestyle=DASHES[index % len(DASHES)],
+                linewidth=WIDTHS[index % len(WIDTHS)],
+                color=SHADES[index] if index < len(SHADES) else color(index),
                 label=f"block {block}",
             )
     panels[0].set_ylabel("$U_i'$")
     panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
-    panels[0].legend(ncols=min(len(point["block"]), 6), loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
+    if len(point["block"]) <= 6:
+        panels[0].legend(ncols=len(point["block"]), loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
     label_panels(panels, [f"velocities: {run}", f"positions relative to the driver: {run}"])
     return figure

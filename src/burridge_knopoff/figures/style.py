@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
-from typing import ParamSpec
+from typing import Any, ParamSpec
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -22,7 +22,7 @@ PAGE = 7.0
 # Okabe and Ito's colours: told apart by colour-blind readers, and by their lightness in print.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
-STYLE = {
+STYLE: Any = {
     "font.family": "serif",
     "font.serif": ["STIXGeneral"],
     "mathtext.fontset": "stix",
@@ -64,7 +64,8 @@ def new_figure(
 
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
     """Write (a), (b), … and what each panel shows above it."""
-    for letter, (panel, title) in zip("abcdefghijklmnopqrstuvwxyz", zip(axes, titles, strict=True), strict=False):
+    for number, (panel, title) in enumerate(zip(axes, titles, strict=True)):
+        letter = chr(ord("a") + number % 26) * (number // 26 + 1)
         panel.set_title(f"({letter}) {title}", loc="left")
 
 
@@ -79,4 +80,4 @@ def write_figure(figure: Figure, *paths: str | Path) -> None:
         # Without this, PDF files record the time of day.
         metadata = {"CreationDate": None} if path.suffix == ".pdf" else None
         with mpl.rc_context(STYLE):
-            write_whole(path, lambda name, metadata=metadata: figure.savefig(name, metadata=metadata))
+            write_whole(path, partial(figure.savefig, metadata=metadata))

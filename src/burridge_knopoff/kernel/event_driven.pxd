@@ -23,5 +23,6 @@ cdef class EventDriven:
     cdef double since_event
 
     cdef int _run(self) noexcept nogil
+    cdef double _fastest(self) noexcept nogil
     cdef Py_ssize_t _first_event(self, double horizon) noexcept nogil
     cdef void _advance(self, double t) noexcept nogil

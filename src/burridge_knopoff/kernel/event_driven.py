@@ -10,9 +10,10 @@ import cython
 if cython.compiled:
     from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
     from cython.cimports.burridge_knopoff.kernel.events import (
+        ABSURD_SPEED,
         ACCUMULATING_EVENTS,
         COMPLETED,
-        NOT_FINITE,
+        DIVERGED,
         RUNNING,
         STEP_LIMIT,
         STEPS_PER_CALL,
@@ -25,9 +26,10 @@ if cython.compiled:
 else:
     from burridge_knopoff.kernel.bernstein import SearchedPolynomial
     from burridge_knopoff.kernel.events import (
+        ABSURD_SPEED,
         ACCUMULATING_EVENTS,
         COMPLETED,
-        NOT_FINITE,
+        DIVERGED,
         RUNNING,
         STEP_LIMIT,
         STEPS_PER_CALL,
@@ -84,8 +86,8 @@ class EventDriven:
             remaining = (self.observer.end - self.clock) - self.clock_rest
             length = self.series.expand(self.state, self.piece)
             self.steps += 1
-            if not length > 0.0:
-                return NOT_FINITE
+            if not length > 0.0 or not self._fastest() < ABSURD_SPEED:
+                return DIVERGED
             length = min(length, remaining)
             block = self._first_event(length)
             if block >= 0:
@@ -107,6 +109,14 @@ class EventDriven:
             if length >= remaining:
                 return COMPLETED
         return RUNNING
+
+    def _fastest(self):
+        """Return the largest speed of a block."""
+        i: cython.Py_ssize_t
+        speed: cython.double = 0.0
+        for i in range(self.state.blocks):
+            speed = max(speed, abs(self.state.velocity[i]))
+        return speed
 
     def _first_event(self, horizon):
         """Return the block that stops or starts first within the horizon, its time in event_time; -1 if none does."""

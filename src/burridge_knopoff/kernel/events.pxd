@@ -5,7 +5,8 @@ cdef int RUNNING
 cdef int COMPLETED
 cdef int STEP_LIMIT
 cdef int ACCUMULATING_EVENTS
-cdef int NOT_FINITE
+cdef int DIVERGED
+cdef double ABSURD_SPEED
 cdef int STEPS_PER_CALL
 
 cdef class EventLog:

@@ -11,9 +11,12 @@ RUNNING = -1
 COMPLETED = 0
 STEP_LIMIT = 1
 ACCUMULATING_EVENTS = 2
-NOT_FINITE = 3
+DIVERGED = 3
 
 STEPS_PER_CALL = 1_000_000
+
+# A speed that no real motion reaches. The linearized law drives blocks that may slip backward without bound.
+ABSURD_SPEED = 1e9
 
 
 class EventLog:

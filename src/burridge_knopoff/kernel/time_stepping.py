@@ -5,18 +5,20 @@ import numpy as np
 
 if cython.compiled:
     from cython.cimports.burridge_knopoff.kernel.events import (
+        ABSURD_SPEED,
         ACCUMULATING_EVENTS,
         COMPLETED,
-        NOT_FINITE,
+        DIVERGED,
         RUNNING,
         STEPS_PER_CALL,
     )
     from cython.cimports.burridge_knopoff.kernel.piece import Piece
 else:
     from burridge_knopoff.kernel.events import (
+        ABSURD_SPEED,
         ACCUMULATING_EVENTS,
         COMPLETED,
-        NOT_FINITE,
+        DIVERGED,
         RUNNING,
         STEPS_PER_CALL,
     )
@@ -83,8 +85,8 @@ class TimeStepping:
                 rate += self.acceleration[3, i]
                 self.state.velocity[i] = self.velocity[i] + step * rate / 6.0
                 self.state.touching[i] = 0
-                if not abs(self.state.velocity[i]) < 1e300:
-                    return NOT_FINITE
+                if not abs(self.state.velocity[i]) < ABSURD_SPEED:
+                    return DIVERGED
             self._slope(3)
             self._interpolate(step)
             self.observer.observe(self.state, self.piece, self.clock, 0.0, step)

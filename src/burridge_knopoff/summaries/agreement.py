@@ -19,7 +19,8 @@ from burridge_knopoff.summaries.points import Grid, read_point
 
 _POINT = ("law", "initial", "a")
 _PAIR = ("initial", "a")
-_YES_NO = flag("i1", {0: "no", 1: "yes"})
+_VERDICT = {-1: "undetermined", 0: "no", 1: "yes"}
+_YES_NO = flag("i1", _VERDICT)
 VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
@@ -86,12 +87,16 @@ def _sequence(point: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, 
 
 
 def _judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
-    """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance."""
+    """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
+
+    There is no verdict where one of the two runs did not complete.
+    """
     linearized, nonlinear = values["mean_distance"]
     kind = values["kind"]
     values["difference"][...] = nonlinear - linearized
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
-    values["same_kind"][...] = (kind[0] == kind[1]) & (kind[0] != UNDETERMINED)
+    determined = (kind != UNDETERMINED).all(axis=0)
+    values["same_kind"][...] = np.where(determined, kind[0] == kind[1], -1)
     tolerance = np.maximum.reduce(
         [
             agreement["relative_tolerance"] * np.maximum(linearized, nonlinear),
@@ -99,7 +104,8 @@ def _judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agree
             np.full_like(linearized, threshold),
         ]
     )
-    values["agrees"][...] = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)
+    agrees = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)
+    values["agrees"][...] = np.where(determined, agrees, -1)
     for j, agrees in enumerate(values["agrees"]):
         apart = a[agrees == 0]
         values["parting_a"][j] = apart[0] if len(apart) else np.nan
@@ -120,27 +126,33 @@ def table(dataset: xarray.Dataset) -> str:
             lines.write(
                 f"{initial},{a:.10g},{mean[0]:.8e},{mean[1]:.8e},{row['difference'].item():.8e},"
                 f"{row['difference_error'].item():.2e},{row['section_distance'].item():.6e},"
-                f"{row['event_order_time'].item():.3f},{kind[0]},{kind[1]},{'yes' if row['agrees'].item() else 'no'}\n"
+                f"{row['event_order_time'].item():.3f},{kind[0]},{kind[1]},{_VERDICT[row['agrees'].item()]}\n"
             )
     return lines.getvalue()
 
 
 def digest(dataset: xarray.Dataset) -> str:
     """Return, in a line for each initial state, the a at which the laws part."""
-    a = dataset["a"].values
     lines = []
     for initial in dataset["initial"].values:
         row = dataset.sel(initial=initial)
-        apart = a[row["agrees"].values == 0]
-        if not len(apart):
-            lines.append(f"{initial}: the laws agree at all {len(a)} values of a, {a[0]:g} to {a[-1]:g}.")
-            continue
-        before = a[a < apart[0]]
-        agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
-        other_kind = a[row["same_kind"].values == 0]
-        kinds = f"; the kind of motion differs at {len(other_kind)}" if len(other_kind) else ""
-        lines.append(
-            f"{initial}: the laws {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
-            f"the last {apart[-1]:g}{kinds}."
-        )
+        verdict = row["agrees"].values
+        a = dataset["a"].values[verdict >= 0]
+        apart = dataset["a"].values[verdict == 0]
+        failed = np.count_nonzero(verdict < 0)
+        undetermined = f" {failed} values of a are undetermined: a run did not complete." if failed else ""
+        if not len(a):
+            text = "no value of a could be compared."
+        elif not len(apart):
+            text = f"the laws agree at all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}."
+        else:
+            before = a[a < apart[0]]
+            agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
+            other_kind = np.count_nonzero(row["same_kind"].values == 0)
+            kinds = f"; the kind of motion differs at {other_kind}" if other_kind else ""
+            text = (
+                f"the laws {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
+                f"the last {apart[-1]:g}{kinds}."
+            )
+        lines.append(f"{initial}: {text}{undetermined}")
     return "\n".join(lines) + "\n"
