@@ -94,7 +94,7 @@ BAD = [
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"synchronization_threshold": 0}, ["synchronization_threshold: 0"]),
     ({"synchronization_threshold": "1e-6"}, ["synchronization_threshold: '1e-6'", "1.0e-6"]),
-    ({"agreement": None, "agreement ": {}}, ["unknown key"]),
+    ({"agreement ": {}}, ["'agreement ' is not allowed as a key"]),
     ({"agreement": []}, ["agreement: []"]),
     ({"figures": {"a": 0.0801}}, ["figures.a: 0.0801", "grid"]),
 ]
@@ -181,12 +181,7 @@ def test_options_of_a_point(schema):
         study.options("linearized", "plus", "0.0801")
 
 
-@given(
-    st.integers(0, 1000),
-    st.integers(1, 50),
-    st.sampled_from(["0.001", "0.0025", "0.0001", "0.0005"]),
-    st.integers(0, 3),
-)
+@given(st.integers(0, 1000), st.integers(1, 50), st.sampled_from(["0.001", "0.0025", "0.0001", "0.0005"]))
 def test_ranges_are_exact_decimals(first, count, step):
     """Every grid value is the double nearest to its decimal, so that a0.0800 is 0.08 and not 0.08000000000000002."""
     from decimal import Decimal

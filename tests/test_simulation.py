@@ -92,6 +92,42 @@ def test_energy_balance():
     assert np.allclose(energy - energy[0], work, atol=2e-7)
 
 
+@pytest.mark.parametrize(
+    ("law", "a"), [("linearized", 0.05), ("linearized", 0.2), ("nonlinear", 0.08), ("nonlinear", 0.5)]
+)
+def test_a_block_exactly_at_its_threshold_starts_stuck(law, a):
+    """s = (1, −1, 1) without rounding: `tested` stops all three, whatever Φ(av) rounds to."""
+    state = InitialState("threshold", (-0.5, 0.0, -0.5), (0.1, 0.1, 0.1))
+    run = simulate(law, a, state, start="tested", transient=0.0, window=5.0, trajectory=5.0, trajectory_sampling=5.0)
+    assert run.velocity[0].tolist() == [0.0, 0.0, 0.0]
+    assert run.position[-1, 0] == pytest.approx(run.position[-1, 2], abs=1e-12)
+
+
+@pytest.mark.parametrize(("law", "solver"), [("linearized", "map"), ("linearized", "series"), ("nonlinear", "series")])
+@pytest.mark.parametrize("a", [0.2, 0.21, 0.234])
+def test_an_exactly_symmetric_state_stays_symmetric(law, solver, a):
+    """Synchrony is unstable there, but its mirror symmetry is exact: no rounding may break it."""
+    state = InitialState("symmetric", (-0.99, -0.993, -0.99), (0.1, 0.101, 0.1))
+    run = simulate(law, a, state, solver=solver, events="none")
+    assert run.distance.max() == 0.0
+
+
+@pytest.mark.parametrize(("window", "batches", "sampling"), [(0.7, 3, 0.7), (0.3, 2, 0.1), (14.7, 6, 4.9)])
+def test_the_last_samples_are_there_whatever_rounds(window, batches, sampling):
+    run = simulate(
+        transient=0.0,
+        window=window,
+        batches=batches,
+        sampling=sampling,
+        trajectory=window,
+        trajectory_sampling=window / 2,
+    )
+    assert run.status == "completed"
+    assert run.end_time == window
+    assert np.isfinite(run.distance).all()
+    assert np.isfinite(run.position).all()
+
+
 def test_more_blocks_and_two():
     for blocks in (2, 5, 12):
         position = tuple(-0.9 + 0.05 * np.sin(3.0 * np.arange(blocks)))

@@ -42,4 +42,6 @@ class Chain:
 
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction·1, shape (blocks,): uniform sliding is U_i = vτ + e_i under that friction."""
-        return np.linalg.solve(self.stiffness, np.full(self.blocks, -friction))
+        offset = np.linalg.solve(self.stiffness, np.full(self.blocks, -friction))
+        # Mirror-symmetric to the bit, as the chain is.
+        return 0.5 * (offset + offset[::-1])

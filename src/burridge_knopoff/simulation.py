@@ -204,12 +204,13 @@ def _prepare(
         friction.law == "nonlinear",
         settings.contact == "symmetric",
     )
-    state.begin(
-        np.array(initial.position) - chain.sliding_offset(sliding_friction),
-        np.array(initial.velocity),
-        settings.start == "tested",
-    )
+    # Spring forces from U itself: in co-moving coordinates rounding could move a block across its threshold.
+    stuck = (settings.start == "tested") & (-chain.stiffness @ np.array(initial.position) <= 1.0)
+    state.begin(np.array(initial.position) - chain.sliding_offset(sliding_friction), np.array(initial.velocity), stuck)
     duration = settings.duration
+    edge = settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
+    edge[-1] = duration
+    distance_time = settings.sampling * np.arange(math.floor(duration / settings.sampling + 1e-9) + 1)
     trajectory = min(settings.trajectory, duration)
     count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
     trajectory_time = duration - settings.trajectory_sampling * np.arange(count, -1, -1)
@@ -217,8 +218,8 @@ def _prepare(
     observer = Observer(
         chain.blocks,
         order,
-        settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches,
-        settings.sampling * np.arange(math.floor(duration / settings.sampling + 1e-9) + 1),
+        edge,
+        np.minimum(distance_time, duration),
         trajectory_time,
     )
     log = EventLog(

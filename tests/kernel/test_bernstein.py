@@ -77,6 +77,13 @@ for exponent in range(2, 14):
             assert found == -1.0, (exponent, found)
         else:
             assert abs(found - (0.371 - depth ** 0.5)) < 1e-15 / depth ** 0.5 + 1e-15, (exponent, found)
+# A root at the right end must not hide the one before it, nor one at the left end the one after it.
+for c, length, expected in (([1.0, -3.0, 2.0], 1.0, 0.5), ([0.0, 1.0, -1.0], 2.0, 1.0)):
+    p = Polynomial(24)
+    p.degree = 2
+    for k, x in enumerate(c):
+        p.coefficient[k] = x
+    assert abs(p.first_root(length) - expected) < 1e-15, c
 print("ok")
 """
 

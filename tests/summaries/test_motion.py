@@ -34,6 +34,8 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
     assert section_period(np.array([]), 1e-6, 60) == 0
     assert section_period(np.array([1.0, 1.0]), 1e-6, 60) == 0
     assert section_period(np.tile(np.arange(70.0), 20), 1e-6, 60) == 0
+    # A slow drift is no period.
+    assert section_period(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
 
 
 def test_kinds():
@@ -52,7 +54,9 @@ def test_common_order():
     assert common_order(first, first) == (4, np.inf)
     second = sequence([1.1, 2.1, 2.9, 3.0], [1, 2, 2, 1], [0, 0, 1, 1])
     assert common_order(first, second) == (2, 2.9)
-    assert common_order(first, sequence([1, 2], [1, 2], [0, 0])) == (2, np.inf)
+    # One run goes on where the other has no more events.
+    assert common_order(first, sequence([1, 2], [1, 2], [0, 0])) == (2, 3.0)
+    assert common_order(sequence([], [], []), sequence([], [], [])) == (0, np.inf)
     # The kind counts, not the block alone.
     assert common_order(first, sequence([1, 2], [1, 2], [0, 1])) == (1, 2.0)
 
@@ -64,3 +68,5 @@ def test_simultaneous_events_may_come_in_either_order():
     apart = sequence([1, 2, 2.1, 4], [2, 3, 1, 2], [0, 0, 0, 1])
     far = sequence([1, 2, 2.1, 4], [2, 1, 3, 2], [0, 0, 0, 1])
     assert common_order(far, apart) == (1, 2.0)
+    rotated = [sequence([1, 1, 1, 2], blocks, [0, 0, 0, 1]) for blocks in ([1, 2, 3, 1], [3, 1, 2, 1])]
+    assert common_order(*rotated) == (4, np.inf)

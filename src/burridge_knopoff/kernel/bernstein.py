@@ -3,13 +3,13 @@
 A polynomial of degree n over [0, h] is a convex combination of its n + 1 Bernstein coefficients. Hence
 
 - no negative coefficient: no root, however close to zero the polynomial comes between its ends;
-- exactly one change of sign in the coefficients: exactly one root, and it is simple (Descartes' rule of signs);
+- exactly one change of sign, and neither end coefficient 0: exactly one root, and it is simple (Descartes' rule);
 - otherwise the interval is halved (de Casteljau) and the left half is searched first.
 
 Every interval that is passed over is passed over by the first statement, so a grazing touch is found at any
 distance from the ends of the piece. What remains undecided are dips that rounding alone can fill: the halving ends at
-intervals of 2^-48 of the piece. The conversion has positive weights of at most 1, so its error is a few ulp of
-the largest scaled coefficient.
+intervals of 4e-15 of their distance from the start of the piece. The conversion has positive weights of at most 1, so
+its error is a few ulp of the largest scaled coefficient.
 
 Reference: R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospective", Comput. Aided Geom. Des. 29
 (2012) 379-419.
@@ -99,7 +99,7 @@ class SearchedPolynomial(Polynomial):
                 return self.left[top]
             if changes == 0:
                 top -= 1
-            elif changes == 1:
+            elif changes == 1 and self.bernstein[top, 0] > 0.0 and self.bernstein[top, n] < 0.0:
                 return self._root_between(top, n)
             elif top >= MAXIMUM_DEPTH or self.right[top] - self.left[top] <= 4e-15 * self.right[top]:
                 if sign < 0:
@@ -252,10 +252,6 @@ class SearchedPolynomial(Polynomial):
         high: cython.double = self.right[top]
         at_low: cython.double = self.bernstein[top, 0]
         at_high: cython.double = self.bernstein[top, degree]
-        if at_low <= 0.0:
-            return low
-        if at_high >= 0.0:
-            return high
         t = low + (high - low) * at_low / (at_low - at_high)
         if degree > LOW_DEGREE:
             # A first guess from the first terms, at a third of the cost of a step with all.

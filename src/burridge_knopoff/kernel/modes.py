@@ -80,7 +80,13 @@ class Modes:
         rate: cython.double
         push: cython.double
         stuck: cython.double
+        left: cython.double
+        right: cython.double
+        q_left: cython.double
+        q_right: cython.double
         factor: cython.double
+        other: cython.double
+        mirror: cython.Py_ssize_t
         for i in range(self.blocks):
             self.origin[i] = state.position[i]
             self.origin_velocity[i] = state.velocity[i]
@@ -104,20 +110,27 @@ class Modes:
                 rate = 0.0
                 push = 0.0
                 stuck = 0.0
-                for m in range(first, last + 1):
+                left = 0.0
+                right = 0.0
+                # From both ends inward, each block added to its mirror image first: a mirrored state gives the same
+                # sums to the bit, and a symmetric one exactly 0 for every antisymmetric mode.
+                m = first
+                while m <= last - (m - first):
+                    mirror = last - (m - first)
                     factor = self.vector[row + k - first, m - first]
-                    q += factor * state.position[m]
-                    rate += factor * (state.velocity[m] - state.v)
-                    if state.slip[m] < 0:
-                        push += 2.0 * factor
+                    other = self.vector[row + k - first, mirror - first] if mirror != m else 0.0
+                    q += factor * state.position[m] + other * state.position[mirror]
+                    rate += factor * (state.velocity[m] - state.v) + other * (state.velocity[mirror] - state.v)
+                    push += factor * (2.0 * (state.slip[m] < 0)) + other * (2.0 * (state.slip[mirror] < 0))
+                    m += 1
                 if first > 0:
-                    factor = self.vector[row + k - first, 0]
-                    push += factor * state.position[first - 1]
-                    stuck += factor
+                    left = self.vector[row + k - first, 0]
                 if last < self.blocks - 1:
-                    factor = self.vector[row + k - first, last - first]
-                    push += factor * state.position[last + 1]
-                    stuck += factor
+                    right = self.vector[row + k - first, last - first]
+                stuck = left + right
+                q_left = state.position[first - 1] if first > 0 else 0.0
+                q_right = state.position[last + 1] if last < self.blocks - 1 else 0.0
+                push += left * q_left + right * q_right
                 self.drift[k] = -state.v * stuck / self.eigenvalue[row + k - first]
                 self.amplitude[k] = q - (state.a * self.drift[k] + push) / self.eigenvalue[row + k - first]
                 self.amplitude_rate[k] = rate - self.drift[k]
@@ -179,10 +192,24 @@ class Modes:
     def _solve(self, first, last, state):
         """Diagonalise the run's matrix, append eigenvalues and eigenvectors (as rows), and return their first row."""
         length = last - first + 1
-        matrix = np.diag(np.asarray(state.stiffness)[first : last + 1]) - np.eye(length, k=1) - np.eye(length, k=-1)
+        ends = (first == 0, last == self.blocks - 1)
+        stiffness = np.full(length, 4.0)
+        stiffness[0] -= 2.0 * ends[0]
+        stiffness[-1] -= 2.0 * (ends[1] and (length > 1 or not ends[0]))
+        # A run that only the right end closes is the mirror image of one that only the left end closes.
+        mirrored = ends[1] and not ends[0]
+        if mirrored:
+            stiffness = stiffness[::-1]
+        matrix = np.diag(stiffness) - np.eye(length, k=1) - np.eye(length, k=-1)
         eigenvalue, vector = np.linalg.eigh(matrix)
         if length <= REFINED:
             eigenvalue, vector = _refined(matrix, eigenvalue, vector)
+        if mirrored:
+            vector = vector[::-1]
+        elif ends[0] == ends[1]:
+            # Modes of a symmetric run are even or odd; made so to the bit.
+            parity = np.sign((vector * vector[::-1]).sum(axis=0))
+            vector = 0.5 * (vector + parity * vector[::-1])
         row = self.rows
         if row + length > self.vector.shape[0]:
             grown = np.zeros((2 * (row + length), self.blocks))

@@ -13,7 +13,7 @@ import numpy as np
 
 # Times closer than this are one instant: velocities and spring forces carry rounding of about this size, so that the
 # order of two such events cannot be told.
-COINCIDENCE = 1e-15
+COINCIDENCE = 1e-14
 
 # A block that has slipped for less than this keeps the acceleration that was carried along since its start, which
 # began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign could stop the block.
@@ -47,17 +47,13 @@ class State:
         self.slip = np.zeros(n, dtype=np.intc)
         self.touching = np.zeros(n, dtype=np.intc)
 
-    def begin(self, position, velocity, tested: bool) -> None:
-        """Set the state at τ = 0: every block slips, or (tested) a block with s_i ≤ 1 is stuck with velocity 0."""
+    def begin(self, position, velocity, stuck) -> None:
+        """Set the state at τ = 0: positions x_i, velocities U_i', and which blocks are stuck with velocity 0."""
         i: cython.Py_ssize_t
         for i in range(self.blocks):
             self.position[i] = position[i]
-        for i in range(self.blocks):
-            self.velocity[i] = velocity[i]
-            self.slip[i] = -1 if velocity[i] < 0.0 else 1
-            if tested and self.spring_force(i) <= 1.0:
-                self.velocity[i] = 0.0
-                self.slip[i] = 0
+            self.velocity[i] = 0.0 if stuck[i] else velocity[i]
+            self.slip[i] = 0 if stuck[i] else (-1 if velocity[i] < 0.0 else 1)
 
     def spring_force(self, i):
         """Return s_i."""

@@ -11,6 +11,12 @@ UNDETERMINED, SYNCHRONIZED, PERIODIC, APERIODIC = KINDS
 # Events of different blocks closer than this are simultaneous: their order is a matter of rounding.
 SIMULTANEOUS = 1e-9
 
+# A sequence has a period if it is seen this many times at least.
+REPETITIONS = 3
+
+# More events than this at one instant are not looked for.
+LARGEST_CLUSTER = 32
+
 
 def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
     """Return after how many points a sequence of section points W' repeats within tolerance; 0 if it does not.
@@ -19,8 +25,9 @@ def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
     longest : largest period looked for
     """
     settled = section[len(section) // 2 :]
-    for period in range(1, min(longest, len(settled) // 2) + 1):
-        if np.all(np.abs(settled[period:] - settled[:-period]) <= tolerance):
+    for period in range(1, min(longest, len(settled) // REPETITIONS) + 1):
+        turns = settled[: len(settled) // period * period].reshape(-1, period)
+        if np.ptp(turns, axis=0).max() <= tolerance:
             return period
     return 0
 
@@ -39,8 +46,8 @@ def common_order(
 ) -> tuple[int, float]:
     """Return how many events of two sequences (time, block, kind) come in the same order, and until which time.
 
-    The time is that of the first event, in either sequence, that differs; infinite where one sequence begins with the
-    other. Two simultaneous events may come in either order.
+    The time is that of the first event, in either sequence, that differs or that the other does not have; infinite
+    where the sequences are the same. Events that are simultaneous in one of the runs may come in any order.
     """
     count = min(len(first[0]), len(second[0]))
     codes = [(2 * block[:count].astype(int) + kind[:count]).tolist() for _, block, kind in (first, second)]
@@ -50,9 +57,19 @@ def common_order(
         if codes[0][n] == codes[1][n]:
             n += 1
             continue
-        swapped = n + 1 < count and codes[0][n : n + 2] == codes[1][n : n + 2][::-1]
-        if swapped and min(time[n + 1] - time[n] for time in times) <= SIMULTANEOUS:
-            n += 2
-            continue
-        return n, float(min(time[n] for time in times))
-    return count, np.inf
+        cluster = _reordered(codes, times, n)
+        if not cluster:
+            return n, float(min(time[n] for time in times))
+        n += cluster
+    longer = max(first, second, key=lambda sequence: len(sequence[0]))[0]
+    return count, float(longer[count]) if len(longer) > count else np.inf
+
+
+def _reordered(codes: list[list[int]], times: list[np.ndarray], n: int) -> int:
+    """Return how many simultaneous events from the n-th on are the same but for their order; 0 if they are not."""
+    for size in range(2, min(LARGEST_CLUSTER, len(codes[0]) - n) + 1):
+        if min(time[n + size - 1] - time[n] for time in times) > SIMULTANEOUS:
+            return 0
+        if sorted(codes[0][n : n + size]) == sorted(codes[1][n : n + size]):
+            return size
+    return 0
