@@ -195,7 +195,7 @@ class Modes:
         ends = (first == 0, last == self.blocks - 1)
         stiffness = np.full(length, 4.0)
         stiffness[0] -= 2.0 * ends[0]
-        stiffness[-1] -= 2.0 * (ends[1] and (length > 1 or not ends[0]))
+        stiffness[length - 1] -= 2.0 * (ends[1] and (length > 1 or not ends[0]))
         # A run that only the right end closes is the mirror image of one that only the left end closes.
         mirrored = ends[1] and not ends[0]
         if mirrored:

@@ -2,6 +2,7 @@ from burridge_knopoff.kernel.piece cimport Piece
 from burridge_knopoff.kernel.state cimport State
 
 cdef double TRUNCATION
+cdef double SPLITTER
 
 cdef class Series:
     cdef double[:, ::1] friction

@@ -21,6 +21,7 @@ else:
 
 ORDER = 24
 TRUNCATION = 1e-18
+SPLITTER = 134217729.0
 
 
 class Series:
@@ -126,6 +127,8 @@ class Series:
     def _step(self, piece):
         """Return the time over which the first neglected terms stay below TRUNCATION (infinite if nothing slips)."""
         i: cython.Py_ssize_t
+        step: cython.double
+        scaled: cython.double
         last: cython.double = 0.0
         previous: cython.double = 0.0
         for i in range(piece.blocks):
@@ -135,7 +138,10 @@ class Series:
             return 1e300
         if not (last + previous < 1e300):
             return 0.0
-        return min(
+        step = min(
             1e300 if last == 0.0 else power(TRUNCATION / last, self.step_power_last),
             1e300 if previous == 0.0 else power(TRUNCATION / previous, self.step_power_previous),
         )
+        # Rounded to 26 bits (Veltkamp's splitting): the C libraries' powers differ in their last bit.
+        scaled = SPLITTER * step
+        return scaled - (scaled - step)
