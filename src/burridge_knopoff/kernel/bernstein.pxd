@@ -14,6 +14,7 @@ cdef class SearchedPolynomial(Polynomial):
     cdef double[::1] right
     cdef double[::1] power
     cdef double length
+    cdef double slope_there
     cdef readonly double lowest
     cdef readonly double highest
 
@@ -24,4 +25,5 @@ cdef class SearchedPolynomial(Polynomial):
     cdef void _convert(self, Py_ssize_t row, Py_ssize_t degree) noexcept nogil
     cdef void _split(self, Py_ssize_t top, Py_ssize_t degree) noexcept nogil
     cdef double _root_between(self, Py_ssize_t top, Py_ssize_t degree) noexcept nogil
+    cdef double _evaluate(self, double t, Py_ssize_t degree) noexcept nogil
     cdef double _peak_between(self, double low, double high) noexcept nogil

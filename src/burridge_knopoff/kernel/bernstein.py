@@ -57,6 +57,7 @@ class SearchedPolynomial(Polynomial):
         self.inverse_binomial = inverse
         self.power = np.zeros(capacity + 1)
         self.length = -1.0
+        self.slope_there = 0.0
         self.lowest = 0.0
         self.highest = 0.0
 
@@ -242,7 +243,6 @@ class SearchedPolynomial(Polynomial):
 
     def _root_between(self, top, degree):
         """Return the only root in the interval of row top, where the sign falls: Newton kept in a bracket."""
-        k: cython.Py_ssize_t
         _iteration: cython.int
         t: cython.double
         change: cython.double
@@ -257,21 +257,14 @@ class SearchedPolynomial(Polynomial):
             # A first guess from the first terms, at a third of the cost of a step with all.
             change = t
             for _iteration in range(GUESSES):
-                value = self.coefficient[LOW_DEGREE]
-                slope = 0.0
-                for k in range(LOW_DEGREE - 1, -1, -1):
-                    slope = slope * change + value
-                    value = value * change + self.coefficient[k]
-                if slope < 0.0:
-                    change -= value / slope
+                value = self._evaluate(change, LOW_DEGREE)
+                if self.slope_there < 0.0:
+                    change -= value / self.slope_there
             if low < change < high:
                 t = change
         for _iteration in range(NEWTON_ITERATIONS):
-            value = self.coefficient[degree]
-            slope = 0.0
-            for k in range(degree - 1, -1, -1):
-                slope = slope * t + value
-                value = value * t + self.coefficient[k]
+            value = self._evaluate(t, degree)
+            slope = self.slope_there
             if value == 0.0:
                 return t
             if value > 0.0:
@@ -288,6 +281,17 @@ class SearchedPolynomial(Polynomial):
             if abs(change) <= RESOLUTION * t:
                 return t
         return t
+
+    def _evaluate(self, t, degree):
+        """Return the value at t of the terms up to this degree; their derivative goes to `slope_there`."""
+        k: cython.Py_ssize_t
+        value: cython.double = self.coefficient[degree]
+        slope: cython.double = 0.0
+        for k in range(degree - 1, -1, -1):
+            slope = slope * t + value
+            value = value * t + self.coefficient[k]
+        self.slope_there = slope
+        return value
 
     def _peak_between(self, low, high):
         """Return the maximum in [low, high], where the derivative changes its sign once, from + to -."""
