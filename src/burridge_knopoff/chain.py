@@ -42,6 +42,14 @@ class Chain:
 
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction·1, shape (blocks,): uniform sliding is U_i = vτ + e_i under that friction."""
-        offset = np.linalg.solve(self.stiffness, np.full(self.blocks, -friction))
+        # Elimination along the tridiagonal matrix. LAPACK's last bit depends on where in memory its arguments lie, and
+        # with it would every number of a study that is run from another folder.
+        pivot = 2.0 * self.driving
+        load = np.ones(self.blocks)
+        for i in range(1, self.blocks):
+            pivot[i] -= 1.0 / pivot[i - 1]
+            load[i] += load[i - 1] / pivot[i - 1]
+        for i in range(self.blocks - 1, -1, -1):
+            load[i] = (load[i] + (load[i + 1] if i + 1 < self.blocks else 0.0)) / pivot[i]
         # Mirror-symmetric to the bit, as the chain is.
-        return 0.5 * (offset + offset[::-1])
+        return -0.5 * friction * (load + load[::-1])

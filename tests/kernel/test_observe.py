@@ -133,3 +133,21 @@ def test_mean_distance_has_a_closed_form_before_any_event():
 
         expected = mp.quad(lambda t: mp.sqrt(d(t) ** 2 + rate(t) ** 2), [0, 1, 2, 3]) / 3
     assert run.mean_distance == pytest.approx(float(expected), rel=3e-15)
+
+
+def test_the_quadrature_rule_is_numpys(tmp_path):
+    """Nodes and weights against NumPy's, and exactness for the highest degree that the rule integrates."""
+    from tests.kernel.pure import run_uncompiled
+
+    code = """
+import numpy as np
+from burridge_knopoff.kernel.distance import _gauss_legendre
+x, w, last, previous = (values.astype(float) for values in _gauss_legendre(16))
+node, weight = np.polynomial.legendre.leggauss(16)
+assert np.allclose(x, node, rtol=0, atol=3e-16) and np.allclose(w, weight, rtol=0, atol=1e-15)
+assert abs((w * x**30).sum() - 2 / 31) < 1e-16
+basis = np.polynomial.legendre.legvander(x, 15)
+assert np.allclose(last, basis[:, 15], rtol=0, atol=1e-14) and np.allclose(previous, basis[:, 14], rtol=0, atol=1e-14)
+print("ok")
+"""
+    assert run_uncompiled(tmp_path, code) == "ok\n"

@@ -27,6 +27,30 @@ NEGLIGIBLE = 1e-20
 THREE_POINT = 0.7745966692414834
 
 
+def _legendre(degree, x):
+    """Return the Legendre polynomials of this degree and of the two below it at x."""
+    before, below, here = np.zeros_like(x), np.ones_like(x), x
+    for n in range(2, degree + 1):
+        before, below, here = below, here, ((2 * n - 1) * x * here - (n - 1) * below) / n
+    return here, below, before
+
+
+def _gauss_legendre(nodes):
+    """Return nodes and weights on [-1, 1], and P_(nodes-1) and P_(nodes-2) at the nodes, all in long double.
+
+    By Newton's method, not from LAPACK's eigenvalues, whose last bit depends on where in memory their arguments lie.
+    """
+    x = -np.cos(np.pi * (np.arange(nodes, dtype=np.longdouble) + 0.75) / (nodes + 0.5))
+    for _iteration in range(6):
+        here, below, _ = _legendre(nodes, x)
+        slope = nodes * (below - x * here) / (1 - x * x)
+        x = x - here / slope
+    x = (x - x[::-1]) / 2
+    here, below, before = _legendre(nodes, x)
+    slope = nodes * (below - x * here) / (1 - x * x)
+    return x, 2 / ((1 - x * x) * slope * slope), below, before
+
+
 class Distance:
     """Polynomials of d and d' on the current piece and the quadrature rule for J."""
 
@@ -34,12 +58,11 @@ class Distance:
         self.degree = 0
         self.position = np.zeros(order + 1)
         self.velocity = np.zeros(order + 1)
-        node, weight = np.polynomial.legendre.leggauss(NODES)
-        self.node = node
-        self.weight = 0.5 * weight
-        basis = np.polynomial.legendre.legvander(node, NODES - 1)
-        self.last = (NODES - 0.5) * weight * basis[:, NODES - 1]
-        self.previous = (NODES - 1.5) * weight * basis[:, NODES - 2]
+        node, weight, last, previous = _gauss_legendre(NODES)
+        self.node = node.astype(float)
+        self.weight = (weight / 2).astype(float)
+        self.last = ((NODES - 0.5) * weight * last).astype(float)
+        self.previous = ((NODES - 1.5) * weight * previous).astype(float)
         self.position_at = np.zeros(NODES)
         self.velocity_at = np.zeros(NODES)
         self.time_at = np.zeros(NODES)
