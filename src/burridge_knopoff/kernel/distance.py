@@ -12,11 +12,6 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import sqrt
 
-if cython.compiled:
-    pass
-else:
-    pass
-
 NODES = 16
 MAXIMUM_DEPTH = 40
 RELATIVE_ERROR = 1e-15

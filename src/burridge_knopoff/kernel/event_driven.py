@@ -20,7 +20,7 @@ if cython.compiled:
     )
     from cython.cimports.burridge_knopoff.kernel.modes import Modes
     from cython.cimports.burridge_knopoff.kernel.piece import UNKNOWN, Piece
-    from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
+    from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
     from cython.cimports.burridge_knopoff.kernel.series import Series
     from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 else:
@@ -36,7 +36,7 @@ else:
     )
     from burridge_knopoff.kernel.modes import Modes
     from burridge_knopoff.kernel.piece import UNKNOWN, Piece
-    from burridge_knopoff.kernel.polynomial import evaluate
+    from burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
     from burridge_knopoff.kernel.series import Series
     from burridge_knopoff.kernel.state import YOUNG
 
@@ -147,8 +147,6 @@ class EventDriven:
     def _advance(self, t):
         """Move the state on by t along the piece."""
         i: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        slope: cython.double
         if not self.closed_form:
             self.piece.move(self.state, t)
         for i in range(self.state.blocks):
@@ -159,7 +157,4 @@ class EventDriven:
             self.state.age[i] += t
             if self.state.age[i] < YOUNG:
                 self.state.velocity[i] = evaluate(self.piece.velocity, i + 1, self.piece.degree, t)
-                slope = 0.0
-                for k in range(self.piece.degree, 0, -1):
-                    slope = slope * t + k * self.piece.velocity[k, i + 1]
-                self.state.acceleration[i] = slope
+                self.state.acceleration[i] = evaluate_slope(self.piece.velocity, i + 1, self.piece.degree, t)

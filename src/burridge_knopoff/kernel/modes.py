@@ -109,7 +109,6 @@ class Modes:
                 q = 0.0
                 rate = 0.0
                 push = 0.0
-                stuck = 0.0
                 left = 0.0
                 right = 0.0
                 # From both ends inward, each block added to its mirror image first: a mirrored state gives the same
@@ -193,9 +192,7 @@ class Modes:
         """Diagonalise the run's matrix, append eigenvalues and eigenvectors (as rows), and return their first row."""
         length = last - first + 1
         ends = (first == 0, last == self.blocks - 1)
-        stiffness = np.full(length, 4.0)
-        stiffness[0] -= 2.0 * ends[0]
-        stiffness[length - 1] -= 2.0 * (ends[1] and (length > 1 or not ends[0]))
+        stiffness = np.asarray(state.stiffness)[first : last + 1]
         # A run that only the right end closes is the mirror image of one that only the left end closes.
         mirrored = ends[1] and not ends[0]
         if mirrored:

@@ -67,6 +67,12 @@ class Observer:
             self._extreme(state, piece, TRANSIENT, 0.0, min(length, window))
         self._sample(piece, clock, clock_rest, length)
 
+    def _load_distance(self, piece, length):
+        """Load the distance of this piece, once, and only if something asks for it."""
+        if not self.loaded:
+            self.distance.load(piece, length)
+            self.loaded = True
+
     def _average(self, piece, clock, clock_rest, length):
         """Add the integral of J to the batches that the piece touches (compensated sums)."""
         start: cython.double = max(0.0, (self.edge[self.batch] - clock) - clock_rest)
@@ -78,9 +84,7 @@ class Observer:
             edge = (self.edge[self.batch + 1] - clock) - clock_rest
             stop = min(edge, length)
             if stop > start:
-                if not self.loaded:
-                    self.distance.load(piece, length)
-                    self.loaded = True
+                self._load_distance(piece, length)
                 term = self.distance.integral(start, stop)
                 total = self.batch_integral[self.batch] + term
                 self.batch_rest[self.batch] += (self.batch_integral[self.batch] - total) + term
@@ -98,9 +102,7 @@ class Observer:
             t = (self.distance_time[self.next_distance] - clock) - clock_rest
             if t > length:
                 break
-            if not self.loaded:
-                self.distance.load(piece, length)
-                self.loaded = True
+            self._load_distance(piece, length)
             self.distance_sample[self.next_distance] = self.distance.value(t)
             self.next_distance += 1
         while self.next_trajectory < self.trajectory_time.shape[0]:

@@ -13,6 +13,7 @@ cdef class Piece:
 
     cdef double[::1] highest
 
+    cdef void fill_force(self, State state, Py_ssize_t n) noexcept nogil
     cdef void move(self, State state, double t) noexcept nogil
     cdef void load_speed(self, State state, Py_ssize_t i, Polynomial polynomial) noexcept nogil
     cdef void load_gap(self, State state, Py_ssize_t i, int side, Polynomial polynomial) noexcept nogil

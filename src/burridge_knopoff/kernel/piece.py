@@ -6,11 +6,6 @@ Whatever a solver does, it hands its motion on in this form; events and observab
 import cython
 import numpy as np
 
-if cython.compiled:
-    pass
-else:
-    pass
-
 UNKNOWN = 1e300
 
 
@@ -31,6 +26,17 @@ class Piece:
         self.velocity = np.zeros((order + 1, blocks + 2))
         self.force = np.zeros((order + 1, blocks + 2))
         self.highest = np.full(blocks, UNKNOWN)
+
+    def fill_force(self, state, n):
+        """Fill row n of the spring forces from row n of the positions."""
+        i: cython.Py_ssize_t
+        for i in range(self.blocks):
+            self.force[n, i + 1] = (self.position[n, i] + self.position[n, i + 2]) - state.stiffness[i] * self.position[
+                n, i + 1
+            ]
+        if n == 0:
+            for i in range(self.blocks):
+                self.force[0, i + 1] += state.sliding_friction
 
     def move(self, state, t):
         """Set positions and velocities of the state to those at time t."""

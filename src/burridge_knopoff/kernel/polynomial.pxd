@@ -1,4 +1,5 @@
 cdef double evaluate(double[:, ::1] coefficient, Py_ssize_t column, Py_ssize_t degree, double t) noexcept nogil
+cdef double evaluate_slope(double[:, ::1] coefficient, Py_ssize_t column, Py_ssize_t degree, double t) noexcept nogil
 
 cdef class Polynomial:
     cdef readonly Py_ssize_t capacity

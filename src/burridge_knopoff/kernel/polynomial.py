@@ -13,6 +13,15 @@ def evaluate(coefficient, column, degree, t):
     return total
 
 
+def evaluate_slope(coefficient, column, degree, t):
+    """Return the derivative at t of the polynomial in one column of a table."""
+    k: cython.Py_ssize_t
+    total: cython.double = 0.0
+    for k in range(degree, 0, -1):
+        total = total * t + k * coefficient[k, column]
+    return total
+
+
 class Polynomial:
     """A polynomial Σ c_k t^k that callers fill and then search; `coefficient` has shape (capacity + 1,)."""
 

@@ -13,7 +13,6 @@ cdef class Series:
     cdef double step_power_previous
 
     cdef double expand(self, State state, Piece piece) noexcept nogil
-    cdef void _force(self, State state, Piece piece, Py_ssize_t n) noexcept nogil
     cdef void _start_friction(self, State state, Piece piece) noexcept nogil
     cdef void _nonlinear(self, State state, Piece piece, Py_ssize_t n) noexcept nogil
     cdef double _step(self, Piece piece) noexcept nogil

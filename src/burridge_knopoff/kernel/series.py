@@ -14,12 +14,6 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import pow as power
 
-if cython.compiled:
-    pass
-else:
-    pass
-
-ORDER = 24
 TRUNCATION = 1e-18
 SPLITTER = 134217729.0
 
@@ -56,16 +50,14 @@ class Series:
             if state.slip[i] != 0:
                 self.slipping[i] = 1.0
                 piece.velocity[1, i + 1] = state.slip_acceleration(i)
-        self._force(state, piece, 0)
-        for i in range(blocks):
-            piece.force[0, i + 1] += state.sliding_friction
+        piece.fill_force(state, 0)
         if state.nonlinear:
             self._start_friction(state, piece)
         for n in range(1, order):
             factor = self.reciprocal[n + 1]
             for i in range(blocks):
                 piece.position[n + 1, i + 1] = piece.velocity[n, i + 1] * factor
-            self._force(state, piece, n)
+            piece.fill_force(state, n)
             if state.nonlinear:
                 self._nonlinear(state, piece, n)
             else:
@@ -73,16 +65,8 @@ class Series:
                     piece.velocity[n + 1, i + 1] = (
                         self.slipping[i] * factor * (piece.force[n, i + 1] + a * piece.velocity[n, i + 1])
                     )
-        self._force(state, piece, order)
+        piece.fill_force(state, order)
         return self._step(piece)
-
-    def _force(self, state, piece, n):
-        """Fill row n of the spring forces from row n of the positions; the constant part of s is not in it."""
-        i: cython.Py_ssize_t
-        for i in range(state.blocks):
-            piece.force[n, i + 1] = (piece.position[n, i] + piece.position[n, i + 2]) - state.stiffness[
-                i
-            ] * piece.position[n, i + 1]
 
     def _start_friction(self, state, piece):
         """Set the constant and linear terms from which the series of the nonlinear friction grows."""

@@ -91,16 +91,14 @@ class State:
 
     def transition(self, i):
         """Let block i stop if it slips and start if it is stuck; return the kind of event: 0 stop, 1 start."""
+        self.velocity[i] = 0.0
+        self.acceleration[i] = 0.0
         if self.slip[i] != 0:
             self.slip[i] = 0
-            self.velocity[i] = 0.0
-            self.acceleration[i] = 0.0
             self.age[i] = LONG
             return 0
         force: cython.double = self.spring_force(i)
         self.slip[i] = 1 if force > 0.0 else -1
-        self.velocity[i] = 0.0
-        self.acceleration[i] = 0.0
         # A block that stopped beyond its threshold starts again with the acceleration that the excess gives it.
         if abs(force) - 1.0 <= AT_THRESHOLD * max(1.0, self.stiffness[i] * abs(self.position[i])):
             self.touching[i] = 1
@@ -110,7 +108,7 @@ class State:
     def pending(self, i):
         """Tell whether block i changes at this very instant: it is past its threshold, or within COINCIDENCE of it."""
         gap: cython.double
-        rate: cython.double
+        side: cython.int
         direction: cython.int = self.slip[i]
         if direction != 0:
             if self.touching[i]:
@@ -121,17 +119,10 @@ class State:
             return gap <= COINCIDENCE and gap < -COINCIDENCE * direction * self.slip_acceleration(i)
         if self.touching[i]:
             return False
-        gap = 1.0 - self.spring_force(i)
-        if gap < 0.0:
-            return True
-        if gap <= COINCIDENCE * self.stiffness[i]:
-            rate = self.force_rate(i)
-            if gap < COINCIDENCE * rate:
-                return True
-        if self.symmetric:
-            gap = 1.0 + self.spring_force(i)
+        for side in range(1, -2 * self.symmetric, -2):
+            gap = 1.0 - side * self.spring_force(i)
             if gap < 0.0:
                 return True
-            if gap <= COINCIDENCE * self.stiffness[i]:
-                return gap < -COINCIDENCE * self.force_rate(i)
+            if gap <= COINCIDENCE * self.stiffness[i] and gap < COINCIDENCE * side * self.force_rate(i):
+                return True
         return False

@@ -139,9 +139,4 @@ class TimeStepping:
                 step * step
             )
         for k in range(CUBIC + 1):
-            for i in range(n):
-                self.piece.force[k, i + 1] = (
-                    self.piece.position[k, i] + self.piece.position[k, i + 2]
-                ) - self.state.stiffness[i] * self.piece.position[k, i + 1]
-        for i in range(n):
-            self.piece.force[0, i + 1] += self.state.sliding_friction
+            self.piece.fill_force(self.state, k)
