@@ -1,5 +1,5 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
-# `make benchmark`: the tables of docs/performance.md (about half an hour).
+# `make benchmark`: the tables of docs/performance.md (about ten minutes).
 
 PYTHON ?= python3
 BIN := .venv/bin
