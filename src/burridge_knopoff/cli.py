@@ -102,6 +102,15 @@ def build_parser() -> argparse.ArgumentParser:
     run.add_argument("--transient", type=float, default=3000.0, help="time before the window (default: %(default)s)")
     run.add_argument("--window", type=float, default=7000.0, help="averaging time of J (default: %(default)s)")
     run.add_argument("--batches", type=int, default=7, help="batches for the error of <J> (default: %(default)s)")
+    run.add_argument(
+        "--lyapunov-exponents", type=int, default=3, help="Lyapunov exponents, largest first (default: %(default)s)"
+    )
+    run.add_argument(
+        "--lyapunov-alignment",
+        type=float,
+        default=1000.0,
+        help="time before the window in which their directions settle (default: %(default)s)",
+    )
     kept = simulate.add_argument_group("what is kept")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
     kept.add_argument("--sampling", type=float, default=5.0, help="interval of the samples of J (default: %(default)s)")

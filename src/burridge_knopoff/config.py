@@ -32,6 +32,8 @@ RUN_KEYS = (
     "trajectory_sampling",
     "events",
     "event_window",
+    "lyapunov_exponents",
+    "lyapunov_alignment",
 )
 
 
@@ -176,9 +178,10 @@ def _check_runs(config: Mapping[str, Any], file: str) -> None:
     """Let the settings of the runs be checked by the code that will run them."""
     from burridge_knopoff.simulation import Settings
 
+    blocks = len(next(iter(config["initial"].values()))["position"])
     for solver in config["solver"].values():
         try:
-            Settings(solver=solver, step=config["step"], **{key: config[key] for key in RUN_KEYS})
+            Settings(solver=solver, step=config["step"], **{key: config[key] for key in RUN_KEYS}).check_blocks(blocks)
         except ValueError as error:
             raise ConfigError(f"{file}: {error}") from error
 

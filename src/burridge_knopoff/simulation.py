@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.chain import Chain
+from burridge_knopoff.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import CONTACTS, STARTS, InitialState, initial_state
 from burridge_knopoff.kernel.event_driven import EventDriven
 from burridge_knopoff.kernel.events import EventLog
+from burridge_knopoff.kernel.exponents import Exponents
 from burridge_knopoff.kernel.observe import Observer
 from burridge_knopoff.kernel.state import State
 from burridge_knopoff.kernel.time_stepping import TimeStepping
@@ -50,6 +51,8 @@ class Settings:
     trajectory, trajectory_sampling : length and interval of the last part of the run kept as positions and velocities
     events : which events are kept: window (all of them, those of the last event_window time units of the window with
         the states of all blocks), all (the whole run with states) or none
+    lyapunov_exponents : how many Lyapunov exponents are computed, the largest first; NaN under rk4
+    lyapunov_alignment : time before the window from which the perturbations turn into their directions
 
     Raises ValueError, one line, for anything out of range.
     """
@@ -67,6 +70,8 @@ class Settings:
     trajectory_sampling: float = 0.05
     events: str = "window"
     event_window: float = 1500.0
+    lyapunov_exponents: int = 3
+    lyapunov_alignment: float = 1000.0
 
     def __post_init__(self) -> None:
         for key, allowed in (("contact", CONTACTS), ("start", STARTS), ("events", EVENTS)):
@@ -79,17 +84,27 @@ class Settings:
         _check_range("transient", self.transient, 0.0, 1e9)
         _check_range("window", self.window, 1e-3, 1e9)
         _check_range("event_window", self.event_window, 0.0, 1e9)
+        _check_range("lyapunov_alignment", self.lyapunov_alignment, 0.0, 1e9)
         _check_range("sampling", self.sampling, 1e-6, 1e9)
         _check_range("trajectory", self.trajectory, 0.0, 1e9)
         _check_range("trajectory_sampling", self.trajectory_sampling, 1e-6, 1e9)
-        if isinstance(self.batches, bool) or not isinstance(self.batches, int) or not 2 <= self.batches <= 10_000:
-            raise ValueError(f"batches: {self.batches!r} is not allowed: 2 to 10000")
+        for key, low, high in (("batches", 2, 10_000), ("lyapunov_exponents", 0, 2 * MAXIMUM_BLOCKS)):
+            count = getattr(self, key)
+            if isinstance(count, bool) or not isinstance(count, int) or not low <= count <= high:
+                raise ValueError(f"{key}: {count!r} is not allowed: {low} to {high}")
         for key, samples in (
             ("sampling", (self.transient + self.window) / self.sampling),
             ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
         ):
             if samples > 1e7:
                 raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: it asks for more than 1e7 samples")
+
+    def check_blocks(self, blocks: int) -> None:
+        """Raise ValueError if the settings do not fit a chain of that many blocks."""
+        if self.lyapunov_exponents > 2 * blocks:
+            raise ValueError(
+                f"lyapunov_exponents: {self.lyapunov_exponents!r} is not allowed: at most {2 * blocks}, two a block"
+            )
 
     @property
     def duration(self) -> float:
@@ -140,6 +155,10 @@ class Trajectory:
     least_spring_force: float = math.nan
     window_least_friction: float = math.nan
     window_least_spring_force: float = math.nan
+    lyapunov_exponent: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
+    lyapunov_error: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
+    batch_lyapunov_exponent: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
+    lyapunov_infinite_count: int = -1
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""
@@ -184,6 +203,7 @@ def run(chain: Chain, friction: Friction, initial: InitialState, settings: Setti
     solver = settings.solver or DEFAULT_SOLVER[friction.law]
     if solver == "map" and friction.law == "nonlinear":
         raise ValueError("solver: 'map' is not allowed for law nonlinear: it has no closed form; series | rk4")
+    settings.check_blocks(chain.blocks)
     solution = _prepare(chain, friction, initial, settings, solver)
     # Each call makes a limited number of steps, so that a long run can be interrupted from the keyboard.
     while (code := solution.run()) == RUNNING:
@@ -192,21 +212,27 @@ def run(chain: Chain, friction: Friction, initial: InitialState, settings: Setti
     return _collect(chain, friction, initial, settings, solution, status)
 
 
+def new_state(chain: Chain, friction: Friction, v: float, contact: str) -> State:
+    """Return the kernel's state of a chain under a friction law, with nothing in it yet."""
+    return State(
+        2.0 * chain.driving, friction.a, v, float(friction(v)), friction.law == "nonlinear", contact == "symmetric"
+    )
+
+
+def starts_stuck(chain: Chain, initial: InitialState, start: str) -> np.ndarray:
+    """Return which blocks stick at τ = 0 under the convention of start, shape (blocks,)."""
+    # Spring forces from U itself: in co-moving coordinates rounding could move a block across its threshold.
+    return (start == "tested") & (-chain.stiffness @ np.array(initial.position) <= 1.0)
+
+
 def _prepare(
     chain: Chain, friction: Friction, initial: InitialState, settings: Settings, solver: str
 ) -> EventDriven | TimeStepping:
-    sliding_friction = float(friction(settings.v))
-    state = State(
-        2.0 * chain.driving,
-        friction.a,
-        settings.v,
-        sliding_friction,
-        friction.law == "nonlinear",
-        settings.contact == "symmetric",
+    state = new_state(chain, friction, settings.v, settings.contact)
+    offset = chain.sliding_offset(float(friction(settings.v)))
+    state.begin(
+        np.array(initial.position) - offset, np.array(initial.velocity), starts_stuck(chain, initial, settings.start)
     )
-    # Spring forces from U itself: in co-moving coordinates rounding could move a block across its threshold.
-    stuck = (settings.start == "tested") & (-chain.stiffness @ np.array(initial.position) <= 1.0)
-    state.begin(np.array(initial.position) - chain.sliding_offset(sliding_friction), np.array(initial.velocity), stuck)
     duration = settings.duration
     edge = settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
     edge[-1] = duration
@@ -230,7 +256,14 @@ def _prepare(
     )
     if solver == "rk4":
         return TimeStepping(state, log, observer, settings.step)
-    return EventDriven(state, log, observer, order, solver == "map", STEP_LIMIT)
+    exponents = Exponents(
+        chain.blocks,
+        settings.lyapunov_exponents,
+        order,
+        max(0.0, settings.transient - settings.lyapunov_alignment),
+        edge,
+    )
+    return EventDriven(state, log, observer, exponents, order, solver == "map", STEP_LIMIT)
 
 
 def _collect(
@@ -250,6 +283,7 @@ def _collect(
     completed = status == "completed"
     if not completed:
         batch[:] = math.nan
+    lyapunov = _exponents(solution, settings.lyapunov_exponents, completed)
     speed = measured["highest_speed"]
     force = measured["lowest_force"]
     least_friction = [float(friction(value)) if value > -1e299 else math.nan for value in (speed.max(), speed[1])]
@@ -286,4 +320,30 @@ def _collect(
         least_spring_force=least_force[0],
         window_least_friction=least_friction[1],
         window_least_spring_force=least_force[1],
+        **lyapunov,
     )
+
+
+def _exponents(solution: EventDriven | TimeStepping, count: int, completed: bool) -> dict[str, Any]:
+    """Return the Lyapunov exponents, their errors from the batches and their batch values; NaN where there are none."""
+    batches = solution.observer.batches
+    batch = np.full((batches, count), np.nan)
+    mean = np.full(count, np.nan)
+    error = np.full(count, np.nan)
+    infinite = -1
+    if completed and count and isinstance(solution, EventDriven):
+        measured = solution.exponents.results()
+        growth, duration = measured["growth"], measured["duration"]
+        infinite = measured["most_stuck"]
+        filled = duration > 0.0
+        batch[filled] = growth[filled] / duration[filled, None]
+        mean = growth.sum(axis=0) / duration.sum() if filled.any() else mean
+        if filled.all():
+            finite = np.isfinite(mean)
+            error[finite] = batch[:, finite].std(axis=0, ddof=1) / math.sqrt(batches)
+    return {
+        "lyapunov_exponent": mean,
+        "lyapunov_error": error,
+        "batch_lyapunov_exponent": batch,
+        "lyapunov_infinite_count": infinite,
+    }

@@ -14,6 +14,7 @@ if cython.compiled:
         ACCUMULATING_EVENTS,
         COMPLETED,
         DIVERGED,
+        HALTED,
         RUNNING,
         STEP_LIMIT,
         STEPS_PER_CALL,
@@ -30,6 +31,7 @@ else:
         ACCUMULATING_EVENTS,
         COMPLETED,
         DIVERGED,
+        HALTED,
         RUNNING,
         STEP_LIMIT,
         STEPS_PER_CALL,
@@ -41,27 +43,57 @@ else:
     from burridge_knopoff.kernel.state import YOUNG
 
 
-class EventDriven:
-    """One run of a solver that goes from event to event; `run` returns its status."""
+# Without events, perturbations are still to be looked after now and then.
+LONGEST_FOLLOW = 4.0
 
-    def __init__(self, state, log, observer, order: int, closed_form: bool, step_limit: int) -> None:
+
+class EventDriven:
+    """One run of a solver that goes from event to event; `run` returns its status.
+
+    exponents : the perturbations that are propagated beside the run; Exponents with no vectors for none
+    """
+
+    def __init__(self, state, log, observer, exponents, order: int, closed_form: bool, step_limit: int) -> None:
         self.state = state
         self.log = log
         self.observer = observer
+        self.observing = True
+        self.exponents = exponents
+        self.tangent = exponents.tangent
+        self.since_tangent = 0.0
+        self.halting_block = -1
+        self.end = observer.end
+        log.carry(exponents.tangent)
         self.series = Series(state.blocks, order)
         self.piece = Piece(state.blocks, order)
         self.polynomial = SearchedPolynomial(order)
         self.modes = Modes(state.blocks)
         self.closed_form = closed_form
+        # The modes of the slipping blocks carry the perturbations of the linearized law, whatever the solver.
+        self.needs_modes = closed_form or (self.tangent.vectors > 0 and not state.nonlinear)
+        self.step_limit = step_limit
+        self.event_time = 0.0
+        self.restart()
+
+    def begin(self, position, velocity, stuck) -> None:
+        """Begin again at τ = 0 from these positions x_i, velocities U_i' and stuck blocks."""
+        self.state.begin(position, velocity, stuck)
+        self.restart()
+
+    def restart(self):
+        """Begin again at τ = 0 from what is now the state."""
         self.clock = 0.0
         self.clock_rest = 0.0
         self.steps = 0
-        self.step_limit = step_limit
-        self.event_time = 0.0
         self.since_event = 0.0
+        self.since_tangent = 0.0
+        self.log.restart()
 
     def run(self) -> int:
-        """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended."""
+        """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended.
+
+        HALTED means that the block to halt at has just stopped; the next call goes on from there.
+        """
         status: cython.int
         with cython.nogil:
             status = self._run()
@@ -69,13 +101,15 @@ class EventDriven:
 
     def _run(self):
         block: cython.Py_ssize_t
+        halting: cython.bint
         length: cython.double
+        reach: cython.double
         remaining: cython.double
         total: cython.double
         budget: cython.int = STEPS_PER_CALL
         if self.steps == 0:
             self.log.settle(self.state, self.clock)
-            if self.closed_form:
+            if self.needs_modes:
                 self.modes.start(self.state)
         while budget > 0:
             budget -= 1
@@ -83,16 +117,19 @@ class EventDriven:
                 return ACCUMULATING_EVENTS
             if self.steps >= self.step_limit:
                 return STEP_LIMIT
-            remaining = (self.observer.end - self.clock) - self.clock_rest
-            length = self.series.expand(self.state, self.piece)
+            remaining = (self.end - self.clock) - self.clock_rest
+            reach = self.series.expand(self.state, self.piece)
             self.steps += 1
-            if not length > 0.0 or not self._fastest() < ABSURD_SPEED:
+            if not reach > 0.0 or not self._fastest() < ABSURD_SPEED:
                 return DIVERGED
-            length = min(length, remaining)
+            length = min(reach, remaining)
             block = self._first_event(length)
             if block >= 0:
                 length = self.event_time
-            self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
+            if self.observing:
+                self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
+            if self.exponents.running:
+                self._follow(length, reach, block >= 0 or length >= remaining)
             self.since_event += length
             self._advance(length)
             if self.closed_form:
@@ -100,15 +137,30 @@ class EventDriven:
             total = self.clock + (self.clock_rest + length)
             self.clock_rest = (self.clock - total) + (self.clock_rest + length)
             self.clock = total
+            halting = False
             if block >= 0:
+                halting = self.halting_block >= 0 and self.state.slip[self.halting_block] != 0
                 self.log.change(self.state, block, self.clock)
                 self.log.settle(self.state, self.clock)
                 self.since_event = 0.0
-                if self.closed_form:
+                if self.needs_modes:
                     self.modes.start(self.state)
+            if self.tangent.vectors > 0:
+                self.exponents.follow(self.state, self.clock, length >= remaining)
             if length >= remaining:
                 return COMPLETED
+            if halting and self.state.slip[self.halting_block] == 0:
+                return HALTED
         return RUNNING
+
+    def _follow(self, length, reach, due):
+        """Carry the perturbations along a piece; those of the linearized law along all pieces since the last event."""
+        self.since_tangent += length
+        if self.state.nonlinear:
+            self.tangent.follow_series(self.state, self.piece, self.series, length, reach)
+        elif due or self.since_tangent >= LONGEST_FOLLOW:
+            self.tangent.follow_modes(self.state, self.modes, self.since_tangent)
+            self.since_tangent = 0.0
 
     def _fastest(self):
         """Return the largest speed of a block."""

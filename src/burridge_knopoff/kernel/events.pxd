@@ -1,6 +1,8 @@
 from burridge_knopoff.kernel.record cimport Record
 from burridge_knopoff.kernel.state cimport State
+from burridge_knopoff.kernel.tangent cimport Tangent
 
+cdef int HALTED
 cdef int RUNNING
 cdef int COMPLETED
 cdef int STEP_LIMIT
@@ -19,6 +21,8 @@ cdef class EventLog:
     cdef long long unit_count
     cdef readonly long long rate_limit
     cdef readonly bint accumulating
+    cdef Tangent tangent
 
+    cdef void restart(self) noexcept nogil
     cdef void change(self, State state, Py_ssize_t block, double clock) noexcept nogil
     cdef void settle(self, State state, double clock) noexcept nogil

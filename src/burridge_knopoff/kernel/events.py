@@ -4,9 +4,12 @@ import cython
 
 if cython.compiled:
     from cython.cimports.burridge_knopoff.kernel.record import Record
+    from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 else:
     from burridge_knopoff.kernel.record import Record
+    from burridge_knopoff.kernel.tangent import Tangent
 
+HALTED = -2
 RUNNING = -1
 COMPLETED = 0
 STEP_LIMIT = 1
@@ -37,12 +40,27 @@ class EventLog:
         self.unit_count = 0
         self.rate_limit = rate_limit
         self.accumulating = False
+        self.tangent = Tangent(blocks, 0, 1)
+
+    def carry(self, tangent) -> None:
+        """Let perturbations go through every change as well."""
+        self.tangent = tangent
+
+    def restart(self):
+        """Count from 0 again; what is kept stays."""
+        self.count = 0
+        self.unit_start = 0.0
+        self.unit_count = 0
+        self.accumulating = False
 
     def change(self, state, block, clock):
         """Let a block stop or start now, and keep the event."""
         i: cython.Py_ssize_t
         row: cython.Py_ssize_t
-        kind: cython.int = state.transition(block)
+        kind: cython.int
+        if self.tangent.vectors > 0:
+            self.tangent.change(state, block)
+        kind = state.transition(block)
         self.count += 1
         if clock >= self.unit_start + 1.0:
             self.unit_start = clock

@@ -18,7 +18,7 @@ cdef class Observer:
     cdef double[::1] batch_integral
     cdef double[::1] batch_rest
     cdef Py_ssize_t batch
-    cdef Py_ssize_t batches
+    cdef readonly Py_ssize_t batches
     cdef readonly double[::1] distance_time
     cdef double[::1] distance_sample
     cdef Py_ssize_t next_distance

@@ -18,6 +18,7 @@ cdef class State:
     cdef int[::1] slip
     cdef int[::1] touching
 
+    cdef void place(self, double[::1] position, double[::1] velocity, int[::1] stuck) noexcept nogil
     cdef double spring_force(self, Py_ssize_t i) noexcept nogil
     cdef double force_rate(self, Py_ssize_t i) noexcept nogil
     cdef double friction(self, double speed) noexcept nogil

@@ -49,11 +49,26 @@ class State:
 
     def begin(self, position, velocity, stuck) -> None:
         """Set the state at τ = 0: positions x_i, velocities U_i', and which blocks are stuck with velocity 0."""
+        self.place(
+            np.array(position, dtype=float),
+            np.array(velocity, dtype=float),
+            np.array(stuck, dtype=bool).astype(np.intc),
+        )
+
+    def place(self, position, velocity, stuck):
+        """Do the work of `begin` in compiled code."""
         i: cython.Py_ssize_t
         for i in range(self.blocks):
             self.position[i] = position[i]
             self.velocity[i] = 0.0 if stuck[i] else velocity[i]
             self.slip[i] = 0 if stuck[i] else (-1 if velocity[i] < 0.0 else 1)
+            self.acceleration[i] = 0.0
+            self.age[i] = LONG
+            self.touching[i] = 0
+
+    def values(self) -> tuple:
+        """Return copies of positions x_i, velocities U_i' and slip directions, each of shape (blocks,)."""
+        return np.array(self.position), np.array(self.velocity), np.array(self.slip)
 
     def spring_force(self, i):
         """Return s_i."""

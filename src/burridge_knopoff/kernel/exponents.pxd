@@ -1,0 +1,25 @@
+from burridge_knopoff.kernel.state cimport State
+from burridge_knopoff.kernel.tangent cimport Tangent
+
+cdef double INTERVAL
+cdef double NEVER
+
+cdef class Exponents:
+    cdef readonly Tangent tangent
+    cdef double begin
+    cdef double[::1] edge
+    cdef readonly bint running
+    cdef readonly Py_ssize_t alive
+    cdef readonly Py_ssize_t most_stuck
+    cdef double due
+    cdef Py_ssize_t batch
+    cdef Py_ssize_t batches
+    cdef double batch_begin
+    cdef double[:, ::1] growth
+    cdef double[::1] duration
+
+    cdef void follow(self, State state, double clock, bint completed) noexcept nogil
+    cdef Py_ssize_t _stuck(self, State state) noexcept nogil
+    cdef void _seed(self, State state, Py_ssize_t first) noexcept nogil
+    cdef void _orthonormalise(self, bint counted) noexcept nogil
+    cdef void _renew(self, State state, double clock, bint completed) noexcept nogil

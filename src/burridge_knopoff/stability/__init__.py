@@ -1,0 +1,1 @@
+"""Why chains synchronize: orbits and their multipliers, attractors, their basins, longer chains."""

@@ -1,0 +1,37 @@
+"""Initial states drawn at random from a stated box, with a fixed seed, and what fractions of them say."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import binomtest
+
+CONFIDENCE = 0.95
+
+
+def sample_states(
+    blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return `count` initial states, U(0) and U'(0), each of shape (count, blocks), uniform in a box.
+
+    position, velocity : (low, high) of every U_i(0) and every U_i'(0)
+    The first states of a longer sample are those of a shorter one.
+    """
+    generator = np.random.default_rng([seed, blocks])
+    unit = generator.random((count, 2, blocks))
+    low = np.array([position[0], velocity[0]])[:, None]
+    high = np.array([position[1], velocity[1]])[:, None]
+    states = low + (high - low) * unit
+    return states[:, 0], states[:, 1]
+
+
+def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
+    """Return the fraction hits/count and its Wilson confidence interval (low, high); NaN for no trials.
+
+    Reference: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209-212.
+    """
+    if count == 0:
+        return np.nan, np.nan, np.nan
+    interval = binomtest(hits, count).proportion_ci(CONFIDENCE, method="wilson")
+    return hits / count, float(interval.low), float(interval.high)
