@@ -22,12 +22,18 @@ POINT_SOURCES = (
     *(f"kernel/{path.name}" for path in sorted((PACKAGE / "kernel").glob("*.p*")) if path.suffix in (".py", ".pxd")),
 )
 
+#: The files whose text decides what is computed without point files: orbits, attractors, basins, longer chains.
+STABILITY_SOURCES = (
+    *POINT_SOURCES,
+    *(f"stability/{path.name}" for path in sorted((PACKAGE / "stability").glob("*.py"))),
+)
+
 
 @cache
-def source_fingerprint() -> str:
-    """Return the first 16 hexadecimal digits of the SHA-256 of the point sources."""
+def source_fingerprint(names: tuple[str, ...] = POINT_SOURCES) -> str:
+    """Return the first 16 hexadecimal digits of the SHA-256 of these sources."""
     digest = hashlib.sha256()
-    for name in POINT_SOURCES:
+    for name in names:
         digest.update(name.encode())
         digest.update((PACKAGE / name).read_bytes())
     return digest.hexdigest()[:16]
