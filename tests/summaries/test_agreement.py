@@ -7,10 +7,21 @@ import pytest
 
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.simulation import simulate
-from burridge_knopoff.summaries import agreement, mean_distance
+from burridge_knopoff.summaries import agreement, lyapunov, mean_distance
 from burridge_knopoff.summaries.points import Grid, PointError
 
-SETTINGS = {"relative_tolerance": 0.1, "standard_errors": 3.0, "period_tolerance": 1e-6, "longest_period": 60}
+SETTINGS = {"relative_tolerance": 0.1, "standard_errors": 3.0}
+MOTION = {
+    "zero_exponent": 5e-4,
+    "chaotic_exponent": 1e-3,
+    "standard_errors": 3.0,
+    "period_tolerance": 1e-6,
+    "longest_period": 60,
+}
+
+
+def compare(grid):
+    return agreement.summarize(grid, lyapunov.summarize(grid, 3, 1e-6, MOTION), 1e-6, SETTINGS)
 
 
 def grid_of(folder, change=lambda law, trajectory: trajectory):
@@ -23,7 +34,7 @@ def grid_of(folder, change=lambda law, trajectory: trajectory):
 
 
 def test_two_synchronized_laws_agree(tmp_path):
-    dataset = agreement.summarize(grid_of(tmp_path), 1e-6, SETTINGS)
+    dataset = compare(grid_of(tmp_path))
     assert (dataset["agrees"] == 1).all()
     assert (dataset["kind"] == 0).all()
     assert np.isnan(dataset["parting_a"].item())
@@ -36,7 +47,7 @@ def test_altered_data_changes_the_verdict(tmp_path):
             return dataclasses.replace(trajectory, mean_distance=0.2)
         return trajectory
 
-    dataset = agreement.summarize(grid_of(tmp_path, change), 1e-6, SETTINGS)
+    dataset = compare(grid_of(tmp_path, change))
     assert dataset["agrees"].values.tolist() == [[1, 0]]
     assert dataset["parting_a"].item() == 0.08
     assert "agree up to a = 0.05 and part at a = 0.08" in agreement.digest(dataset)
@@ -49,11 +60,11 @@ def test_a_run_without_result_agrees_with_nothing(tmp_path):
         return trajectory
 
     grid = grid_of(tmp_path, change)
-    dataset = agreement.summarize(grid, 1e-6, SETTINGS)
+    dataset = compare(grid)
     assert (dataset["agrees"] == -1).all()
     assert (dataset["same_kind"] == -1).all()
     assert np.isnan(dataset["parting_a"].item())
-    assert "2 values of a are undetermined: a run did not complete." in agreement.digest(dataset)
+    assert "2 values of a are undetermined: a run did not complete," in agreement.digest(dataset)
     assert agreement.table(dataset).count("undetermined") == 4
     assert (dataset["kind"].sel(law="linearized") == -1).all()
     means = mean_distance.summarize(grid, 1e-6)

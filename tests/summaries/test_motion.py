@@ -1,14 +1,14 @@
-"""Periods of section points and common event orders."""
+"""Periods of section points and kinds of motion."""
 
 import numpy as np
 import pytest
 
 from burridge_knopoff.summaries.motion import (
-    APERIODIC,
+    CHAOTIC,
     PERIODIC,
+    QUASIPERIODIC,
     SYNCHRONIZED,
     UNDETERMINED,
-    common_order,
     motion_kind,
     section_period,
 )
@@ -38,35 +38,31 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
     assert section_period(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
 
 
-def test_kinds():
-    assert motion_kind(False, np.nan, 1e-6, 0) == UNDETERMINED
-    assert motion_kind(True, 1e-9, 1e-6, 1) == SYNCHRONIZED
-    assert motion_kind(True, 0.1, 1e-6, 3) == PERIODIC
-    assert motion_kind(True, 0.1, 1e-6, 0) == APERIODIC
+MOTION = {"zero_exponent": 5e-4, "chaotic_exponent": 1e-3, "standard_errors": 3.0}
 
 
-def sequence(time, block, kind):
-    return np.array(time, float), np.array(block), np.array(kind)
-
-
-def test_common_order():
-    first = sequence([1, 2, 3, 4], [1, 2, 3, 1], [0, 0, 1, 1])
-    assert common_order(first, first) == (4, np.inf)
-    second = sequence([1.1, 2.1, 2.9, 3.0], [1, 2, 2, 1], [0, 0, 1, 1])
-    assert common_order(first, second) == (2, 2.9)
-    # One run goes on where the other has no more events.
-    assert common_order(first, sequence([1, 2], [1, 2], [0, 0])) == (2, 3.0)
-    assert common_order(sequence([], [], []), sequence([], [], [])) == (0, np.inf)
-    # The kind counts, not the block alone.
-    assert common_order(first, sequence([1, 2], [1, 2], [0, 1])) == (1, 2.0)
-
-
-def test_simultaneous_events_may_come_in_either_order():
-    first = sequence([1, 2, 2 + 1e-13, 4], [2, 1, 3, 2], [0, 0, 0, 1])
-    swapped = sequence([1, 2, 2 + 1e-13, 4], [2, 3, 1, 2], [0, 0, 0, 1])
-    assert common_order(first, swapped) == (4, np.inf)
-    apart = sequence([1, 2, 2.1, 4], [2, 3, 1, 2], [0, 0, 0, 1])
-    far = sequence([1, 2, 2.1, 4], [2, 1, 3, 2], [0, 0, 0, 1])
-    assert common_order(far, apart) == (1, 2.0)
-    rotated = [sequence([1, 1, 1, 2], blocks, [0, 0, 0, 1]) for blocks in ([1, 2, 3, 1], [3, 1, 2, 1])]
-    assert common_order(*rotated) == (4, np.inf)
+@pytest.mark.parametrize(
+    ("mean_distance", "period", "exponents", "error", "kind"),
+    [
+        (1e-9, 1, (0.0, -0.01), 1e-5, SYNCHRONIZED),
+        (0.1, 3, (1e-4, -1e-4), 1e-5, PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 1e-5, PERIODIC),
+        (0.1, 0, (1e-4, -1e-4), 1e-5, QUASIPERIODIC),
+        (0.1, 0, (1e-4, -0.01), 1e-2, QUASIPERIODIC),
+        (0.1, 0, (0.02, 0.0), 1e-3, CHAOTIC),
+        (1e-9, 0, (0.02, 0.0), 1e-3, CHAOTIC),
+        # Above the threshold but not above its error, or the other way round: no chaos.
+        (0.1, 0, (2e-3, -0.01), 1e-3, PERIODIC),
+        (0.1, 0, (9e-4, -0.01), 1e-5, UNDETERMINED),
+        (0.1, 0, (-0.01, -0.02), 1e-5, UNDETERMINED),
+        # Without exponents only a repetition of the section points says something.
+        (0.1, 5, (), 1e-5, PERIODIC),
+        (0.1, 0, (), 1e-5, UNDETERMINED),
+        (0.1, 0, (np.nan, np.nan), np.nan, UNDETERMINED),
+        (1e-9, 1, (np.nan, np.nan), np.nan, SYNCHRONIZED),
+        (0.1, 0, (0.0,), 1e-5, UNDETERMINED),
+    ],
+)
+def test_kinds(mean_distance, period, exponents, error, kind):
+    errors = np.full(len(exponents), error)
+    assert motion_kind(mean_distance, 1e-6, period, np.array(exponents), errors, MOTION) == kind

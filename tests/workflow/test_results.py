@@ -60,6 +60,15 @@ def test_bifurcation_summary(results):
             assert set(a) <= set(GRID)
 
 
+def test_lyapunov_summary(results):
+    with xr.open_dataset(results / "summary" / "lyapunov.nc") as summary:
+        run = simulate("nonlinear", 0.22, "plus", **OPTIONS)
+        point = summary.sel(law="nonlinear", initial="plus", a=0.22)
+        assert point["lyapunov_exponent"].values.tolist() == run.lyapunov_exponent.tolist()
+        assert point["lyapunov_error"].values.tolist() == run.lyapunov_error.tolist()
+        assert point["lyapunov_infinite_count"].item() == run.lyapunov_infinite_count > 0
+
+
 def test_agreement_summary(results):
     with xr.open_dataset(results / "summary" / "agreement.nc") as agreement:
         pair = [simulate(law, 0.2, "plus", **OPTIONS) for law in ("linearized", "nonlinear")]
@@ -81,7 +90,17 @@ def test_agreement_summary(results):
 
 
 @pytest.mark.parametrize(
-    "name", ["friction_laws", "mean_distance", "bifurcation", "distance", "motion_minus", "motion_plus", "agreement"]
+    "name",
+    [
+        "friction_laws",
+        "mean_distance",
+        "bifurcation",
+        "distance",
+        "motion_minus",
+        "motion_plus",
+        "agreement",
+        "lyapunov",
+    ],
 )
 def test_figures_are_pictures(results, name):
     picture = imread(results / "figures" / f"{name}.png")

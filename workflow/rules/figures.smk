@@ -19,6 +19,7 @@ rule figures:
                 "mean_distance",
                 "bifurcation",
                 "distance",
+                "lyapunov",
                 "agreement",
                 *(f"motion_{initial}" for initial in STUDY.initial),
             ],
@@ -100,6 +101,21 @@ rule figure_motion:
         "figure: velocities and positions, initial state {wildcards.initial}"
     script:
         "../scripts/figure_motion.py"
+
+
+rule figure_lyapunov:
+    input:
+        rules.lyapunov.output,
+    output:
+        multiext(f"{FIGURES}/lyapunov", ".pdf", ".png"),
+    log:
+        f"{RESULTS}/logs/figure_lyapunov.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_lyapunov.tsv"
+    message:
+        "figure: Lyapunov exponents against a"
+    script:
+        "../scripts/figure_lyapunov.py"
 
 
 rule figure_agreement:

@@ -7,6 +7,7 @@ rule summary:
     input:
         f"{SUMMARY}/mean_distance.nc",
         f"{SUMMARY}/bifurcation.nc",
+        f"{SUMMARY}/lyapunov.nc",
         f"{SUMMARY}/agreement.nc",
         f"{SUMMARY}/agreement.csv",
         f"{SUMMARY}/agreement.txt",
@@ -55,9 +56,34 @@ rule bifurcation:
         "../scripts/bifurcation.py"
 
 
-rule agreement:
+rule lyapunov:
     input:
         rules.points.input,
+    output:
+        f"{SUMMARY}/lyapunov.nc",
+    log:
+        f"{RESULTS}/logs/lyapunov.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/lyapunov.tsv"
+    resources:
+        mem_mb=400,
+        runtime=30,
+    params:
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+        exponents=STUDY.config["lyapunov_exponents"],
+        threshold=STUDY.config["synchronization_threshold"],
+        motion=STUDY.config["motion"],
+    message:
+        "Lyapunov exponents and kinds of motion"
+    script:
+        "../scripts/lyapunov.py"
+
+
+rule agreement:
+    input:
+        points=rules.points.input,
+        lyapunov=rules.lyapunov.output,
     output:
         dataset=f"{SUMMARY}/agreement.nc",
         table=f"{SUMMARY}/agreement.csv",

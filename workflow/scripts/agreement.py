@@ -5,13 +5,14 @@ from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
-from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.files import write_text
 from burridge_knopoff.summaries.agreement import digest, summarize, table
 from burridge_knopoff.summaries.points import Grid
 
-grid = Grid(Path(snakemake.input[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
-dataset = summarize(grid, snakemake.params.threshold, snakemake.params.agreement)
+grid = Grid(Path(snakemake.input.points[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
+lyapunov = open_summary(snakemake.input.lyapunov[0])
+dataset = summarize(grid, lyapunov, snakemake.params.threshold, snakemake.params.agreement)
 write_summary(dataset, snakemake.output.dataset)
 write_text(snakemake.output.table, table(dataset))
 write_text(snakemake.output.digest, digest(dataset))

@@ -7,7 +7,7 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, cells, color, label_panels, new_figure, styled
 
 ROUNDING = 1e-17
 
@@ -21,6 +21,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
     states = agreement["initial"].values
     figure, panels = new_figure(PAGE, 5.6, rows=3, columns=len(states))
     a = agreement["a"].values
+    edges = cells(a)
     for column, initial in enumerate(states):
         run = agreement.sel(initial=initial)
         difference, sections, order = panels[column :: len(states)]
@@ -32,8 +33,8 @@ def draw(agreement: xarray.Dataset) -> Figure:
         sections.plot(a, _positive(run["section_distance"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
         order.plot(a, _positive(run["event_order_time"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
         for panel in (difference, sections, order):
-            for value in a[run["agrees"].values == 0]:
-                panel.axvspan(*_cell(a, value), color="0.9", linewidth=0, zorder=0)
+            for k in np.flatnonzero(run["agrees"].values == 0):
+                panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
         order.set_xlabel("$a$")
     # Differences of synchronized runs are rounding; they set the scale of nothing.
     for panel, floor in ((panels[0], ROUNDING), (panels[len(states)], 1e-8)):
@@ -66,13 +67,3 @@ def _positive(values: xarray.DataArray) -> np.ndarray:
     """Return the values with those that a logarithmic axis cannot show left out."""
     array = np.asarray(values, dtype=float)
     return np.where(array > 0.0, array, np.nan)
-
-
-def _cell(a: np.ndarray, value: float) -> tuple[float, float]:
-    """Return the interval of a that is nearer to this value of the grid than to any other."""
-    k = int(np.searchsorted(a, value))
-    if len(a) == 1:
-        return value - 0.5, value + 0.5
-    low = a[k - 1] if k > 0 else 2 * value - a[k + 1]
-    high = a[k + 1] if k + 1 < len(a) else 2 * value - a[k - 1]
-    return 0.5 * (low + value), 0.5 * (value + high)

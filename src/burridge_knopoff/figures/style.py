@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -67,6 +68,14 @@ def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
     for number, (panel, title) in enumerate(zip(axes, titles, strict=True)):
         letter = chr(ord("a") + number % 26) * (number // 26 + 1)
         panel.set_title(f"({letter}) {title}", loc="left")
+
+
+def cells(values: np.ndarray) -> np.ndarray:
+    """Return the edges between ascending values, shape (n + 1,): each value's cell is what lies nearest to it."""
+    if len(values) == 1:
+        return np.array([values[0] - 0.5, values[0] + 0.5])
+    middle = 0.5 * (values[1:] + values[:-1])
+    return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
 def color(index: int) -> str:

@@ -13,8 +13,8 @@ from scipy.stats import wasserstein_distance
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.simulation import STATUS
-from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED, common_order, motion_kind, section_period
+from burridge_knopoff.summaries.event_order import common_order
+from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _POINT = ("law", "initial", "a")
@@ -25,7 +25,6 @@ VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
     "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", KINDS)),
-    "section_period": Variable(_POINT, "i2", "upward section points after which W' repeats, 0 if it does not"),
     "difference": Variable(_PAIR, "f8", "<J> of the nonlinear law minus <J> of the linearized law"),
     "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
     "section_distance": Variable(
@@ -39,16 +38,19 @@ VARIABLES = {
 }
 _EVENT = ("time", "block", "kind")
 _READ = [
-    *("status", "end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
+    *("end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
     *(f"earlier_event_{name}" for name in _EVENT),
     *(f"event_{name}" for name in _EVENT),
 ]
 
 
-def summarize(grid: Grid, synchronization_threshold: float, agreement: Mapping[str, Any]) -> xarray.Dataset:
+def summarize(
+    grid: Grid, lyapunov: xarray.Dataset, synchronization_threshold: float, agreement: Mapping[str, Any]
+) -> xarray.Dataset:
     """Compare both laws at every grid point.
 
-    agreement : the config's section of that name: relative_tolerance, standard_errors, period_tolerance, longest_period
+    lyapunov : the summary of that name, for the kinds of motion
+    agreement : the config's section of that name: relative_tolerance, standard_errors
     """
     values = {}
     for name, item in VARIABLES.items():
@@ -58,18 +60,14 @@ def summarize(grid: Grid, synchronization_threshold: float, agreement: Mapping[s
         for k, a in enumerate(grid.a):
             pair = [read_point(grid, law, initial, a, _READ) for law in LAWS]
             upward = [point["crossing_velocity"][point["crossing_direction"] > 0] for point in pair]
-            for i, (point, section) in enumerate(zip(pair, upward, strict=True)):
-                period = section_period(section, agreement["period_tolerance"], agreement["longest_period"])
-                mean = float(point["mean_distance"])
-                completed = STATUS[int(point["status"])] == "completed"
-                values["mean_distance"][i, j, k] = mean
+            for i, point in enumerate(pair):
+                values["mean_distance"][i, j, k] = point["mean_distance"]
                 values["mean_distance_error"][i, j, k] = point["mean_distance_error"]
-                values["section_period"][i, j, k] = period
-                values["kind"][i, j, k] = motion_kind(completed, mean, synchronization_threshold, period)
             values["section_distance"][j, k] = wasserstein_distance(*upward) if all(map(len, upward)) else np.nan
             count, until = common_order(*(_sequence(point) for point in pair))
             values["event_order_count"][j, k] = count
             values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
+    values["kind"][...] = lyapunov["kind"].values
     _judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
     return summary(
         "Agreement of the linearized and the nonlinear friction law",
@@ -89,7 +87,7 @@ def _sequence(point: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, 
 def _judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
     """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
 
-    There is no verdict where one of the two runs did not complete.
+    There is no verdict where the kind of one of the two motions is not determined.
     """
     linearized, nonlinear = values["mean_distance"]
     kind = values["kind"]
@@ -140,7 +138,11 @@ def digest(dataset: xarray.Dataset) -> str:
         a = dataset["a"].values[verdict >= 0]
         apart = dataset["a"].values[verdict == 0]
         failed = np.count_nonzero(verdict < 0)
-        undetermined = f" {failed} values of a are undetermined: a run did not complete." if failed else ""
+        undetermined = (
+            f" {failed} values of a are undetermined: a run did not complete, or its kind of motion is not clear."
+            if failed
+            else ""
+        )
         if not len(a):
             text = "no value of a could be compared."
         elif not len(apart):

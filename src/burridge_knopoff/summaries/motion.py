@@ -1,21 +1,18 @@
-"""What kind of motion a run ended in, told from its section points, and how long two runs keep the same event order."""
+"""What kind of motion a run ended in, told from its Lyapunov exponents and its section points."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
-#: Kinds of motion; `aperiodic` does not tell quasiperiodic from chaotic motion.
-KINDS = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "aperiodic"}
-UNDETERMINED, SYNCHRONIZED, PERIODIC, APERIODIC = KINDS
-
-# Events of different blocks closer than this are simultaneous: their order is a matter of rounding.
-SIMULTANEOUS = 1e-9
+#: Kinds of motion; `synchronized` is the periodic motion in which the end blocks move as one.
+KINDS = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
+UNDETERMINED, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = KINDS
 
 # A sequence has a period if it is seen this many times at least.
 REPETITIONS = 3
-
-# More events than this at one instant are not looked for.
-LARGEST_CLUSTER = 32
 
 
 def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
@@ -32,44 +29,39 @@ def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
     return 0
 
 
-def motion_kind(completed: bool, mean_distance: float, threshold: float, period: int) -> int:
-    """Return the kind of motion, a key of KINDS: synchronized where ⟨J⟩ is below the threshold."""
-    if not completed:
-        return UNDETERMINED
-    if mean_distance < threshold:
-        return SYNCHRONIZED
-    return PERIODIC if period else APERIODIC
+def zero_exponents(exponent: np.ndarray, error: np.ndarray, motion: Mapping[str, Any]) -> np.ndarray:
+    """Return which exponents cannot be told from 0, shape (n,).
 
-
-def common_order(
-    first: tuple[np.ndarray, np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray, np.ndarray]
-) -> tuple[int, float]:
-    """Return how many events of two sequences (time, block, kind) come in the same order, and until which time.
-
-    The time is that of the first event, in either sequence, that differs or that the other does not have; infinite
-    where the sequences are the same. Events that are simultaneous in one of the runs may come in any order.
+    motion : the config's section of that name
     """
-    count = min(len(first[0]), len(second[0]))
-    codes = [(2 * block[:count].astype(int) + kind[:count]).tolist() for _, block, kind in (first, second)]
-    times = [sequence[0][:count] for sequence in (first, second)]
-    n = 0
-    while n < count:
-        if codes[0][n] == codes[1][n]:
-            n += 1
-            continue
-        cluster = _reordered(codes, times, n)
-        if not cluster:
-            return n, float(min(time[n] for time in times))
-        n += cluster
-    longer = max(first, second, key=lambda sequence: len(sequence[0]))[0]
-    return count, float(longer[count]) if len(longer) > count else np.inf
+    return np.abs(exponent) <= np.maximum(motion["zero_exponent"], motion["standard_errors"] * error)
 
 
-def _reordered(codes: list[list[int]], times: list[np.ndarray], n: int) -> int:
-    """Return how many simultaneous events from the n-th on are the same but for their order; 0 if they are not."""
-    for size in range(2, min(LARGEST_CLUSTER, len(codes[0]) - n) + 1):
-        if min(time[n + size - 1] - time[n] for time in times) > SIMULTANEOUS:
-            return 0
-        if sorted(codes[0][n : n + size]) == sorted(codes[1][n : n + size]):
-            return size
-    return 0
+def motion_kind(
+    mean_distance: float,
+    threshold: float,
+    period: int,
+    exponent: np.ndarray,
+    error: np.ndarray,
+    motion: Mapping[str, Any],
+) -> int:
+    """Return the kind of motion of a completed run, a key of KINDS.
+
+    mean_distance, threshold : the end blocks move as one where ⟨J⟩ is below the threshold
+    period : of the section points, 0 if they do not repeat
+    exponent, error : Lyapunov exponents, the largest first, and their standard errors; may be NaN or empty
+    motion : the config's section of that name
+
+    Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
+    that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
+    quasiperiodic if that one is 0 as well. Everything else is undetermined.
+    """
+    known = np.flatnonzero(~np.isnan(exponent))
+    if len(known) and exponent[0] > max(motion["chaotic_exponent"], motion["standard_errors"] * error[0]):
+        return CHAOTIC
+    zero = zero_exponents(exponent, error, motion)
+    if len(known) and not zero[0]:
+        return UNDETERMINED
+    if period or (len(known) > 1 and not zero[1]):
+        return SYNCHRONIZED if mean_distance < threshold else PERIODIC
+    return QUASIPERIODIC if len(known) > 1 else UNDETERMINED

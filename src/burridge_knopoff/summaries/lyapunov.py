@@ -1,0 +1,68 @@
+"""Lyapunov exponents over (law, initial, a), and the kind of motion that they and the section points tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED, motion_kind, section_period, zero_exponents
+from burridge_knopoff.summaries.points import Grid, read_point
+
+_AXES = ("law", "initial", "a")
+VARIABLES = {
+    "lyapunov_exponent": Variable(
+        (*_AXES, "exponent"),
+        "f8",
+        "Lyapunov exponents in the window, the largest first",
+        {"ancillary_variables": "lyapunov_error status"},
+    ),
+    "lyapunov_error": Variable((*_AXES, "exponent"), "f8", "standard error of a Lyapunov exponent from the batches"),
+    "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
+    "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", KINDS)),
+    "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
+    "section_period": Variable(_AXES, "i2", "upward section points after which W' repeats, 0 if it does not"),
+    "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
+    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", dict(enumerate(STATUS)))),
+}
+_COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
+
+
+def summarize(
+    grid: Grid, exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Return exponents and kinds of motion with the evidence for them.
+
+    exponents : how many were computed in each run
+    motion : the config's section of that name: thresholds of the kinds of motion
+    """
+    values = {}
+    for name, item in VARIABLES.items():
+        shape = (*grid.shape, exponents) if "exponent" in item.dimensions else grid.shape
+        values[name] = np.zeros(shape, dtype=item.dtype)
+    for index, point in grid:
+        read = read_point(grid, *point, [*_COPIED, "crossing_velocity", "crossing_direction"])
+        for name in _COPIED:
+            values[name][index] = read[name]
+        exponent, error = read["lyapunov_exponent"], read["lyapunov_error"]
+        upward = read["crossing_velocity"][read["crossing_direction"] > 0]
+        period = section_period(upward, motion["period_tolerance"], motion["longest_period"])
+        kind = UNDETERMINED
+        if STATUS[int(read["status"])] == "completed":
+            mean = float(read["mean_distance"])
+            kind = motion_kind(mean, synchronization_threshold, period, exponent, error, motion)
+        values["kind"][index] = kind
+        values["section_period"][index] = period
+        values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, motion))
+    return summary(
+        "Lyapunov exponents and kinds of motion",
+        VARIABLES,
+        values,
+        axes(grid.initial, list(grid.a.values())),
+        {"synchronization_threshold": synchronization_threshold, **motion},
+    )
