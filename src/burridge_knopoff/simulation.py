@@ -192,8 +192,14 @@ def simulate(
     return run(chain, Friction(law, a), state, Settings(**settings))
 
 
-def run(chain: Chain, friction: Friction, initial: InitialState, settings: Settings) -> Trajectory:
-    """Run one simulation of a chain; see `simulate`."""
+def run(
+    chain: Chain, friction: Friction, initial: InitialState, settings: Settings, stuck: np.ndarray | None = None
+) -> Trajectory:
+    """Run one simulation of a chain; see `simulate`.
+
+    stuck : which blocks stick at τ = 0, shape (blocks,), for a state in the middle of a motion; without it the
+        convention `start` decides
+    """
     if len(initial.position) != chain.blocks:
         raise ValueError(
             f"blocks: {chain.blocks} is not allowed for initial state {initial.name!r}, "
@@ -204,7 +210,9 @@ def run(chain: Chain, friction: Friction, initial: InitialState, settings: Setti
     if solver == "map" and friction.law == "nonlinear":
         raise ValueError("solver: 'map' is not allowed for law nonlinear: it has no closed form; series | rk4")
     settings.check_blocks(chain.blocks)
-    solution = _prepare(chain, friction, initial, settings, solver)
+    if stuck is None:
+        stuck = starts_stuck(chain, initial, settings.start)
+    solution = _prepare(chain, friction, initial, settings, solver, stuck)
     # Each call makes a limited number of steps, so that a long run can be interrupted from the keyboard.
     while (code := solution.run()) == RUNNING:
         pass
@@ -226,13 +234,11 @@ def starts_stuck(chain: Chain, initial: InitialState, start: str) -> np.ndarray:
 
 
 def _prepare(
-    chain: Chain, friction: Friction, initial: InitialState, settings: Settings, solver: str
+    chain: Chain, friction: Friction, initial: InitialState, settings: Settings, solver: str, stuck: np.ndarray
 ) -> EventDriven | TimeStepping:
     state = new_state(chain, friction, settings.v, settings.contact)
     offset = chain.sliding_offset(float(friction(settings.v)))
-    state.begin(
-        np.array(initial.position) - offset, np.array(initial.velocity), starts_stuck(chain, initial, settings.start)
-    )
+    state.begin(np.array(initial.position) - offset, np.array(initial.velocity), stuck)
     duration = settings.duration
     edge = settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
     edge[-1] = duration

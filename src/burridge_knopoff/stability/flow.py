@@ -17,6 +17,9 @@ from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, SERIES_ORDER,
 
 NEVER = 1e300
 
+#: What a solver's `run` returns, besides the codes of a failed run.
+HALTED, RUNNING, COMPLETED = -2, -1, 0
+
 
 @dataclass(frozen=True)
 class Model:

@@ -1,0 +1,235 @@
+"""The attractors of one chain at one a: found from initial states, told apart by their returns, each with its radius.
+
+The radius of an attractor is the distance from its returns within which a trajectory is certain to stay: it is less
+than half the way to any other attractor, and trajectories that were pushed off by that much at random have come back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from burridge_knopoff.kernel.proximity import Proximity
+from burridge_knopoff.stability.flow import Instant, Model, new_solver
+from burridge_knopoff.stability.steady import SPACINGS, SteadyMotion, follow, instant_of, same
+from burridge_knopoff.summaries.motion import PERIODIC
+from burridge_knopoff.summaries.motion import SYNCHRONIZED as SYNCHRONIZED_KIND
+
+UNDETERMINED = -1
+
+# Longest transient, in those of the config, for a motion that is still settling.
+PATIENCE = 16
+
+# Window, in those of the config, for a motion that is not periodic.
+FILLING = 4
+
+# Unstable motions that a trajectory may come close to before it is given up.
+TRIALS = 3
+
+# Trajectories that fit no attractor and settle on none: after so many, the rest is left undetermined.
+FAILURES = 6
+
+LARGEST_RADIUS = 0.05
+SMALLEST_RADIUS = 1e-5
+
+# Pushed trajectories have come back when they are this many times closer than they were pushed.
+RECOVERY = 10.0
+
+# Pushed trajectories that are followed at once: one that does not come back spares the others.
+GROUP = 4
+
+# Successive returns near an attractor after which a trajectory counts as captured.
+CLOSE_RETURNS = 8
+
+SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = 0, 1, 2
+SYMMETRIES = {SYNCHRONIZED: "synchronized", SYMMETRIC: "symmetric", ASYMMETRIC: "asymmetric"}
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """A settled motion with what tells it from others.
+
+    symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric
+    partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set
+    radius : distance from its returns within which trajectories are captured
+    """
+
+    motion: SteadyMotion
+    symmetry: int
+    partner: int
+    radius: float
+
+
+@dataclass
+class Search:
+    """Finds the attractors of one model.
+
+    settings : the config's section `attractors`
+    threshold, motion : the config's synchronization_threshold and section `motion`
+    """
+
+    model: Model
+    settings: Mapping[str, Any]
+    threshold: float
+    motion: Mapping[str, Any]
+    attractors: list[Attractor] = field(default_factory=list)
+
+    def labels(self, starts: Sequence[Instant]) -> np.ndarray:
+        """Return the index of the attractor that each state reaches, adding attractors that were not known yet.
+
+        −1 where a trajectory reaches nothing that settles.
+        """
+        open_starts = list(range(len(starts)))
+        failures = 0
+        while open_starts and failures < FAILURES:
+            # Most states decide early; those that do not are each followed until they settle.
+            found, _ = label(self.model, self.attractors, [starts[k] for k in open_starts], self.settings["transient"])
+            open_starts = [k for k, index in zip(open_starts, found, strict=True) if index == UNDETERMINED]
+            known = len(self.attractors)
+            while open_starts and failures < FAILURES and len(self.attractors) == known:
+                failures += self.reach(starts[open_starts.pop(0)]) == UNDETERMINED
+        # Only with all attractors known are the labels those that another order of the states would give.
+        return self.known_labels(starts)
+
+    def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:
+        """Return the index of the attractor, among those known, that each state reaches; −1 for none of them."""
+        labels, _ = label(self.model, self.attractors, starts, self.settings["time_limit"])
+        return labels
+
+    def reach(self, start: Instant) -> int:
+        """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
+        generator = np.random.default_rng(self.settings["seed"])
+        for _ in range(TRIALS):
+            motion = self._settle(start)
+            if motion is None:
+                return UNDETERMINED
+            for index, attractor in enumerate(self.attractors):
+                if same(motion, attractor.motion, self.settings["resolution"]):
+                    return index
+            index = len(self.attractors)
+            if self._add(motion):
+                return index
+            # An unstable motion that the trajectory has come very close to: pushed off, it goes on.
+            start = pushed(motion.instant(), 0.1 * self.settings["resolution"], generator)
+        return UNDETERMINED
+
+    def _add(self, motion: SteadyMotion) -> bool:
+        """Add a motion, and its mirror image if that is another one; tell whether they are attractors."""
+        mirrored = motion.mirrored()
+        before = list(self.attractors)
+        index = len(before)
+        if motion.mean_distance < self.threshold:
+            self.attractors.append(Attractor(motion, SYNCHRONIZED, index, LARGEST_RADIUS))
+        elif same(motion, mirrored, self.settings["resolution"]):
+            self.attractors.append(Attractor(motion, SYMMETRIC, index, LARGEST_RADIUS))
+        else:
+            self.attractors.append(Attractor(motion, ASYMMETRIC, index + 1, LARGEST_RADIUS))
+            self.attractors.append(Attractor(mirrored, ASYMMETRIC, index, LARGEST_RADIUS))
+        self._bound_radii()
+        radius = self._captured(len(before))
+        if radius == 0.0:
+            self.attractors = before
+            return False
+        for index in range(len(before), len(self.attractors)):
+            self.attractors[index] = replace(self.attractors[index], radius=radius)
+        return True
+
+    def _settle(self, start: Instant) -> SteadyMotion | None:
+        """Return the motion that a state settles on, or None if it does not settle."""
+        transient, window = self.settings["transient"], self.settings["window"]
+        resolution = self.settings["resolution"]
+        longest = PATIENCE * window
+        while transient <= PATIENCE * self.settings["transient"]:
+            motion = follow(self.model, start, transient, window, resolution, self.threshold, self.motion)
+            if motion is None:
+                return None
+            start = motion.instant()
+            closed = motion.kind in (SYNCHRONIZED_KIND, PERIODIC)
+            # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
+            # like a set of its own; and a chaotic transient may still end.
+            filled = window >= FILLING * self.settings["window"] and same(motion, motion.mirrored(), resolution)
+            if motion.settled and (closed or filled or window == longest):
+                return motion
+            if not motion.settled:
+                transient *= 2
+            if not closed:
+                window = min(2 * window, longest)
+        return None
+
+    def _bound_radii(self) -> None:
+        """Bound all radii by the distances between the attractors."""
+        clouds = [attractor.motion.returns for attractor in self.attractors]
+        for index, attractor in enumerate(self.attractors):
+            apart = [least_distance(clouds[index], other) for k, other in enumerate(clouds) if k != index]
+            radius = min([attractor.radius, *(0.4 * value for value in apart)])
+            self.attractors[index] = replace(attractor, radius=radius)
+
+    def _captured(self, index: int) -> float:
+        """Return a radius from which all of a number of random pushes come back, at most the present one; 0 if none."""
+        motion = self.attractors[index].motion
+        radius = self.attractors[index].radius
+        generator = np.random.default_rng(self.settings["seed"])
+        while radius > SMALLEST_RADIUS:
+            close = max(SPACINGS * motion.spacing, radius / RECOVERY)
+            narrow = [replace(item, radius=min(item.radius, close)) for item in self.attractors]
+            left = self.settings["pushes"]
+            while left > 0:
+                chosen = generator.integers(len(motion.returns), size=min(GROUP, left))
+                starts = [pushed(instant_of(motion.returns[k]), radius, generator) for k in chosen]
+                reached, _ = label(self.model, narrow, starts, self.settings["time_limit"])
+                if (reached != index).any():
+                    break
+                left -= len(chosen)
+            else:
+                return radius
+            radius /= 2
+        return 0.0
+
+
+def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:
+    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random."""
+    blocks = len(start.position)
+    change = generator.uniform(-size, size, 2 * blocks)
+    velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
+    return Instant(start.position + change[:blocks], velocity, start.stuck)
+
+
+def least_distance(first: np.ndarray, second: np.ndarray) -> float:
+    """Return the distance between the two nearest returns of two sets."""
+    nearest, _ = cKDTree(second).query(first, p=np.inf)
+    return float(nearest.min())
+
+
+def label(
+    model: Model, attractors: Sequence[Attractor], starts: Sequence[Instant], time_limit: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which attractor each state reaches and when that was certain.
+
+    −1 where no attractor is reached by the time limit.
+    """
+    labels = np.full(len(starts), UNDETERMINED, dtype=np.intc)
+    times = np.zeros(len(starts))
+    if not len(attractors) or not len(starts):
+        return labels, times
+    proximity = new_proximity(model, attractors, time_limit)
+    proximity.label(
+        np.array([start.position for start in starts]),
+        np.array([start.velocity for start in starts]),
+        np.array([start.stuck for start in starts]).astype(np.intc),
+        labels,
+        times,
+    )
+    return labels, times
+
+
+def new_proximity(model: Model, attractors: Sequence[Attractor], time_limit: float) -> Proximity:
+    """Return the kernel's labelling of trajectories for these attractors."""
+    solver = new_solver(model)
+    solver.halting_block = 0
+    solver.end = time_limit
+    clouds = [attractor.motion.returns for attractor in attractors]
+    return Proximity(solver, clouds, [attractor.radius for attractor in attractors], CLOSE_RETURNS)

@@ -1,0 +1,130 @@
+"""Attractors matched along a: what each one turns into when a is stepped up or down, and the branches that this makes.
+
+Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
+Chaos 33 (2023) 073151, whose continuation by seeding from the attractors of the parameter before this is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.stability.attractors import SYNCHRONIZED, UNDETERMINED, Attractor, Search, pushed
+from burridge_knopoff.stability.flow import Instant, Model
+
+# Size of the seeded push that takes a state off an unstable symmetry, as part of the resolution.
+PUSH = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Continuation:
+    """The attractors of one law along a.
+
+    attractors : for each a those that coexist there
+    upward, downward : for each a and attractor the index of the attractor reached at the next larger or smaller a, −1
+        where it is undetermined or there is no next a
+    branch, side : for each a and attractor the number of its branch and its side of it; see `branches`
+    samples : for each a the index reached by each sampled state
+    """
+
+    attractors: list[list[Attractor]]
+    upward: list[np.ndarray]
+    downward: list[np.ndarray]
+    branch: list[np.ndarray]
+    side: list[np.ndarray]
+    samples: list[np.ndarray]
+
+
+def continue_attractors(
+    models: Sequence[Model],
+    samples: Callable[[Model], Sequence[Instant]],
+    settings: Mapping[str, Any],
+    threshold: float,
+    motion: Mapping[str, Any],
+) -> Continuation:
+    """Find the attractors of all models, of ascending a, from sampled states and from each other, and match them.
+
+    samples : initial states of a model
+    settings : the config's section `attractors`; threshold, motion : see `attractors.Search`
+    """
+    generator = np.random.default_rng(settings["seed"])
+    searches = [Search(model, settings, threshold, motion) for model in models]
+    starts = [samples(model) for model in models]
+
+    def seeds(search: Search) -> list[Instant]:
+        size = PUSH * settings["resolution"]
+        return [pushed(attractor.motion.instant(), size, generator) for attractor in search.attractors]
+
+    for k, search in enumerate(searches):
+        search.labels([*(seeds(searches[k - 1]) if k else []), *starts[k]])
+    for k in range(len(searches) - 2, -1, -1):
+        searches[k].labels(seeds(searches[k + 1]))
+    for k in range(1, len(searches)):
+        searches[k].labels(seeds(searches[k - 1]))
+    # The sets of attractors are complete now: what follows only reads them.
+    upward, downward = [], []
+    for k, search in enumerate(searches):
+        nothing = np.full(len(search.attractors), UNDETERMINED)
+        upward.append(searches[k + 1].known_labels(seeds(search)) if k + 1 < len(searches) else nothing)
+        downward.append(searches[k - 1].known_labels(seeds(search)) if k else nothing)
+    attractors = [search.attractors for search in searches]
+    return Continuation(
+        attractors,
+        upward,
+        downward,
+        *branches(attractors, upward, downward),
+        [search.known_labels(states) for search, states in zip(searches, starts, strict=True)],
+    )
+
+
+def branches(
+    attractors: Sequence[Sequence[Attractor]], upward: Sequence[np.ndarray], downward: Sequence[np.ndarray]
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Return the branch and the side of each attractor at each a.
+
+    Attractors of neighbouring a are on one branch if each, or its mirror image, is reached from the other. The two of a
+    mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images have side 0.
+    The synchronized attractor is branch 0 wherever it is and nothing else is: what it turns into where it loses its
+    stability is another branch. Other branches are numbered from 1 in the order of their first a, and of ⟨J⟩ there.
+    """
+    branch_of: list[np.ndarray] = []
+    side_of: list[np.ndarray] = []
+    following = 1
+    for k, here in enumerate(attractors):
+        branch = np.full(len(here), UNDETERMINED)
+        side = np.zeros(len(here), dtype=int)
+        # Of a mirror pair one is matched, and the other goes with it.
+        single = [i for i, attractor in enumerate(here) if attractor.partner >= i]
+        for i in sorted(single, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
+            before = UNDETERMINED
+            if k and here[i].symmetry != SYNCHRONIZED:
+                before = int(downward[k][i])
+            if before != UNDETERMINED:
+                back = int(upward[k - 1][before])
+                same_kind = attractors[k - 1][before].symmetry != SYNCHRONIZED
+                if not same_kind or back not in (i, here[i].partner) or branch_of[k - 1][before] in branch:
+                    before = UNDETERMINED
+            if here[i].symmetry == SYNCHRONIZED:
+                branch[i] = 0
+            elif before != UNDETERMINED:
+                branch[i] = branch_of[k - 1][before]
+            else:
+                branch[i] = following
+                following += 1
+            if here[i].partner != i:
+                side[i] = side_of[k - 1][before] if before != UNDETERMINED else 0
+                side[i] = side[i] or _orientation(here[i])
+                branch[here[i].partner], side[here[i].partner] = branch[i], -side[i]
+        branch_of.append(branch)
+        side_of.append(side)
+    return branch_of, side_of
+
+
+def _orientation(attractor: Attractor) -> int:
+    """Return 1 where the first block, at its stops, is ahead of the last one by more than in the mirrored motion."""
+    last = len(attractor.motion.stop_rate) - 1
+    own, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
+    return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1
