@@ -19,6 +19,9 @@ LARGEST = 1e300
 #: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
 PAPER_A = 0.08
 
+#: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss.
+BASIN_A = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
+
 #: Config keys that are options of `bk simulate` under the same name.
 RUN_KEYS = (
     "v",
@@ -94,6 +97,8 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     grid = _grid(filled, file)
     _check_states(filled, file)
     _check_runs(filled, file)
+    _check_boxes(filled, file)
+    _fill_basins(filled, set(grid.values()), file)
     shown = filled["figures"].get("a")
     if shown is not None and shown not in grid.values():
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
@@ -184,6 +189,34 @@ def _check_runs(config: Mapping[str, Any], file: str) -> None:
             Settings(solver=solver, step=config["step"], **{key: config[key] for key in RUN_KEYS}).check_blocks(blocks)
         except ValueError as error:
             raise ConfigError(f"{file}: {error}") from error
+
+
+def _check_boxes(config: Mapping[str, Any], file: str) -> None:
+    boxes = [("attractors", key) for key in ("position", "velocity")]
+    boxes += [("basins", key) for key in ("first_position", "last_position")]
+    for section, key in boxes:
+        low, high = config[section][key]
+        if not low < high:
+            raise ConfigError(f"{file}: {section}.{key}: [{low}, {high}] is not allowed: [low, high] with low < high")
+
+
+def _fill_basins(config: Mapping[str, Any], grid: set[float], file: str) -> None:
+    """Check the maps of basins against grid and states, and fill in what depends on these."""
+    basins = config["basins"]
+    for law, usual in BASIN_A.items():
+        if law not in basins:
+            basins[law] = [a for a in usual if a in grid]
+        for a in basins[law]:
+            if a not in grid:
+                raise ConfigError(f"{file}: basins.{law}: {a!r} is not allowed: a value of the grid")
+        basins[law] = [float(a) for a in basins[law]]
+    name = basins.setdefault("initial", next(iter(config["initial"])))
+    if name not in config["initial"]:
+        raise ConfigError(f"{file}: basins.initial: {name!r} is not allowed: {' | '.join(config['initial'])}")
+    if basins["tiles"] > basins["pixels"]:
+        raise ConfigError(
+            f"{file}: basins.tiles: {basins['tiles']} is not allowed: at most the {basins['pixels']} rows of a map"
+        )
 
 
 def _check_states(config: Mapping[str, Any], file: str) -> None:

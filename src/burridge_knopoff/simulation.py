@@ -211,7 +211,7 @@ def run(
         raise ValueError("solver: 'map' is not allowed for law nonlinear: it has no closed form; series | rk4")
     settings.check_blocks(chain.blocks)
     if stuck is None:
-        stuck = starts_stuck(chain, initial, settings.start)
+        stuck = starts_stuck(chain, np.array(initial.position), settings.start)
     solution = _prepare(chain, friction, initial, settings, solver, stuck)
     # Each call makes a limited number of steps, so that a long run can be interrupted from the keyboard.
     while (code := solution.run()) == RUNNING:
@@ -227,10 +227,13 @@ def new_state(chain: Chain, friction: Friction, v: float, contact: str) -> State
     )
 
 
-def starts_stuck(chain: Chain, initial: InitialState, start: str) -> np.ndarray:
-    """Return which blocks stick at τ = 0 under the convention of start, shape (blocks,)."""
+def starts_stuck(chain: Chain, position: np.ndarray, start: str) -> np.ndarray:
+    """Return which blocks stick at τ = 0 under the convention of start, shape of the positions U(0), (…, blocks)."""
     # Spring forces from U itself: in co-moving coordinates rounding could move a block across its threshold.
-    return (start == "tested") & (-chain.stiffness @ np.array(initial.position) <= 1.0)
+    pull = np.zeros_like(position)
+    pull[..., 1:] += position[..., :-1]
+    pull[..., :-1] += position[..., 1:]
+    return (start == "tested") & (pull - 2.0 * chain.driving * position <= 1.0)
 
 
 def _prepare(

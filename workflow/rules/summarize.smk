@@ -8,6 +8,8 @@ rule summary:
         f"{SUMMARY}/mean_distance.nc",
         f"{SUMMARY}/bifurcation.nc",
         f"{SUMMARY}/lyapunov.nc",
+        f"{SUMMARY}/attractors.nc",
+        [f"{SUMMARY}/basins.nc"] if BASIN_MAPS else [],
         f"{SUMMARY}/agreement.nc",
         f"{SUMMARY}/agreement.csv",
         f"{SUMMARY}/agreement.txt",

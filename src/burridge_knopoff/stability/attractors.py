@@ -11,13 +11,18 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from burridge_knopoff.kernel.proximity import Proximity
 from burridge_knopoff.stability.flow import Instant, Model, new_solver
-from burridge_knopoff.stability.steady import SPACINGS, SteadyMotion, follow, instant_of, same
-from burridge_knopoff.summaries.motion import PERIODIC
-from burridge_knopoff.summaries.motion import SYNCHRONIZED as SYNCHRONIZED_KIND
+from burridge_knopoff.stability.steady import (
+    CLOSED,
+    SPACINGS,
+    SteadyMotion,
+    follow,
+    instant_of,
+    least_distance,
+    lies_on,
+)
 
 UNDETERMINED = -1
 
@@ -30,8 +35,8 @@ FILLING = 4
 # Unstable motions that a trajectory may come close to before it is given up.
 TRIALS = 3
 
-# Trajectories that fit no attractor and settle on none: after so many, the rest is left undetermined.
-FAILURES = 6
+# Trajectories that are followed without finding anything new before the others are left to what is known.
+FRUITLESS = 3
 
 LARGEST_RADIUS = 0.05
 SMALLEST_RADIUS = 1e-5
@@ -83,15 +88,21 @@ class Search:
 
         −1 where a trajectory reaches nothing that settles.
         """
-        open_starts = list(range(len(starts)))
-        failures = 0
-        while open_starts and failures < FAILURES:
-            # Most states decide early; those that do not are each followed until they settle.
-            found, _ = label(self.model, self.attractors, [starts[k] for k in open_starts], self.settings["transient"])
-            open_starts = [k for k, index in zip(open_starts, found, strict=True) if index == UNDETERMINED]
-            known = len(self.attractors)
-            while open_starts and failures < FAILURES and len(self.attractors) == known:
-                failures += self.reach(starts[open_starts.pop(0)]) == UNDETERMINED
+        # Most states decide early. Of the others a few are followed until they settle, first those that have not
+        # decided after a transient, then those that have not decided at all.
+        for limit in (self.settings["transient"], self.settings["time_limit"]):
+            undecided = list(range(len(starts)))
+            known = UNDETERMINED
+            fruitless = 0
+            while fruitless < FRUITLESS:
+                if len(self.attractors) > known:
+                    known = len(self.attractors)
+                    found, _ = label(self.model, self.attractors, [starts[k] for k in undecided], limit)
+                    undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
+                if not undecided:
+                    break
+                self.reach(starts[undecided.pop(0)])
+                fruitless += len(self.attractors) == known
         # Only with all attractors known are the labels those that another order of the states would give.
         return self.known_labels(starts)
 
@@ -108,7 +119,7 @@ class Search:
             if motion is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if same(motion, attractor.motion, self.settings["resolution"]):
+                if lies_on(motion, attractor.motion, self.settings["resolution"]):
                     return index
             index = len(self.attractors)
             if self._add(motion):
@@ -124,8 +135,8 @@ class Search:
         index = len(before)
         if motion.mean_distance < self.threshold:
             self.attractors.append(Attractor(motion, SYNCHRONIZED, index, LARGEST_RADIUS))
-        elif same(motion, mirrored, self.settings["resolution"]):
-            self.attractors.append(Attractor(motion, SYMMETRIC, index, LARGEST_RADIUS))
+        elif self._symmetric(motion):
+            self.attractors.append(Attractor(motion.symmetrized(), SYMMETRIC, index, LARGEST_RADIUS))
         else:
             self.attractors.append(Attractor(motion, ASYMMETRIC, index + 1, LARGEST_RADIUS))
             self.attractors.append(Attractor(mirrored, ASYMMETRIC, index, LARGEST_RADIUS))
@@ -148,10 +159,10 @@ class Search:
             if motion is None:
                 return None
             start = motion.instant()
-            closed = motion.kind in (SYNCHRONIZED_KIND, PERIODIC)
+            closed = motion.kind in CLOSED
             # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
             # like a set of its own; and a chaotic transient may still end.
-            filled = window >= FILLING * self.settings["window"] and same(motion, motion.mirrored(), resolution)
+            filled = window >= FILLING * self.settings["window"] and self._symmetric(motion)
             if motion.settled and (closed or filled or window == longest):
                 return motion
             if not motion.settled:
@@ -159,6 +170,10 @@ class Search:
             if not closed:
                 window = min(2 * window, longest)
         return None
+
+    def _symmetric(self, motion: SteadyMotion) -> bool:
+        """Tell whether a motion cannot be told apart from its mirror image."""
+        return least_distance(motion.returns, motion.mirror_returns) < self.settings["resolution"]
 
     def _bound_radii(self) -> None:
         """Bound all radii by the distances between the attractors."""
@@ -196,12 +211,6 @@ def pushed(start: Instant, size: float, generator: np.random.Generator) -> Insta
     change = generator.uniform(-size, size, 2 * blocks)
     velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
     return Instant(start.position + change[:blocks], velocity, start.stuck)
-
-
-def least_distance(first: np.ndarray, second: np.ndarray) -> float:
-    """Return the distance between the two nearest returns of two sets."""
-    nearest, _ = cKDTree(second).query(first, p=np.inf)
-    return float(nearest.min())
 
 
 def label(

@@ -28,6 +28,7 @@ class Continuation:
         where it is undetermined or there is no next a
     branch, side : for each a and attractor the number of its branch and its side of it; see `branches`
     samples : for each a the index reached by each sampled state
+    time_limit : time by which those had to be reached
     """
 
     attractors: list[list[Attractor]]
@@ -36,6 +37,7 @@ class Continuation:
     branch: list[np.ndarray]
     side: list[np.ndarray]
     samples: list[np.ndarray]
+    time_limit: float
 
 
 def continue_attractors(
@@ -77,6 +79,7 @@ def continue_attractors(
         downward,
         *branches(attractors, upward, downward),
         [search.known_labels(states) for search, states in zip(searches, starts, strict=True)],
+        settings["time_limit"],
     )
 
 

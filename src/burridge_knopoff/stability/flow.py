@@ -58,7 +58,7 @@ class Instant:
 
 def begin(model: Model, initial: InitialState, start: str = "moving") -> Instant:
     """Return the state at τ = 0 of a run that begins from an initial state under a convention of start."""
-    stuck = starts_stuck(model.chain, initial, start)
+    stuck = starts_stuck(model.chain, np.array(initial.position), start)
     position = np.array(initial.position) - model.sliding_offset
     return Instant(position, np.where(stuck, 0.0, np.array(initial.velocity)), stuck)
 

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import Settings, Trajectory, run
 from burridge_knopoff.stability.flow import Instant, Model
-from burridge_knopoff.summaries.motion import motion_kind, section_period
+from burridge_knopoff.summaries.motion import PERIODIC, QUASIPERIODIC, SYNCHRONIZED, motion_kind, section_period
 
 # Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
 SHARE = 0.95
@@ -20,8 +20,10 @@ SHARE = 0.95
 # Sets are one if the distance between them is at most this many times the distance between neighbours within them.
 SPACINGS = 3.0
 
-# A settled motion drifts by less than this part of the resolution from one half of the window to the other.
+# Closed orbits drift by less than this part of the resolution from one half of the window to the other once they have
+# settled; other sets fill up so slowly that the resolution itself must do.
 DRIFT = 100.0
+CLOSED = (SYNCHRONIZED, PERIODIC)
 
 BATCHES = 6
 
@@ -55,6 +57,11 @@ class SteadyMotion:
         """Return the motion seen from the other end of the chain."""
         changed = {"returns": self.mirror_returns, "mirror_returns": self.returns, "stop_rate": self.stop_rate[::-1]}
         return SteadyMotion(**{**self.__dict__, **changed})
+
+    def symmetrized(self) -> SteadyMotion:
+        """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
+        both = np.concatenate([self.returns, self.mirror_returns])
+        return SteadyMotion(**{**self.__dict__, "returns": both, "mirror_returns": both})
 
     def instant(self) -> Instant:
         """Return the state at the last return."""
@@ -111,6 +118,10 @@ def follow(
     upward = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
     period = section_period(upward, motion["period_tolerance"], motion["longest_period"])
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
+    kind = motion_kind(trajectory.mean_distance, threshold, period, exponent, error, motion)
+    if kind == QUASIPERIODIC and spacing <= motion["period_tolerance"]:
+        # A weakly attracting orbit of a long period: its exponent cannot be told from 0, but its returns repeat.
+        kind = PERIODIC
     stops = trajectory.event_block[trajectory.event_kind == 0]
     return SteadyMotion(
         returns=returns,
@@ -119,11 +130,11 @@ def follow(
         mean_distance=trajectory.mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
         stop_rate=np.bincount(stops, minlength=model.chain.blocks + 1)[1:] / window,
-        kind=motion_kind(trajectory.mean_distance, threshold, period, exponent, error, motion),
+        kind=kind,
         section_period=period,
         exponent=exponent,
         exponent_error=error,
-        settled=drift <= max(resolution / DRIFT, SPACINGS * spacing),
+        settled=drift <= max(resolution / DRIFT if kind in CLOSED else resolution, SPACINGS * spacing),
     )
 
 
@@ -151,11 +162,15 @@ def _spacing(returns: np.ndarray) -> float:
     return float(np.quantile(nearest[:, 1], SHARE))
 
 
-def same(first: SteadyMotion, second: SteadyMotion, resolution: float) -> bool:
-    """Tell whether two motions are on one attractor: their returns fill the same set, as far as they resolve it.
+def least_distance(first: np.ndarray, second: np.ndarray) -> float:
+    """Return the distance between the two nearest returns of two sets."""
+    nearest, _ = cKDTree(second).query(first, p=np.inf)
+    return float(nearest.min())
+
+
+def lies_on(motion: SteadyMotion, attractor: SteadyMotion, resolution: float) -> bool:
+    """Tell whether the returns of a settled motion lie on an attractor, as far as that is resolved.
 
     resolution : distance below which attractors are not told apart
     """
-    limit = max(resolution, SPACINGS * max(first.spacing, second.spacing))
-    apart = max(distance(first.returns, second.returns), distance(second.returns, first.returns))
-    return apart <= limit
+    return distance(motion.returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)

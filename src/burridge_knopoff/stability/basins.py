@@ -1,0 +1,106 @@
+"""Basins of attraction: which attractor each state of a plane of initial states reaches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.simulation import starts_stuck
+from burridge_knopoff.stability.attractors import FILLING, SYMMETRIC, UNDETERMINED, Attractor, new_proximity
+from burridge_knopoff.stability.flow import Instant, Model
+from burridge_knopoff.stability.steady import CLOSED, follow
+
+
+@dataclass(frozen=True, eq=False)
+class KnownAttractors:
+    """The attractors of one law and a, with the branch and the side of each."""
+
+    model: Model
+    attractors: list[Attractor]
+    branch: np.ndarray
+    side: np.ndarray
+
+
+def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mapping[str, Any]) -> KnownAttractors:
+    """Return the attractors of one law and a from their summary; their returns are computed again from its states.
+
+    config : the config's v, contact, synchronization_threshold and the sections attractors and motion
+    """
+    found = summary.sel(law=law, a=a)
+    model = Model(Chain(found.sizes["block"]), Friction(law, a), config["v"], config["contact"])
+    settings = config["attractors"]
+    slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
+    attractors = []
+    for slot in slots:
+        one = found.isel(attractor=slot)
+        velocity = one["velocity"].values
+        start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
+        closed = one["kind"].item() in CLOSED
+        window = settings["window"] * (1 if closed else FILLING)
+        threshold, motion = config["synchronization_threshold"], config["motion"]
+        # The state lies on the attractor: a short transient takes the last rounding of the file off.
+        steady = follow(model, start, settings["transient"], window, settings["resolution"], threshold, motion)
+        if steady is None:
+            raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
+        if one["symmetry"].item() == SYMMETRIC:
+            steady = steady.symmetrized()
+        attractors.append(Attractor(steady, one["symmetry"].item(), int(slot), one["radius"].item()))
+    return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
+
+
+def label_states(
+    known: KnownAttractors, position: np.ndarray, velocity: np.ndarray, start: str, time_limit: float, threads: int = 1
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which attractor each initial state reaches, its index or −1, and the time τ at which that was certain.
+
+    position, velocity : U(0) and U'(0), shape (n, blocks); start : convention of start
+    threads : trajectories are shared out among so many; each is followed alone, so that no label depends on them
+    """
+    model = known.model
+    stuck = starts_stuck(model.chain, position, start)
+    labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
+    times = np.zeros(len(position))
+    tables = (
+        np.ascontiguousarray(position - model.sliding_offset),
+        np.where(stuck, 0.0, velocity),
+        stuck.astype(np.intc),
+        labels,
+        times,
+    )
+    edges = np.linspace(0, len(position), threads + 1).astype(int)
+
+    def work(first: int, last: int) -> None:
+        new_proximity(model, known.attractors, time_limit).label(*(table[first:last] for table in tables))
+
+    with ThreadPoolExecutor(threads) as pool:
+        for task in [pool.submit(work, first, last) for first, last in pairwise(edges)]:
+            task.result()
+    return labels, times
+
+
+def plane(
+    position: Sequence[float], first: np.ndarray, last: np.ndarray, velocity: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the initial states of a plane, U(0) and U'(0), each of shape (len(last) len(first), blocks).
+
+    The state given by `position` and `velocity`, but for U_1(0) from `first` and U_N(0) from `last`; `first` runs
+    faster.
+    """
+    states = np.tile(np.array(position, dtype=float), (len(first) * len(last), 1))
+    states[:, 0] = np.tile(first, len(last))
+    states[:, -1] = np.repeat(last, len(first))
+    return states, np.tile(np.array(velocity, dtype=float), (len(states), 1))
+
+
+def pixel_centres(interval: Sequence[float], pixels: int) -> np.ndarray:
+    """Return the middles of equal pixels that fill an interval (low, high), shape (pixels,)."""
+    low, high = interval
+    return low + (high - low) * (np.arange(pixels) + 0.5) / pixels

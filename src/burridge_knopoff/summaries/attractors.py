@@ -1,0 +1,215 @@
+"""The attractors of both laws against a: features, branches, sweeps, basin fractions, and what each run reached."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
+from burridge_knopoff.stability.attractors import SYMMETRIES, UNDETERMINED, label
+from burridge_knopoff.stability.continuation import Continuation, continue_attractors
+from burridge_knopoff.stability.flow import Instant, Model, begin
+from burridge_knopoff.stability.sampling import fraction_interval, sample_states
+from burridge_knopoff.summaries.motion import KINDS
+
+EXPONENTS = 3
+
+_SLOT = ("a", "attractor")
+_REACHED = ("contact", "start", "initial", "a")
+_SWEEP = ("direction", "sweep", "a")
+DIRECTIONS = ("upward", "downward")
+NOTHING = {"comment": "-1 where there is none or it is undetermined"}
+_V = Variable
+VARIABLES = {
+    "branch": _V(_SLOT, "i2", "branch of attractors along a; 0 is the synchronized one", NOTHING),
+    "side": _V(_SLOT, "i1", "side of the branch: 1 and -1 for mirror images of each other, 0 for its own mirror image"),
+    "symmetry": _V(_SLOT, "i1", "mirror symmetry of the attractor", flag("i1", {-1: "none", **SYMMETRIES})),
+    "mean_distance": _V(_SLOT, "f8", "time average <J> of the phase-space distance between the end blocks"),
+    "mean_distance_error": _V(_SLOT, "f8", "standard error of <J> from batch means"),
+    "kind": _V(_SLOT, "i1", "kind of motion", flag("i1", KINDS)),
+    "section_period": _V(_SLOT, "i2", "upward section points after which W' repeats, 0 if it does not"),
+    "stop_rate": _V((*_SLOT, "block"), "f8", "stops of a block in a unit of time"),
+    "lyapunov_exponent": _V((*_SLOT, "exponent"), "f8", "Lyapunov exponents, the largest first"),
+    "radius": _V(_SLOT, "f8", "distance from its returns within which trajectories are captured"),
+    "position": _V(
+        (*_SLOT, "block"),
+        "f8",
+        "positions of one state on the attractor, at a stop of the first block",
+        {"comment": "relative to the driver: U - v*tau, U the position of the paper"},
+    ),
+    "velocity": _V((*_SLOT, "block"), "f8", "velocities U' of that state"),
+    "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a", NOTHING),
+    "downward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next smaller a", NOTHING),
+    "basin_count": _V(_SLOT, "i4", "sampled initial states that reach the attractor"),
+    "basin_fraction": _V(_SLOT, "f8", "fraction of the sampled initial states that reach the attractor"),
+    "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
+    "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
+    "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by the time limit"),
+    "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
+    "initial_side": _V(_REACHED, "i1", "side of that branch"),
+    "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
+    "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor on which a sweep of a is"),
+}
+
+
+def one_law(
+    law: str, grid: Sequence[float], initial: Mapping[str, Mapping[str, Sequence[float]]], config: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Find and match the attractors of one law.
+
+    grid : values of a, ascending
+    initial : named initial states with `position` and `velocity`
+    config : the config's v, contact, start, synchronization_threshold and the sections attractors and motion
+    """
+    states = {
+        name: InitialState(name, tuple(state["position"]), tuple(state["velocity"])) for name, state in initial.items()
+    }
+    blocks = len(next(iter(states.values())).position)
+    chain, settings = Chain(blocks), config["attractors"]
+    models = [Model(chain, Friction(law, a), config["v"], config["contact"]) for a in grid]
+    sampled = sample_states(blocks, settings["samples"], settings["position"], settings["velocity"], settings["seed"])
+
+    def samples(model: Model) -> list[Instant]:
+        random = [InitialState("sample", tuple(u), tuple(w)) for u, w in zip(*sampled, strict=True)]
+        return [begin(model, state, config["start"]) for state in (*random, *states.values())]
+
+    found = continue_attractors(models, samples, settings, config["synchronization_threshold"], config["motion"])
+    values = _features(models, found, settings["samples"])
+    values.update(_reached(models, found, states))
+    values.update(_sweeps(found))
+    coordinates = {name: value for name, value in axes(list(states), list(grid)).items() if name != "law"}
+    coordinates["block"] = ("block", np.arange(1, blocks + 1, dtype="i2"), {"long_name": "block number", "units": "1"})
+    for name, names in (("contact", CONTACTS), ("start", STARTS), ("direction", DIRECTIONS)):
+        coordinates[name] = (name, np.array(names, dtype=object), {"long_name": f"convention of {name}"})
+    coordinates["direction"][2]["long_name"] = "direction in which a is swept"
+    attributes = {
+        "law": law,
+        "history": "snakemake, from sampled initial states",
+        "v": config["v"],
+        "contact_convention": config["contact"],
+        "start_convention": config["start"],
+        "synchronization_threshold": config["synchronization_threshold"],
+        "position_box": np.array(settings["position"], dtype=float),
+        "velocity_box": np.array(settings["velocity"], dtype=float),
+        **{
+            key: settings[key]
+            for key in ("samples", "seed", "transient", "window", "time_limit", "resolution", "pushes")
+        },
+    }
+    return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes)
+
+
+def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
+    """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN."""
+    values = {}
+    variables = {}
+    for name, item in VARIABLES.items():
+        arrays = [part[name].values for part in parts]
+        shape = np.max([array.shape for array in arrays], axis=0)
+        whole = np.full((len(parts), *shape), _missing(name, item), dtype=item.dtype)
+        for number, array in enumerate(arrays):
+            within: Any = (number, *(slice(0, size) for size in array.shape))
+            whole[within] = array
+        values[name] = whole
+        variables[name] = replace(item, dimensions=("law", *item.dimensions))
+    coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
+    coordinates["law"] = axes([], [])["law"]
+    attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
+    return summary("Attractors of both friction laws", variables, values, coordinates, attributes)
+
+
+_HEAD = ("Conventions", "title", "law", "software", "source_fingerprint", "git_commit")
+
+
+def _missing(name: str, item: Variable) -> Any:
+    if item.dtype == "f8":
+        return np.nan
+    return 0 if name in ("side", "initial_side", "section_period", "basin_count", "undetermined_count") else -1
+
+
+def _empty(shape: Mapping[str, int]) -> dict[str, np.ndarray]:
+    """Return an array of missing values for each variable whose dimensions are given."""
+    return {
+        name: np.full([shape[key] for key in item.dimensions], _missing(name, item), dtype=item.dtype)
+        for name, item in VARIABLES.items()
+        if all(key in shape for key in item.dimensions)
+    }
+
+
+def _features(models: Sequence[Model], found: Continuation, samples: int) -> dict[str, np.ndarray]:
+    """Return all variables of single attractors; in each slot order they are sorted by branch and side."""
+    blocks = models[0].chain.blocks
+    slots = max(1, *(len(here) for here in found.attractors))
+    values = _empty({"a": len(models), "attractor": slots, "block": blocks, "exponent": EXPONENTS})
+    for k, here in enumerate(found.attractors):
+        reached = found.samples[k][:samples]
+        values["undetermined_count"][k] = np.count_nonzero(reached == UNDETERMINED)
+        order = sorted(range(len(here)), key=lambda i: (found.branch[k][i], -found.side[k][i]))
+        for slot, i in enumerate(order):
+            at = (k, slot)
+            motion = here[i].motion
+            values["branch"][at], values["side"][at] = found.branch[k][i], found.side[k][i]
+            values["symmetry"][at], values["radius"][at] = here[i].symmetry, here[i].radius
+            for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "stop_rate"):
+                values[name][at] = getattr(motion, name)
+            values["lyapunov_exponent"][at][: len(motion.exponent)] = motion.exponent
+            state = motion.instant()
+            values["position"][at] = state.position + models[k].sliding_offset
+            values["velocity"][at] = state.velocity
+            for name, step, index in (("upward", 1, found.upward[k][i]), ("downward", -1, found.downward[k][i])):
+                values[f"{name}_branch"][at] = found.branch[k + step][index] if index != UNDETERMINED else UNDETERMINED
+            hits = int(np.count_nonzero(reached == i))
+            values["basin_count"][at] = hits
+            interval = fraction_interval(hits, samples)
+            for name, value in zip(("", "_low", "_high"), interval, strict=True):
+                values[f"basin_fraction{name}"][at] = value
+    return values
+
+
+def _reached(models: Sequence[Model], found: Continuation, states: Mapping[str, InitialState]) -> dict[str, np.ndarray]:
+    """Return which branch each initial state reaches under each convention of contact and start."""
+    shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(models)}
+    values = {name: value for name, value in _empty(shape).items() if name.startswith("initial")}
+    for k, model in enumerate(models):
+        for i, contact in enumerate(CONTACTS):
+            for j, start in enumerate(STARTS):
+                other = replace(model, contact=contact)
+                allowed = [
+                    n for n, state in enumerate(states.values()) if contact == "symmetric" or min(state.velocity) >= 0
+                ]
+                starts = [begin(other, list(states.values())[n], start) for n in allowed]
+                reached, _ = label(other, found.attractors[k], starts, found.time_limit)
+                for n, index in zip(allowed, reached, strict=True):
+                    if index != UNDETERMINED:
+                        values["initial_branch"][i, j, n, k] = found.branch[k][index]
+                        values["initial_side"][i, j, n, k] = found.side[k][index]
+    return values
+
+
+def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
+    """Follow each attractor of the smallest a upward and each of the largest a downward, step by step of the grid."""
+    count = len(found.attractors)
+    ends = (0, count - 1)
+    sweeps = max(1, *(len(found.attractors[end]) for end in ends))
+    values = _empty({"direction": 2, "sweep": sweeps, "a": count})
+    for direction, (end, steps, following) in enumerate(
+        zip(ends, (range(count), range(count - 1, -1, -1)), (found.upward, found.downward), strict=True)
+    ):
+        order = np.lexsort((-found.side[end], found.branch[end]))
+        for sweep, first in enumerate(order):
+            index = int(first)
+            for k in steps:
+                values["sweep_branch"][direction, sweep, k] = found.branch[k][index]
+                values["sweep_mean_distance"][direction, sweep, k] = found.attractors[k][index].motion.mean_distance
+                index = int(following[k][index])
+                if index == UNDETERMINED:
+                    break
+    return {name: value for name, value in values.items() if name.startswith("sweep")}

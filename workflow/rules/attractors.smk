@@ -1,0 +1,51 @@
+# Attractors: found for each law along the whole grid of a, then put together.
+
+ATTRACTOR_KEYS = (
+    "v",
+    "contact",
+    "start",
+    "synchronization_threshold",
+    "motion",
+    "attractors",
+)
+
+
+rule attractors_of_law:
+    output:
+        f"{RESULTS}/attractors/{{law}}.nc",
+    log:
+        f"{RESULTS}/logs/attractors/{{law}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/attractors/{{law}}.tsv"
+    # The longest jobs of a study: begun first, so that none is left alone at its end.
+    priority: 10
+    resources:
+        mem_mb=400,
+        runtime=240,
+    params:
+        grid=list(STUDY.grid.values()),
+        initial=STUDY.config["initial"],
+        config={key: STUDY.config[key] for key in ATTRACTOR_KEYS},
+        sources=source_fingerprint(STABILITY_SOURCES),
+    message:
+        "attractors of the {wildcards.law} law along a"
+    script:
+        "../scripts/attractors_of_law.py"
+
+
+rule attractors:
+    input:
+        expand(rules.attractors_of_law.output, law=LAWS),
+    output:
+        f"{SUMMARY}/attractors.nc",
+    log:
+        f"{RESULTS}/logs/attractors.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/attractors.tsv"
+    resources:
+        mem_mb=400,
+        runtime=10,
+    message:
+        "attractors of both laws"
+    script:
+        "../scripts/attractors.py"

@@ -1,0 +1,56 @@
+# Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
+
+BASIN_KEYS = (*ATTRACTOR_KEYS, "initial", "basins")
+BASIN_MAPS = [(law, a) for law in LAWS for a in STUDY.config["basins"][law]]
+TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
+GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
+
+
+rule basin_tile:
+    input:
+        rules.attractors.output,
+    output:
+        TILE,
+    log:
+        f"{RESULTS}/logs/basins/{{law}}/a{{a}}/tile{{tile}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/tile{{tile}}.tsv"
+    wildcard_constraints:
+        tile=r"\d+",
+    threads: STUDY.config["basins"]["threads"]
+    resources:
+        mem_mb=400,
+        runtime=240,
+    params:
+        a=lambda wildcards: STUDY.grid[wildcards.a],
+        config={key: STUDY.config[key] for key in BASIN_KEYS},
+        sources=source_fingerprint(STABILITY_SOURCES),
+    message:
+        "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
+    script:
+        "../scripts/basin_tile.py"
+
+
+rule basins:
+    input:
+        [
+            TILE.format(law=law, a=GRID_NAMES[a], tile=tile)
+            for law, a in BASIN_MAPS
+            for tile in range(STUDY.config["basins"]["tiles"])
+        ],
+    output:
+        f"{SUMMARY}/basins.nc",
+    log:
+        f"{RESULTS}/logs/basins.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/basins.tsv"
+    resources:
+        mem_mb=400,
+        runtime=10,
+    params:
+        maps=BASIN_MAPS,
+        config={key: STUDY.config[key] for key in BASIN_KEYS},
+    message:
+        "maps of basins of attraction"
+    script:
+        "../scripts/basins.py"
