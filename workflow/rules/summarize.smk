@@ -9,7 +9,9 @@ rule summary:
         f"{SUMMARY}/bifurcation.nc",
         f"{SUMMARY}/lyapunov.nc",
         f"{SUMMARY}/attractors.nc",
-        [f"{SUMMARY}/basins.nc"] if BASIN_MAPS else [],
+        [f"{SUMMARY}/basins.nc"]
+        if any(STUDY.config["basins"][law] for law in LAWS)
+        else [],
         f"{SUMMARY}/agreement.nc",
         f"{SUMMARY}/agreement.csv",
         f"{SUMMARY}/agreement.txt",
