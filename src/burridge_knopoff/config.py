@@ -67,6 +67,17 @@ class Study:
         shown = self.config["figures"].get("a", PAPER_A)
         return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
 
+    @property
+    def marked_states(self) -> dict[str, tuple[float, float]]:
+        """U_1(0) and U_N(0) of the initial states that lie in the plane of the maps of basins, by name."""
+        states = self.config["initial"]
+        plane = states[self.config["basins"]["initial"]]
+        return {
+            name: (state["position"][0], state["position"][-1])
+            for name, state in states.items()
+            if state["position"][1:-1] == plane["position"][1:-1] and state["velocity"] == plane["velocity"]
+        }
+
     def options(self, law: str, initial: str, a: str) -> str:
         """Return the options of `bk simulate` for one grid point, named by its wildcards.
 

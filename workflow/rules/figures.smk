@@ -21,6 +21,8 @@ rule figures:
                 "distance",
                 "lyapunov",
                 "agreement",
+                "basin_fractions",
+                *(["basins"] if BASIN_MAPS else []),
                 *(f"motion_{initial}" for initial in STUDY.initial),
             ],
             format=FORMATS,
@@ -46,6 +48,7 @@ rule figure_friction_laws:
 rule figure_mean_distance:
     input:
         rules.mean_distance.output,
+        rules.attractors.output,
     output:
         multiext(f"{FIGURES}/mean_distance", ".pdf", ".png"),
     log:
@@ -116,6 +119,39 @@ rule figure_lyapunov:
         "figure: Lyapunov exponents against a"
     script:
         "../scripts/figure_lyapunov.py"
+
+
+rule figure_basin_fractions:
+    input:
+        rules.attractors.output,
+    output:
+        multiext(f"{FIGURES}/basin_fractions", ".pdf", ".png"),
+    log:
+        f"{RESULTS}/logs/figure_basin_fractions.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_basin_fractions.tsv"
+    message:
+        "figure: basin fractions and sweeps of a"
+    script:
+        "../scripts/figure_basin_fractions.py"
+
+
+rule figure_basins:
+    input:
+        rules.basins.output,
+        rules.attractors.output,
+    output:
+        multiext(f"{FIGURES}/basins", ".pdf", ".png"),
+    log:
+        f"{RESULTS}/logs/figure_basins.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_basins.tsv"
+    params:
+        marked=STUDY.marked_states,
+    message:
+        "figure: maps of basins"
+    script:
+        "../scripts/figure_basins.py"
 
 
 rule figure_agreement:

@@ -8,4 +8,4 @@ from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.figures.mean_distance import draw
 from burridge_knopoff.figures.style import write_figure
 
-write_figure(draw(open_summary(snakemake.input[0])), *snakemake.output)
+write_figure(draw(*(open_summary(path) for path in snakemake.input)), *snakemake.output)

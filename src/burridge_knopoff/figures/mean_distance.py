@@ -1,36 +1,123 @@
-"""⟨J⟩ against a for each initial state and both laws: the paper's Figs. 3a and 3b."""
+"""⟨J⟩ against a for each initial state and both laws, the paper's Figs. 3a and 3b, with the attractors behind it."""
 
 from __future__ import annotations
 
+import numpy as np
 import xarray
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
+from burridge_knopoff.figures.style import PAGE, cells, label_panels, styled
+
+# Each initial state has a marker; colours are left to the branches.
+MARKERS = "ovs^Dphx"
 
 
 @styled
-def draw(mean_distance: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩(a), a panel for each law; bars are three standard errors, gaps are runs that did not complete."""
+def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
+    """Draw ⟨J⟩(a) of the runs over the branches of attractors, and which branch each initial state reaches.
+
+    A column for each law. Above: coloured points are attractors, black curves are the runs with three standard errors;
+    gaps are runs that did not complete. Below: a row for each initial state under each convention of contact and start,
+    in the colour of the branch that it reaches; white is undetermined.
+    """
     laws = mean_distance["law"].values
-    figure, panels = new_figure(PAGE, 2.7, columns=len(laws))
-    a = mean_distance["a"].values
-    for panel, law in zip(panels, laws, strict=True):
-        for index, initial in enumerate(mean_distance["initial"].values):
-            run = mean_distance.sel(law=law, initial=initial)
-            panel.errorbar(
-                a,
-                run["mean_distance"].values,
-                3.0 * run["mean_distance_error"].values,
-                fmt="-o" if index == 0 else "-D",
-                markersize=2.8 if index == 0 else 1.8,
-                linewidth=0.8,
-                elinewidth=0.6,
-                color=color(index),
-                label=initial,
-            )
-        panel.set_xlabel("$a$")
-    panels[0].set_ylabel(r"$\langle J\rangle$")
-    panels[0].set_ylim(bottom=-0.01)
-    panels[0].legend(title="initial state", loc="upper left")
-    label_panels(panels, [f"{law} law" for law in laws])
+    rows = attractors.sizes["initial"] * attractors.sizes["contact"] * attractors.sizes["start"]
+    strip = 0.13 * rows + 0.2
+    figure = Figure(figsize=(PAGE, 3.3 + strip), layout="constrained")
+    panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, strip])
+    colors = branch_colors(attractors)
+    for column, law in enumerate(laws):
+        curves, conventions = panels[:, column]
+        _branches(curves, attractors.sel(law=law), colors[law])
+        _runs(curves, mean_distance.sel(law=law))
+        _conventions(conventions, attractors.sel(law=law), colors[law])
+        conventions.set_xlabel("$a$")
+    panels[0, 0].set_ylabel(r"$\langle J\rangle$")
+    panels[0, 0].set_ylim(bottom=-0.01)
+    _legend(figure, panels[0, 0], mean_distance, attractors, colors)
+    label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)])
     return figure
+
+
+def _branches(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
+    branch = attractors["branch"].values
+    for number in np.unique(branch[branch >= 0]):
+        slots = branch == number
+        a = np.broadcast_to(attractors["a"].values[:, None], branch.shape)[slots]
+        panel.plot(
+            a,
+            attractors["mean_distance"].values[slots],
+            "o",
+            color=colors[int(number)],
+            markersize=5.0,
+            markeredgewidth=0,
+            alpha=0.55,
+            zorder=1,
+        )
+
+
+def _runs(panel: Axes, runs: xarray.Dataset) -> None:
+    for index, initial in enumerate(runs["initial"].values):
+        run = runs.sel(initial=initial)
+        panel.errorbar(
+            run["a"].values,
+            run["mean_distance"].values,
+            3.0 * run["mean_distance_error"].values,
+            fmt=f"-{MARKERS[index % len(MARKERS)]}",
+            markersize=1.8,
+            markerfacecolor="white" if index % 2 else "black",
+            markeredgewidth=0.5,
+            linewidth=0.5,
+            elinewidth=0.5,
+            color="black",
+            zorder=2,
+        )
+
+
+def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
+    reached = attractors["initial_branch"].stack(row=("initial", "contact", "start")).transpose("row", "a")
+    edges = cells(attractors["a"].values)
+    picture = np.ones((*reached.shape, 3))
+    for branch, color in colors.items():
+        picture[reached.values == branch] = to_rgb(color)
+    panel.pcolormesh(edges, np.arange(reached.sizes["row"] + 1), picture, rasterized=True)
+    names = [", ".join(map(str, row)) for row in reached["row"].values]
+    panel.set_yticks(np.arange(len(names)) + 0.5, names, fontsize=6.5)
+    panel.tick_params(axis="y", length=0)
+    panel.set_ylim(len(names), 0)
+
+
+def _legend(
+    figure: Figure,
+    panel: Axes,
+    runs: xarray.Dataset,
+    attractors: xarray.Dataset,
+    colors: dict[str, dict[int, str]],
+) -> None:
+    handles = [
+        Line2D(
+            [],
+            [],
+            color="black",
+            linewidth=0.5,
+            marker=MARKERS[n % len(MARKERS)],
+            markersize=3,
+            markerfacecolor="white" if n % 2 else "black",
+            label=name,
+        )
+        for n, name in enumerate(runs["initial"].values)
+    ]
+    panel.legend(handles=handles, title="initial state", loc="upper left")
+    shown: dict[str, str] = {}
+    for law in attractors["law"].values:
+        for branch, color in sorted(colors[law].items()):
+            shown.setdefault("other branches" if color == OTHER_COLOR else branch_name(branch), color)
+    entries = [
+        Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
+        for name, color in shown.items()
+    ]
+    figure.legend(handles=entries, loc="outside lower center", ncols=min(7, len(entries)))

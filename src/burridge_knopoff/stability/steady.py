@@ -27,6 +27,9 @@ CLOSED = (SYNCHRONIZED, PERIODIC)
 
 BATCHES = 6
 
+# Velocity that is rounding.
+STANDING = 1e-14
+
 
 @dataclass(frozen=True, eq=False)
 class SteadyMotion:
@@ -71,7 +74,9 @@ class SteadyMotion:
 def instant_of(state: np.ndarray) -> Instant:
     """Return the instant of one return, shape (2 blocks,): a block without velocity sticks there."""
     position, velocity = np.split(state, 2)
-    return Instant(position.copy(), velocity.copy(), velocity == 0.0)
+    # Another block that stops at the same instant may have been left a rounding of velocity, of either sign.
+    stuck = np.abs(velocity) <= STANDING
+    return Instant(position.copy(), np.where(stuck, 0.0, velocity), stuck)
 
 
 def settings_of(model: Model, transient: float, window: float, exponents: int) -> Settings:

@@ -121,7 +121,8 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
         values[name] = whole
         variables[name] = replace(item, dimensions=("law", *item.dimensions))
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
-    coordinates["law"] = axes([], [])["law"]
+    law = axes([], [])["law"]
+    coordinates["law"] = (law[0], np.array([part.attrs["law"] for part in parts], dtype=object), law[2])
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
     return summary("Attractors of both friction laws", variables, values, coordinates, attributes)
 

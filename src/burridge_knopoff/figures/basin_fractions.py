@@ -1,0 +1,70 @@
+"""Basin fractions against a, and how sweeps of a move between the branches."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
+from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled
+from burridge_knopoff.stability.sampling import fraction_interval
+
+
+@styled
+def draw(attractors: xarray.Dataset) -> Figure:
+    """Draw, for each law, the fraction of sampled states that reach each branch, and ⟨J⟩ along sweeps up and down in a.
+
+    Both sides of a branch are counted together; bands are 95 % Wilson intervals.
+    """
+    laws = attractors["law"].values
+    figure, panels = new_figure(PAGE, 5.0, rows=2, columns=len(laws))
+    colors = branch_colors(attractors)
+    for column, law in enumerate(laws):
+        one = attractors.sel(law=law)
+        _fractions(panels[column], one, colors[law])
+        _sweeps(panels[len(laws) + column], one)
+        panels[len(laws) + column].set_xlabel("$a$")
+    panels[0].set_ylabel("fraction of initial states")
+    panels[0].set_ylim(-0.02, 1.02)
+    panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
+    for column in range(len(laws)):
+        panels[column].legend(loc="upper right", fontsize=7)
+    panels[len(laws)].legend(loc="lower right")
+    titles = [f"{law} law: {what}" for what in ("basin fractions", "sweeps of $a$") for law in laws]
+    label_panels(panels, titles)
+    return figure
+
+
+def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
+    a = attractors["a"].values
+    samples = int(attractors.attrs["samples"])
+    branch, count = attractors["branch"].values, attractors["basin_count"].values
+    for number, color in sorted(colors.items()):
+        if color == OTHER_COLOR:
+            continue
+        there = (branch == number).any(axis=1)
+        hits = np.where(branch == number, count, 0).sum(axis=1)
+        interval = np.array([fraction_interval(int(hit), samples) for hit in hits])
+        # Gaps where the branch does not exist.
+        interval[~there] = np.nan
+        panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=branch_name(number))
+        panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
+
+
+def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
+    styles = {"upward": ("black", ">", 3.4), "downward": ("#D55E00", "<", 2.4)}
+    for direction, (color, marker, size) in styles.items():
+        for number in range(attractors.sizes["sweep"]):
+            values = attractors["sweep_mean_distance"].sel(direction=direction).isel(sweep=number).values
+            panel.plot(
+                attractors["a"].values,
+                values,
+                f"-{marker}",
+                markersize=size,
+                markeredgewidth=0,
+                linewidth=0.5,
+                color=color,
+                label=f"{direction} from an attractor at the end" if number == 0 else None,
+            )

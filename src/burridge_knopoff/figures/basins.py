@@ -1,0 +1,69 @@
+"""Maps of basins of attraction."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
+from burridge_knopoff.figures.style import PAGE, label_panels, styled
+from burridge_knopoff.friction import LAWS
+
+COLUMNS = 2
+
+
+@styled
+def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, tuple[float, float]]) -> Figure:
+    """Draw each map in the colours of the branches reached, mirror images in a lighter shade, undetermined in black.
+
+    marked : U_1(0) and U_N(0) of initial states that lie in the plane of the maps, by name
+    """
+    count = basins.sizes["map"]
+    columns = min(COLUMNS, count)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.3), layout="constrained")
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    colors = branch_colors(attractors)
+    first, last = (basins[name].values for name in ("first_position", "last_position"))
+    half = [0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5 for axis in (first, last)]
+    extent = (first[0] - half[0], first[-1] + half[0], last[0] - half[1], last[-1] + half[1])
+    titles = []
+    for number, panel in enumerate(panels.flat):
+        if number >= count:
+            panel.set_axis_off()
+            continue
+        one = basins.isel(map=number)
+        law = LAWS[int(one["law"])]
+        titles.append(f"{law} law, $a={one['a'].item():g}$")
+        picture = np.zeros((*one["branch"].shape, 3))
+        present = sorted(
+            set(zip(one["branch"].values.ravel().tolist(), one["side"].values.ravel().tolist(), strict=True))
+        )
+        handles = []
+        for branch, side in present:
+            shade = to_rgb("black") if branch < 0 else side_color(colors[law][branch], side)
+            picture[(one["branch"].values == branch) & (one["side"].values == side)] = shade
+            name = "undetermined" if branch < 0 else branch_name(branch) + {1: " (+)", -1: " (−)", 0: ""}[side]
+            handles.append(Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name))
+        panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="equal")
+        for name, (x, y) in marked.items():
+            panel.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=1.0)
+            left = x > 0.5 * (extent[0] + extent[1])
+            panel.annotate(
+                name,
+                (x, y),
+                xytext=(-6 if left else 6, 5),
+                textcoords="offset points",
+                ha="right" if left else "left",
+                bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+            )
+        panel.legend(handles=handles, loc="upper right", frameon=True, framealpha=0.85, edgecolor="none", fontsize=7)
+        if number >= count - columns:
+            panel.set_xlabel("$U_1(0)$")
+        if number % columns == 0:
+            panel.set_ylabel("$U_N(0)$")
+    label_panels(list(panels.flat)[:count], titles)
+    return figure

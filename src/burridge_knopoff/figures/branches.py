@@ -1,0 +1,39 @@
+"""The colours of attractor branches, the same in every figure."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.colors import to_rgb
+
+UNDETERMINED_COLOR = "#FFFFFF"
+OTHER_COLOR = "#999999"
+
+# The synchronized attractor has the first; the others go to the branches that exist at the most values of a.
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
+
+
+def branch_colors(attractors: xarray.Dataset) -> dict[str, dict[int, str]]:
+    """Return {law: {branch: colour}} for all branches; those of a short range share one colour."""
+    chosen: dict[str, dict[int, str]] = {}
+    for law in attractors["law"].values:
+        number, count = np.unique(attractors["branch"].sel(law=law).values, return_counts=True)
+        # Both sides of a branch fill a slot each; that does not change the order by much.
+        ranked = [int(n) for n in number[np.lexsort((number, -count))] if n > 0]
+        colors = dict.fromkeys(ranked, OTHER_COLOR)
+        colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
+        chosen[str(law)] = {0: COLORS[0], **colors}
+    return chosen
+
+
+def side_color(color: str, side: int) -> tuple[float, float, float]:
+    """Return the colour of one side of a branch: lighter for the side −1."""
+    red, green, blue = to_rgb(color)
+    if side >= 0:
+        return red, green, blue
+    return tuple(0.45 * part + 0.55 for part in (red, green, blue))  # type: ignore[return-value]
+
+
+def branch_name(branch: int) -> str:
+    """Return how a legend calls a branch."""
+    return "synchronized" if branch == 0 else f"branch {branch}"

@@ -1,0 +1,167 @@
+"""Attractors: labels hold for whole runs, unstable motions are none, mirror images go together, branches follow a."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.stability.attractors import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, Search, label
+from burridge_knopoff.stability.continuation import branches
+from burridge_knopoff.stability.flow import Instant, Model, begin
+from burridge_knopoff.stability.sampling import fraction_interval, sample_states
+from burridge_knopoff.stability.steady import follow, lies_on
+from tests.summaries.test_agreement import MOTION
+
+SETTINGS = {
+    "transient": 2000.0,
+    "window": 1500.0,
+    "resolution": 1e-3,
+    "time_limit": 20000.0,
+    "seed": 3,
+    "pushes": 8,
+}
+
+
+def model(law="linearized", a=0.08):
+    return Model(Chain(3), Friction(law, a))
+
+
+def states(count, seed=5):
+    position, velocity = sample_states(3, count, (-1.5, 1.5), (0.0, 0.2), seed)
+    return [InitialState("sample", tuple(u), tuple(w)) for u, w in zip(position, velocity, strict=True)]
+
+
+@pytest.fixture(scope="module")
+def search():
+    """The attractors of the linearized law at a = 0.08, found from a few states."""
+    found = Search(model(), SETTINGS, 1e-6, MOTION)
+    found.labels([begin(model(), state) for state in states(40)])
+    return found
+
+
+def test_labels_hold_for_whole_runs(search):
+    """What is decided after some hundred time units is what a run of 8000 ends in."""
+    chosen = states(60, seed=11)
+    labels, times = label(search.model, search.attractors, [begin(search.model, state) for state in chosen], 20000.0)
+    assert (labels >= 0).all()
+    assert np.median(times) < 500.0
+    reached = set()
+    for state, index in zip(chosen, labels, strict=True):
+        run = simulate("linearized", 0.08, state, transient=6000.0, window=2000.0, events="none", lyapunov_exponents=0)
+        expected = search.attractors[index].motion.mean_distance
+        assert run.mean_distance == pytest.approx(expected, abs=2e-4)
+        reached.add(index)
+    assert len(reached) >= 2
+
+
+def test_mirrored_states_reach_mirrored_attractors():
+    """Beyond the loss of synchrony, at a = 0.1, there is a mirror pair."""
+    found = Search(model(a=0.1), SETTINGS, 1e-6, MOTION)
+    starts = [begin(found.model, state) for state in states(30)]
+    labels = found.labels(starts)
+    partners = np.array([attractor.partner for attractor in found.attractors])
+    assert (partners[partners] == np.arange(len(partners))).all()
+    assert {ASYMMETRIC, SYMMETRIC} <= {attractor.symmetry for attractor in found.attractors}
+    mirrored, _ = label(found.model, found.attractors, [start.mirrored() for start in starts], 20000.0)
+    assert (mirrored == partners[labels]).all()
+    assert len(set(labels)) >= 3
+
+
+def test_an_unstable_motion_is_no_attractor():
+    """A symmetric state stays symmetric for ever, though the synchronized motion is unstable at a = 0.1."""
+    found = Search(model(a=0.1), SETTINGS, 1e-6, MOTION)
+    symmetric = begin(found.model, InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
+    motion = follow(found.model, symmetric, 2000.0, 1000.0, 1e-3, 1e-6, MOTION)
+    assert motion.mean_distance == 0.0
+    assert motion.settled
+    index = found.reach(symmetric)
+    assert found.attractors[index].symmetry == ASYMMETRIC
+    assert found.attractors[index].motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
+    stable = Search(model(a=0.08), SETTINGS, 1e-6, MOTION)
+    assert stable.attractors[stable.reach(symmetric)].symmetry == SYNCHRONIZED
+
+
+def test_pushes_from_within_the_radius_come_back(search):
+    """With other random numbers than those that the radius was set by."""
+    generator = np.random.default_rng(99)
+    for index, attractor in enumerate(search.attractors):
+        narrow = [dataclasses.replace(item, radius=item.radius / 10) for item in search.attractors]
+        starts = []
+        for k in generator.integers(len(attractor.motion.returns), size=30):
+            position, velocity = np.split(attractor.motion.returns[k], 2)
+            change = generator.uniform(-attractor.radius, attractor.radius, 6)
+            moving = np.abs(velocity) > 1e-12
+            pushed = np.where(moving, np.maximum(velocity + change[3:], 0.0), 0.0)
+            starts.append(Instant(position + change[:3], pushed, ~moving))
+        labels, _ = label(search.model, narrow, starts, 50000.0)
+        assert (labels == index).all()
+
+
+def test_a_motion_lies_on_its_own_attractor_only(search):
+    for index, attractor in enumerate(search.attractors):
+        again = follow(search.model, attractor.motion.instant(), 500.0, 1000.0, 1e-3, 1e-6, MOTION)
+        others = [other.motion for k, other in enumerate(search.attractors) if k not in (index, attractor.partner)]
+        assert lies_on(again, attractor.motion, 1e-3)
+        assert not any(lies_on(again, other, 1e-3) for other in others)
+
+
+def test_nothing_is_reached_where_nothing_ever_stops():
+    """Without weakening of friction, near uniform sliding, no block ever stops."""
+    found = Search(model(a=0.0), SETTINGS, 1e-6, MOTION)
+    sliding = InitialState("sliding", (-0.83, -0.66, -0.84), (0.1, 0.1, 0.1))
+    assert found.labels([begin(found.model, sliding)]).tolist() == [-1]
+    assert found.attractors == []
+
+
+def stand_in(search, symmetry, mean_distance, partner, ahead=1.0):
+    """An attractor of which only what `branches` reads is set."""
+    returns = np.array([[ahead, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    motion = dataclasses.replace(
+        search.attractors[0].motion, mean_distance=mean_distance, returns=returns, mirror_returns=-returns
+    )
+    return Attractor(motion, symmetry, partner, 0.01)
+
+
+def test_branches_at_a_pitchfork(search):
+    """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
+    before = [stand_in(search, SYNCHRONIZED, 0.0, 0), stand_in(search, SYMMETRIC, 0.14, 1)]
+    pair = [stand_in(search, ASYMMETRIC, 0.01, 0 + 1, -1.0), stand_in(search, ASYMMETRIC, 0.01, 0, 1.0)]
+    after = [*pair, stand_in(search, SYMMETRIC, 0.15, 2)]
+    upward = [np.array([0, 2]), np.array([1, 0, 2]), np.array([-1, -1, -1])]
+    downward = [np.array([-1, -1]), np.array([0, 0, 1]), np.array([1, 0, 2])]
+    later = [after[1], after[0], after[2]]
+    later = [dataclasses.replace(later[0], partner=1), dataclasses.replace(later[1], partner=0), later[2]]
+    branch, side = branches([before, after, later], upward, downward)
+    assert [list(row) for row in branch] == [[0, 1], [2, 2, 1], [2, 2, 1]]
+    assert [list(row) for row in side] == [[0, 0], [-1, 1, 0], [1, -1, 0]]
+
+
+def test_an_attractor_that_is_not_reached_back_is_a_new_branch(search):
+    """Hysteresis: going up leads from A to B, going down from B to B."""
+    first = [stand_in(search, SYMMETRIC, 0.1, 0), stand_in(search, SYMMETRIC, 0.2, 1)]
+    second = [stand_in(search, SYMMETRIC, 0.21, 0)]
+    branch, _ = branches([first, second], [np.array([0, 0]), np.array([-1])], [np.array([-1, -1]), np.array([1])])
+    assert [list(row) for row in branch] == [[1, 2], [2]]
+    branch, _ = branches([first, second], [np.array([0, -1]), np.array([-1])], [np.array([-1, -1]), np.array([1])])
+    assert [list(row) for row in branch] == [[1, 2], [3]]
+
+
+def test_samples_and_intervals():
+    position, velocity = sample_states(4, 500, (-1.5, 1.5), (0.0, 0.2), 7)
+    assert position.shape == velocity.shape == (500, 4)
+    assert position.min() >= -1.5
+    assert velocity.max() <= 0.2
+    assert abs(position.mean()) < 0.1
+    shorter, _ = sample_states(4, 20, (-1.5, 1.5), (0.0, 0.2), 7)
+    assert (shorter == position[:20]).all()
+    # Wilson's formula by hand, z = 1.959964.
+    fraction, low, high = fraction_interval(9, 10)
+    z = 1.959963984540054
+    centre = (0.9 + z * z / 20) / (1 + z * z / 10)
+    half = z / (1 + z * z / 10) * np.sqrt(0.9 * 0.1 / 10 + z * z / 400)
+    assert (fraction, low, high) == pytest.approx((0.9, centre - half, centre + half))
+    assert np.isnan(fraction_interval(0, 0)).all()
