@@ -18,6 +18,8 @@ initial: {minus: {}, plus: {}}
 transient: 100
 window: 200
 batches: 4
+attractors: {samples: 6, transient: 500, window: 500, time_limit: 5000, pushes: 4}
+basins: {pixels: 8}
 """
 
 

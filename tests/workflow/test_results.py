@@ -69,6 +69,28 @@ def test_lyapunov_summary(results):
         assert point["lyapunov_infinite_count"].item() == run.lyapunov_infinite_count > 0
 
 
+def test_attractors_and_basins(results):
+    with xr.open_dataset(results / "summary" / "attractors.nc") as attractors:
+        assert attractors["a"].values.tolist() == GRID
+        there = attractors.sel(law="linearized", a=0.08)
+        assert there["branch"].values[0] == 0
+        assert there["mean_distance"].values[0] < 1e-6
+        counted = there["basin_count"].sum() + there["undetermined_count"]
+        assert counted == attractors.attrs["samples"] == 6
+        # Both runs are on an attractor that is known.
+        assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
+        branches = set(there["branch"].values.tolist())
+    with xr.open_dataset(results / "summary" / "basins.nc") as basins:
+        assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, "separation": 5}
+        laws = basins["law"].attrs["flag_meanings"].split()
+        assert [(laws[law], a) for law, a in zip(basins["law"].values, basins["a"].values, strict=True)] == [
+            ("linearized", 0.05),
+            ("linearized", 0.08),
+            ("nonlinear", 0.08),
+        ]
+        assert set(basins["branch"].values[1].ravel().tolist()) <= branches | {-1}
+
+
 def test_agreement_summary(results):
     with xr.open_dataset(results / "summary" / "agreement.nc") as agreement:
         pair = [simulate(law, 0.2, "plus", **OPTIONS) for law in ("linearized", "nonlinear")]
@@ -100,6 +122,8 @@ def test_agreement_summary(results):
         "motion_plus",
         "agreement",
         "lyapunov",
+        "basins",
+        "basin_fractions",
     ],
 )
 def test_figures_are_pictures(results, name):
