@@ -73,7 +73,7 @@ class Exponents:
             self.most_stuck = stuck
             if self.alive > 2 * state.blocks - stuck:
                 self.alive = 2 * state.blocks - stuck
-                self._renew(state, clock, completed)
+                self._orthonormalise(True, self.batch >= 0 and self.batch < self.batches)
         if clock >= self.due or (completed and self.alive > 0):
             self._renew(state, clock, completed)
 
