@@ -29,7 +29,8 @@ NEVER = 1e300
 class Exponents:
     """Growth of the perturbations of a run.
 
-    begin : time at which the perturbations start; until the first edge they only turn into the growing directions
+    begin : the perturbations start with the piece of the motion in which this time lies; until the first edge they only
+        turn into the growing directions
     edge : boundaries of the batches, shape (batches + 1,)
     """
 
