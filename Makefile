@@ -49,6 +49,7 @@ test: .venv/kernel .venv/test
 benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/peers.py
 	.venv-benchmark/bin/python benchmarks/chain_length.py
+	.venv-benchmark/bin/python benchmarks/lyapunov.py
 	.venv-benchmark/bin/python benchmarks/point_job.py
 	.venv-benchmark/bin/python benchmarks/study.py
 

@@ -54,9 +54,8 @@ def main() -> None:
 
         def contestant(law: str, solver: str, blocks: int = blocks, window: float = window):
             initial = near_sliding(blocks, law)
-            return lambda: simulate(
-                law, A, initial, v=V, solver=solver, transient=TRANSIENT, window=window, events="all"
-            )
+            settings = {"transient": TRANSIENT, "window": window, "events": "all", "lyapunov_exponents": 0}
+            return lambda: simulate(law, A, initial, v=V, solver=solver, **settings)
 
         runs = {name: contestant(*variant) for name, variant in VARIANTS.items()}
         results = {name: run() for name, run in runs.items()}

@@ -37,7 +37,9 @@ def compare(law: str, state: str, rounds: int) -> list[list[str]]:
     """Return the rows of one law and initial state."""
 
     def ours(transient: float = TRANSIENT, window: float = WINDOW, **settings):
-        return simulate(law, A, state, v=V, transient=transient, window=window, events="all", **settings)
+        # The peers compute no Lyapunov exponents.
+        settings = {"events": "all", "lyapunov_exponents": 0, **settings}
+        return simulate(law, A, state, v=V, transient=transient, window=window, **settings)
 
     def paper():
         return ours(0.0, RK4_WINDOW, solver="rk4", step=RK4_STEP)

@@ -36,7 +36,8 @@ def test_all_options(tmp_path):
     options = (
         "--law nonlinear --solver rk4 --step 0.01 --a 0.3 --v 0.2 --blocks 2 --initial pair --position -0.9,-1.1 "
         "--velocity -0.1,0.1 --contact symmetric --start tested --transient 0 --window 30 --batches 3 --sampling 1 "
-        "--trajectory 5 --trajectory-sampling 0.5 --events all --event-window 1"
+        "--trajectory 5 --trajectory-sampling 0.5 --events all --event-window 1 "
+        "--lyapunov-exponents 2 --lyapunov-alignment 7"
     )
     assert main(["simulate", *options.split(), "--out", str(out)]) == 0
     with netCDF4.Dataset(out) as dataset:
@@ -49,6 +50,7 @@ def test_all_options(tmp_path):
         assert len(dataset.dimensions["sample"]) == 31
         assert len(dataset.dimensions["trajectory_time"]) == 11
         assert len(dataset.dimensions["batch"]) == 3
+        assert len(dataset.dimensions["exponent"]) == 2
         assert dataset["event_time"][0] < 29.0
 
 
@@ -87,6 +89,11 @@ def test_no_events(tmp_path):
         ([*RUN, "--batches", "1", "--out", "x.nc"], "batches: 1"),
         ([*RUN, "--batches", "2.5", "--out", "x.nc"], "--batches"),
         ([*RUN, "--step", "0", "--out", "x.nc"], "step: 0"),
+        ([*RUN, "--lyapunov-exponents", "-1", "--out", "x.nc"], "lyapunov_exponents: -1"),
+        ([*RUN, "--lyapunov-exponents", "7", "--out", "x.nc"], "lyapunov_exponents: 7 is not allowed: at most 6"),
+        ([*RUN, "--lyapunov-exponents", "two", "--out", "x.nc"], "--lyapunov-exponents"),
+        ([*RUN, "--lyapunov-alignment", "-1", "--out", "x.nc"], "lyapunov_alignment: -1"),
+        ([*RUN, "--lyapunov-alignment", "inf", "--out", "x.nc"], "lyapunov_alignment: inf"),
         ([*RUN, "--events", "some", "--out", "x.nc"], "none | window | all"),
         ([*RUN, "--contact", "loose", "--out", "x.nc"], "one_sided | symmetric"),
         ([*RUN, "--sampling", "1e-6", "--window", "1e6", "--out", "x.nc"], "sampling: 1e-06"),

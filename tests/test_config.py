@@ -96,6 +96,17 @@ BAD = [
     ({"synchronization_threshold": "1e-6"}, ["synchronization_threshold: '1e-6'", "1.0e-6"]),
     ({"agreement ": {}}, ["'agreement ' is not allowed as a key"]),
     ({"agreement": []}, ["agreement: []"]),
+    ({"lyapunov_exponents": -1}, ["lyapunov_exponents: -1", "≥ 0"]),
+    ({"lyapunov_exponents": 2.5}, ["lyapunov_exponents: 2.5", "whole number"]),
+    ({"lyapunov_exponents": True}, ["lyapunov_exponents: True"]),
+    ({"lyapunov_exponents": 7}, ["lyapunov_exponents: 7", "at most 6", "two a block"]),
+    ({"lyapunov_exponents": 5, "initial": {"x": PAIR}}, ["lyapunov_exponents: 5", "at most 4"]),
+    ({"lyapunov_exponents": 5000}, ["lyapunov_exponents: 5000", "2048"]),
+    ({"lyapunov_alignment": -1}, ["lyapunov_alignment: -1", "≥ 0"]),
+    ({"lyapunov_alignment": NAN}, ["lyapunov_alignment: nan"]),
+    ({"lyapunov_alignment": "long"}, ["lyapunov_alignment: 'long'"]),
+    ({"lyapunov_alignment": 1e10}, ["lyapunov_alignment: 1", "1e+09"]),
+    ({"lyapunov_exponent": 3}, ["lyapunov_exponent: unknown key", "lyapunov_exponents"]),
     ({"figures": {"a": 0.0801}}, ["figures.a: 0.0801", "grid"]),
 ]
 
@@ -169,13 +180,15 @@ def test_lists_and_several_ranges(schema):
 
 
 def test_options_of_a_point(schema):
-    study = load(schema, solver={"nonlinear": "rk4"}, step=0.01)
+    study = load(schema, solver={"nonlinear": "rk4"}, step=0.01, lyapunov_exponents=6, lyapunov_alignment=250)
     assert "--solver map" in study.options("linearized", "plus", "0.0800")
     options = study.options("nonlinear", "plus", "0.0800")
     assert "--a 0.08 " in options
     assert "--position=" not in options
     assert "--position 0.989,-0.993,-0.991" in options
     assert "--step 0.01" in options
+    assert "--lyapunov-exponents 6" in options
+    assert "--lyapunov-alignment 250" in options
     assert "--position=-0.989,-0.993,-0.991" in study.options("nonlinear", "minus", "0.0800")
     with pytest.raises(ConfigError, match=re.escape("a0.0801.nc")):
         study.options("linearized", "plus", "0.0801")

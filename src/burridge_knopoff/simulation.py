@@ -292,7 +292,7 @@ def _collect(
     completed = status == "completed"
     if not completed:
         batch[:] = math.nan
-    lyapunov = _exponents(solution, settings.lyapunov_exponents, completed)
+    lyapunov = _exponents(solution, settings, completed)
     speed = measured["highest_speed"]
     force = measured["lowest_force"]
     least_friction = [float(friction(value)) if value > -1e299 else math.nan for value in (speed.max(), speed[1])]
@@ -333,23 +333,32 @@ def _collect(
     )
 
 
-def _exponents(solution: EventDriven | TimeStepping, count: int, completed: bool) -> dict[str, Any]:
-    """Return the Lyapunov exponents, their errors from the batches and their batch values; NaN where there are none."""
-    batches = solution.observer.batches
-    batch = np.full((batches, count), np.nan)
+def _exponents(solution: EventDriven | TimeStepping, settings: Settings, completed: bool) -> dict[str, Any]:
+    """Return the Lyapunov exponents, their errors and their batch values; NaN where there are none.
+
+    The standard error of the batches, which falls like the root of the window, is right for chaos. In regular motion
+    perturbations may grow like a power of time: from an alignment A through a window T one that grows linearly gains
+    ln(1 + T/(1 + A)), which no run of that length can tell from an exponent of that over T. Both go into the error.
+    """
+    count = settings.lyapunov_exponents
+    batch = np.full((settings.batches, count), np.nan)
     mean = np.full(count, np.nan)
     error = np.full(count, np.nan)
     infinite = -1
     if completed and count and isinstance(solution, EventDriven):
         measured = solution.exponents.results()
         growth, duration = measured["growth"], measured["duration"]
-        infinite = measured["most_stuck"]
         filled = duration > 0.0
         batch[filled] = growth[filled] / duration[filled, None]
-        mean = growth.sum(axis=0) / duration.sum() if filled.any() else mean
+        if filled.any():
+            infinite = measured["lost"]
+            mean = growth.sum(axis=0) / duration.sum()
         if filled.all():
             finite = np.isfinite(mean)
-            error[finite] = batch[:, finite].std(axis=0, ddof=1) / math.sqrt(batches)
+            statistical = batch[:, finite].std(axis=0, ddof=1) / math.sqrt(settings.batches)
+            alignment = min(settings.lyapunov_alignment, settings.transient)
+            resolution = math.log1p(duration.sum() / (1.0 + alignment)) / duration.sum()
+            error[finite] = np.hypot(statistical, resolution)
     return {
         "lyapunov_exponent": mean,
         "lyapunov_error": error,

@@ -73,6 +73,30 @@ def test_history_is_the_command_that_makes_the_file(path, tmp_path):
     assert again.read_bytes() == path.read_bytes()
 
 
+@pytest.mark.parametrize("exponents", [0, 2, 6])
+def test_history_tells_how_many_exponents(tmp_path, exponents):
+    settings = {"transient": 50.0, "window": 60.0, "lyapunov_exponents": exponents, "lyapunov_alignment": 12.5}
+    run = simulate("nonlinear", 0.1, "plus", **settings)
+    write_point(run, tmp_path / "point.nc")
+    with xr.open_dataset(tmp_path / "point.nc") as dataset:
+        command = dataset.attrs["history"].split()
+        assert dataset["lyapunov_exponent"].shape == (exponents,)
+        assert dataset["batch_lyapunov_exponent"].shape == (7, exponents)
+    assert command[command.index("--lyapunov-alignment") + 1] == "12.5"
+    command[0] = str(Path(sys.executable).parent / "bk")
+    subprocess.run([*command, "--out", str(tmp_path / "again.nc")], check=True)
+    assert (tmp_path / "again.nc").read_bytes() == (tmp_path / "point.nc").read_bytes()
+
+
+def test_exponents_that_were_not_computed_are_nan(tmp_path):
+    write_point(simulate("linearized", 0.08, "plus", solver="rk4", step=0.1, window=50.0), tmp_path / "point.nc")
+    with xr.open_dataset(tmp_path / "point.nc") as dataset:
+        assert dataset["lyapunov_exponent"].shape == (3,)
+        for name in ("lyapunov_exponent", "lyapunov_error", "batch_lyapunov_exponent"):
+            assert np.isnan(dataset[name]).all(), name
+        assert dataset["lyapunov_infinite_count"].item() == -1
+
+
 def test_no_cf_error(path, tmp_path):
     checker = str(Path(sys.executable).parent / "compliance-checker")
     run = subprocess.run(

@@ -43,7 +43,7 @@ else:
     from burridge_knopoff.kernel.state import YOUNG
 
 
-# Without events, perturbations are still to be looked after now and then.
+# Without events, perturbations are still to be kept apart now and then.
 LONGEST_FOLLOW = 4.0
 
 
@@ -128,8 +128,10 @@ class EventDriven:
                 length = self.event_time
             if self.observing:
                 self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
-            if self.exponents.running:
-                self._follow(length, reach, block >= 0 or length >= remaining)
+            if self.tangent.vectors > 0:
+                self.exponents.begin_within(self.state, self.clock, length)
+                if self.exponents.running:
+                    self._follow(length, reach, block >= 0 or length >= remaining)
             self.since_event += length
             self._advance(length)
             if self.closed_form:
@@ -145,7 +147,7 @@ class EventDriven:
                 self.since_event = 0.0
                 if self.needs_modes:
                     self.modes.start(self.state)
-            if self.tangent.vectors > 0:
+            if self.exponents.running and self.since_tangent == 0.0:
                 self.exponents.follow(self.state, self.clock, length >= remaining)
             if length >= remaining:
                 return COMPLETED
@@ -154,13 +156,33 @@ class EventDriven:
         return RUNNING
 
     def _follow(self, length, reach, due):
-        """Carry the perturbations along a piece; those of the linearized law along all pieces since the last event."""
-        self.since_tangent += length
+        """Carry the perturbations along a piece, in strides after which they can be kept apart.
+
+        The closed form of the linearized law spans several pieces: there they wait for an event or LONGEST_FOLLOW.
+        """
+        k: cython.Py_ssize_t
+        parts: cython.Py_ssize_t
+        t: cython.double
+        self.tangent.forget_stops()
+        if self.exponents.stuck(self.state) == self.state.blocks:
+            # However long a slow driver takes, nothing changes.
+            return
         if self.state.nonlinear:
-            self.tangent.follow_series(self.state, self.piece, self.series, length, reach)
-        elif due or self.since_tangent >= LONGEST_FOLLOW:
-            self.tangent.follow_modes(self.state, self.modes, self.since_tangent)
-            self.since_tangent = 0.0
+            parts = self.tangent.load_rates(self.state, self.piece, self.series, length, reach)
+            t = length / parts
+            for k in range(1, parts + 1):
+                self.tangent.follow_series(self.state, t, reach)
+                if k < parts:
+                    self.tangent.move_rates(t)
+                    self.exponents.follow(self.state, self.clock + k * t, False)
+            return
+        self.since_tangent += length
+        while self.since_tangent >= LONGEST_FOLLOW or (due and self.since_tangent > 0.0):
+            t = min(self.since_tangent, LONGEST_FOLLOW)
+            self.tangent.follow_modes(self.state, self.modes, t)
+            self.since_tangent -= t
+            if self.since_tangent > 0.0:
+                self.exponents.follow(self.state, self.clock + (length - self.since_tangent), False)
 
     def _fastest(self):
         """Return the largest speed of a block."""

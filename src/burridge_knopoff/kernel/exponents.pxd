@@ -2,6 +2,7 @@ from burridge_knopoff.kernel.state cimport State
 from burridge_knopoff.kernel.tangent cimport Tangent
 
 cdef double INTERVAL
+cdef double LOST
 cdef double NEVER
 
 cdef class Exponents:
@@ -15,11 +16,14 @@ cdef class Exponents:
     cdef Py_ssize_t batch
     cdef Py_ssize_t batches
     cdef double batch_begin
+    cdef double[::1] whole
     cdef double[:, ::1] growth
     cdef double[::1] duration
 
+    cdef void begin_within(self, State state, double clock, double length) noexcept nogil
     cdef void follow(self, State state, double clock, bint completed) noexcept nogil
-    cdef Py_ssize_t _stuck(self, State state) noexcept nogil
+    cdef Py_ssize_t stuck(self, State state) noexcept nogil
     cdef void _seed(self, State state, Py_ssize_t first) noexcept nogil
-    cdef void _orthonormalise(self, bint counted) noexcept nogil
+    cdef double _length(self, Py_ssize_t c) noexcept nogil
+    cdef void _orthonormalise(self, bint kept, bint counted) noexcept nogil
     cdef void _renew(self, State state, double clock, bint completed) noexcept nogil

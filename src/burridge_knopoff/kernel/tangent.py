@@ -22,6 +22,11 @@ GROUP = 4
 # Terms of the series below this share of a perturbation are left out.
 NEGLIGIBLE = 1e-17
 
+# Over x/(ω + a), ω² the bound of Gershgorin on the eigenvalues of K, the terms of the series fall at least like x^n/n!:
+# with this x the first neglected one is rounding (2e-16 of the perturbation). The pieces of the motion may be longer:
+# they are made for terms that are small beside 1, however small the motion itself is.
+STRIDE = 2.4
+
 
 class Tangent:
     """`vectors` perturbations of a chain; tables of shape (blocks + 2, lanes) with ghost rows for missing neighbours.
@@ -40,6 +45,8 @@ class Tangent:
         self.position_series = np.zeros((order + 1, blocks + 2, self.lanes))
         self.velocity_series = np.zeros((order + 1, blocks + 2, self.lanes))
         self.rate = np.zeros((blocks, order + 1))
+        self.rate_terms = 0
+        self.pace = 0.0
         self.amplitude = np.zeros(self.lanes)
         self.amplitude_rate = np.zeros(self.lanes)
         self.moved = np.zeros((blocks, self.lanes))
@@ -50,12 +57,19 @@ class Tangent:
         n = self.blocks
         np.asarray(self.position)[1 : n + 1, : self.vectors] = matrix[:n]
         np.asarray(self.velocity)[1 : n + 1, : self.vectors] = matrix[n:]
+        self.forget_stops()
 
     def matrix(self) -> np.ndarray:
         """Return the perturbations as columns, shape (2 blocks, vectors)."""
         n = self.blocks
         tables = np.asarray(self.position), np.asarray(self.velocity)
         return np.concatenate([table[1 : n + 1, : self.vectors] for table in tables])
+
+    def forget_stops(self):
+        """Time moves on, or begins again: what stops have taken away does not come back."""
+        i: cython.Py_ssize_t
+        for i in range(self.blocks):
+            self.deceleration[i] = 0.0
 
     def change(self, state, block):
         """Carry the perturbations through a stop or start that this block is about to make."""
@@ -93,7 +107,6 @@ class Tangent:
         half: cython.double = 0.5 * state.a
         growth: cython.double = exp(half * t)
         for i in range(self.blocks):
-            self.deceleration[i] = 0.0
             for c in range(self.lanes):
                 self.moved[i, c] = 0.0
                 self.sped[i, c] = 0.0
@@ -134,26 +147,47 @@ class Tangent:
                 self.position[i + 1, c] += self.moved[i, c]
                 self.velocity[i + 1, c] += self.sped[i, c]
 
-    def follow_series(self, state, piece, series, t, reach):
-        """Propagate over a time t along a piece of the motion under the nonlinear law, as a Taylor series.
+    def load_rates(self, state, piece, series, length, reach):
+        """Expand aΦ² of a piece of the motion under the nonlinear law; return into how many parts to divide its length.
 
         reach : time for which the series of the motion was made to hold
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t
-        c: cython.Py_ssize_t
         total: cython.double
+        parts: cython.Py_ssize_t
         order: cython.Py_ssize_t = piece.order
-        degree: cython.Py_ssize_t = self._degree(order, t / reach)
+        self.pace = 0.0
         for i in range(self.blocks):
-            self.deceleration[i] = 0.0
-            for n in range(degree):
+            self.pace = max(self.pace, sqrt(1.5 * state.stiffness[i]) + state.a)
+        parts = 1 + cython.cast(cython.Py_ssize_t, self.pace * length / STRIDE)
+        self.rate_terms = order if parts > 1 else self._degree(order, length, reach)
+        for i in range(self.blocks):
+            for n in range(self.rate_terms):
                 total = 0.0
                 if state.slip[i] != 0:
                     for j in range(n + 1):
                         total += series.friction[i, order - j] * series.friction[i, order - n + j]
                 self.rate[i, n] = state.a * total
+        return parts
+
+    def move_rates(self, t):
+        """Take aΦ² as a series about the time t later (Horner's scheme, repeated)."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        n: cython.Py_ssize_t
+        for i in range(self.blocks):
+            for n in range(self.rate_terms - 1):
+                for j in range(self.rate_terms - 2, n - 1, -1):
+                    self.rate[i, j] += t * self.rate[i, j + 1]
+
+    def follow_series(self, state, t, reach):
+        """Propagate over a time t under the nonlinear law, as a Taylor series, with the rates that are loaded."""
+        i: cython.Py_ssize_t
+        n: cython.Py_ssize_t
+        c: cython.Py_ssize_t
+        degree: cython.Py_ssize_t = self._degree(self.rate_terms, t, reach)
         for c in range(self.lanes // GROUP):
             self._expand(state, degree, c * GROUP)
         for i in range(1, self.blocks + 1):
@@ -166,16 +200,18 @@ class Tangent:
                     self.position[i, c] = self.position[i, c] * t + self.position_series[n, i, c]
                     self.velocity[i, c] = self.velocity[i, c] * t + self.velocity_series[n, i, c]
 
-    def _degree(self, order, share):
-        """Return how many terms a fraction of the piece needs.
+    def _degree(self, order, t, reach):
+        """Return how many terms a time t needs, at most `order`.
 
-        The whole piece takes `order` terms that fall like those of an exponential function: x^n/n! with x about 1.75.
+        They fall like x^n/n!. Those of the motion, and with them the rates, have x about 1.75 over its reach: so fall
+        `order` terms of an exponential function to what the reach was made for. For the perturbations see STRIDE.
         """
         n: cython.Py_ssize_t = 1
-        term: cython.double = 1.75 * share
+        x: cython.double = max(1.75 * t / reach, self.pace * t)
+        term: cython.double = x
         while term > NEGLIGIBLE and n < order:
             n += 1
-            term *= 1.75 * share / n
+            term *= x / n
         return n
 
     def _expand(self, state, degree, group):
