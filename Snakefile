@@ -16,7 +16,7 @@ from burridge_knopoff.config import (
 )
 from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import source_fingerprint
+from burridge_knopoff.provenance import STABILITY_SOURCES, source_fingerprint
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
 if not workflow.configfiles:
@@ -63,6 +63,7 @@ wildcard_constraints:
 
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/summarize.smk"
+include: "workflow/rules/stability.smk"
 include: "workflow/rules/figures.smk"
 
 

@@ -20,6 +20,7 @@ rule figures:
                 "bifurcation",
                 "distance",
                 "agreement",
+                "orbits",
                 *(f"motion_{initial}" for initial in STUDY.initial),
             ],
             format=FORMATS,
@@ -115,3 +116,19 @@ rule figure_agreement:
         "figure: agreement of the two laws"
     script:
         "../scripts/figure_agreement.py"
+
+
+rule figure_orbits:
+    input:
+        orbits=rules.orbits.output,
+        runs=rules.mean_distance.output,
+    output:
+        multiext(f"{FIGURES}/orbits", ".pdf", ".png"),
+    log:
+        f"{RESULTS}/logs/figure_orbits.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_orbits.tsv"
+    message:
+        "figure: the synchronized orbit and where it is lost"
+    script:
+        "../scripts/figure_orbits.py"
