@@ -40,7 +40,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     panels[0].set(xlabel="$a$", ylabel="Floquet multiplier")
     panels[0].axhline(1.0, color="0.6", linewidth=0.6, zorder=0)
     panels[0].axhline(-1.0, color="0.6", linewidth=0.6, zorder=0)
-    panels[0].legend(handles=[*laws, *_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric, modulus"))])
+    panels[0].legend(handles=[*laws, *_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric"))])
     panels[1].set(xlabel="$a$", ylabel=r"$\langle J\rangle$")
     panels[1].set_ylim(-0.001, 1.08 * float(orbits["branch_mean_distance"].max()))
     names = runs["initial"].values
@@ -78,7 +78,7 @@ def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
     panel.plot(a, one["transverse_multiplier"].values, "-", color=hue)
     symmetric = one.sel(mode="symmetric_1")
     modulus = np.hypot(symmetric["multiplier_real"].values, symmetric["multiplier_imaginary"].values)
-    # Real ones keep their sign; where the pair turns complex, its modulus goes on.
+    # The modulus, of a complex pair as well, with the sign of the real part.
     panel.plot(a, np.where(symmetric["multiplier_real"].values < 0.0, -modulus, modulus), "--", color=hue)
     panel.plot(one["critical_a"].item(), 1.0, "o", color=hue, markersize=3.5)
 
@@ -86,16 +86,12 @@ def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
 def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: str) -> None:
     """Draw ⟨J⟩ of the stable and the unstable orbits, and of the runs of a study nearby."""
     critical = one["critical_a"].item()
-    beyond = critical + one["branch_offset"].values
-    low, high = NEAR * critical, np.nanmax([critical, *beyond])
+    offset, distance, stable = _dense_branch(one)
+    low, high = NEAR * critical, np.nanmax([critical, *(critical + offset)])
     panel.plot([low, critical], [0.0, 0.0], "-", color=hue)
     panel.plot([critical, high], [0.0, 0.0], ":", color=hue)
-    stable = one["branch_multiplier"].values < 1.0
-    start = [critical], [0.0]
     for mask, style in ((stable, "-"), (~stable, ":")):
-        if mask.any():
-            distance = np.where(mask, one["branch_mean_distance"].values, np.nan)
-            panel.plot(np.append(start[0], beyond), np.append(start[1], distance), style, color=hue)
+        panel.plot(critical + offset, np.where(mask, distance, np.nan), style, color=hue)
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
     for k, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial).isel(a=near)
@@ -108,6 +104,22 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
             linestyle="none",
             clip_on=True,
         )
+
+
+def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a − a_c, ⟨J⟩ and stability along the asymmetric orbits, between those that are known as well.
+
+    (a − a_c)/d² and ⟨J⟩/d are smooth in the asymmetry d, and nearly constant: they are what is interpolated.
+    """
+    known = np.isfinite(one["branch_offset"].values)
+    if not known.any():
+        return np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
+    d = one["branch_asymmetry"].values[known]
+    dense = np.linspace(0.0, d[-1], 200)
+    offset = dense**2 * np.interp(dense, d, one["branch_offset"].values[known] / d**2)
+    distance = dense * np.interp(dense, d, one["branch_mean_distance"].values[known] / d)
+    stable = np.interp(dense, d, one["branch_multiplier"].values[known]) < 1.0
+    return offset, distance, stable
 
 
 def _draw_amplitude(panel: Axes, one: xarray.Dataset, hue: str, marker: str) -> None:

@@ -62,7 +62,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
         end = instant(flow(family.with_a(a), state, period)[0])
         return float(end.position[0] - end.position[2]) / asymmetry - 1.0
 
-    noise = ROUNDING / asymmetry
+    noise = ROUNDING / abs(asymmetry)
     second = critical + (asymmetry / family.model.v) ** 2 * critical
     found = root_scalar(reduced, x0=critical, x1=second, method="secant", xtol=noise, rtol=RELATIVE)
     if not math.isfinite(found.root) or abs(reduced(found.root)) > SOLVED + 100.0 * noise:
