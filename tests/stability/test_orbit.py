@@ -7,6 +7,7 @@ import pytest
 
 from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.flow import Instant, Model, instant
@@ -96,7 +97,7 @@ def test_small_a_is_a_grazing_normal_mode(families, law):
     for a in (1e-4, 1e-6):
         orbit = families[law].at(a)
         errors.append(orbit.period - 2.0 * np.pi / omega)
-        assert orbit.period - orbit.lateral_slip_time == pytest.approx(2.4 * np.sqrt(a), rel=0.05)
+        assert orbit.period - orbit.lateral_slip_time == pytest.approx(2.36 * np.sqrt(a), rel=0.005)
     assert abs(errors[1]) < 1e-7
     assert abs(errors[1]) < 0.02 * abs(errors[0])
 
@@ -136,3 +137,19 @@ def test_friction_parameters_without_an_orbit(families, a):
 def test_other_chains_are_refused(blocks):
     with pytest.raises(OrbitError, match="3 blocks"):
         Family(Model(Chain(blocks), Friction("linearized", 0.05)))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(families, law):
+    flip = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
+    for a, doubled in ((flip - 0.002, False), (flip + 0.002, True)):
+        orbit = families[law].at(a)
+        assert (multipliers(orbit)[2].real < -1.0) == doubled
+        position, velocity = slipping_state(orbit)
+        position[1] += 1e-4
+        initial = InitialState("near", position, velocity)
+        run = simulate(law, a, initial, transient=10000.0, window=100.0, batches=2)
+        assert run.mean_distance < 1e-12
+        turns = np.diff(run.event_time[(run.event_block == 1) & (run.event_kind == 0)])
+        assert turns[2:] == pytest.approx(turns[:-2], abs=1e-6)
+        assert (abs(turns[1] - turns[0]) > 0.05) == doubled

@@ -54,10 +54,10 @@ def test_grazing_a_to_ten_digits(families, law):
 
 def test_least_center_speed(families):
     orbit = families["nonlinear"].at(0.03)
-    times = np.linspace(0.0, orbit.period, 2001)
+    times = np.linspace(0.0, orbit.period, 301)
     speed = [instant(flow(orbit.model, orbit.reference, time)[0]).velocity[1] for time in times]
     least = least_center_speed(orbit)
-    assert min(speed) - 1e-5 < least <= min(speed)
+    assert min(speed) - 1e-3 < least <= min(speed)
     assert least_center_speed(families["nonlinear"].at(0.05)) == 0.0
 
 

@@ -120,8 +120,8 @@ rule figure_agreement:
 
 rule figure_orbits:
     input:
-        orbits=rules.orbits.output,
-        runs=rules.mean_distance.output,
+        orbits=rules.orbits.output[0],
+        runs=rules.mean_distance.output[0],
     output:
         multiext(f"{FIGURES}/orbits", ".pdf", ".png"),
     log:

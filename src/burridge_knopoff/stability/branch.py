@@ -25,7 +25,7 @@ from burridge_knopoff.kernel.observe import Observer
 from burridge_knopoff.simulation import SERIES_ORDER
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.flow import Instant, instant, new_solver
-from burridge_knopoff.stability.orbit import ALL, HALTED, SYMMETRIC, Orbit, OrbitError, find_orbit, flow, run, solve
+from burridge_knopoff.stability.orbit import ALL, HALTED, SYMMETRIC, Orbit, OrbitError, after, find_orbit, run, solve
 from burridge_knopoff.stability.transition import RELATIVE, apart
 
 # Rounding of positions, which g carries divided by the asymmetry.
@@ -40,8 +40,8 @@ FARTHEST = 0.5
 # Asymmetry, in units of v, given to a state before each run of a sweep: exact synchrony would never be left.
 SEED = 1e-5
 
-#: Time of each run of a sweep: at |a − a_c| = 5e-4 perturbations change by a factor of e^20.
-SWEEP_TIME = 40_000.0
+#: Time of each run of a sweep: at |a − a_c| = 1e-3 perturbations change by a factor of e^20.
+SWEEP_TIME = 20_000.0
 
 
 def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
@@ -59,7 +59,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
             raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {critical!r}")
         a = float(a)
         state, period = constrained(a)
-        end = instant(flow(family.with_a(a), state, period)[0])
+        end = after(new_solver(family.with_a(a)), state, period)
         return float(end.position[0] - end.position[2]) / asymmetry - 1.0
 
     noise = ROUNDING / abs(asymmetry)

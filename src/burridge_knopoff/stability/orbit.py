@@ -92,15 +92,28 @@ def flow(
     """
     blocks = model.chain.blocks
     log = EventLog(blocks, 0.0, True, EVENTS_PER_BLOCK_AND_UNIT * blocks)
-    free = np.concatenate([np.ones(blocks), ~start.stuck])
-    solver = new_solver(model, log, np.diag(free) if perturbed else None)
-    solver.end = time
-    solver.begin(start.position, start.velocity, start.stuck)
-    if run(solver) != COMPLETED:
-        raise OrbitError(f"a = {model.friction.a!r}: the run ends at τ = {solver.clock!r}")
+    solver = new_solver(model, log, _free_directions(start) if perturbed else None)
+    after(solver, start, time)
     values = log.events.values()
     moved, kind = values[:, 0].astype(int) - 1, values[:, 1].astype(int)
     return solver, tuple(zip(log.events.times().tolist(), moved.tolist(), kind.tolist(), strict=True))
+
+
+def after(solver: EventDriven, start: Instant, time: float) -> Instant:
+    """Return the state that a solver reaches from a state after a time.
+
+    Raises OrbitError if the run does not complete.
+    """
+    solver.end = time
+    solver.begin(start.position, start.velocity, start.stuck)
+    if run(solver) != COMPLETED:
+        raise OrbitError(f"the run ends at τ = {solver.clock!r}, before {time!r}")
+    return instant(solver)
+
+
+def _free_directions(start: Instant) -> np.ndarray:
+    """Return all perturbations of a state as columns, but 0 for those of velocities of stuck blocks."""
+    return np.diag(np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
 
 
 def run(solver: EventDriven) -> int:
@@ -148,13 +161,16 @@ def solve(model: Model, guess: Instant, period: float, directions: Sequence[Sequ
     origin = guess.vector()
     count = len(basis)
     phase = _products(basis, rate(model, guess))
+    perturbations = _free_directions(guess)
+    # One solver for all iterations: to make one takes far longer than a period does.
+    solver = new_solver(model, perturbations=perturbations)
 
     def equations(unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not 0.0 < unknown[count] < LONGEST_PERIOD:
             raise OrbitError(f"a = {model.friction.a!r}: no periodic orbit found near the guess")
         state = _place(origin, basis, unknown[:count], guess.stuck)
-        solver, _ = flow(model, state, float(unknown[count]), perturbed=True)
-        end = instant(solver)
+        solver.exponents.carry(perturbations)
+        end = after(solver, state, float(unknown[count]))
         jacobian = np.zeros((count + 1, count + 1))
         for k, direction in enumerate(basis):
             change = (solver.tangent.matrix() * direction).sum(axis=1) - direction

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Instant, instant
-from burridge_knopoff.stability.orbit import Orbit, OrbitError, flow, multipliers, transverse_multiplier
+from burridge_knopoff.stability.flow import Instant, new_solver
+from burridge_knopoff.stability.orbit import Orbit, OrbitError, after, multipliers, transverse_multiplier
 
 #: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
 SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))
@@ -71,9 +71,10 @@ def least_center_speed(orbit: Orbit) -> float:
     if orbit.center_stick_time > 0.0:
         return 0.0
     time = np.linspace(0.0, orbit.period, SAMPLES + 1)
+    solver = new_solver(orbit.model)
 
     def speed(t: float) -> float:
-        return float(instant(flow(orbit.model, orbit.reference, t)[0]).velocity[1])
+        return float(after(solver, orbit.reference, t).velocity[1])
 
     slowest = min(range(1, SAMPLES), key=lambda k: speed(float(time[k])))
     bounds = (time[slowest - 1], time[slowest + 1])
@@ -93,8 +94,10 @@ def finite_difference_multiplier(orbit: Orbit) -> float:
     function of d, so that one step of Richardson's extrapolation leaves an error of order d⁴.
     """
 
+    solver = new_solver(orbit.model)
+
     def ratio(d: float) -> float:
-        end = instant(flow(orbit.model, apart(orbit.reference, d), orbit.period)[0])
+        end = after(solver, apart(orbit.reference, d), orbit.period)
         return float(end.position[0] - end.position[2]) / d
 
     d = DIFFERENCE * orbit.model.v

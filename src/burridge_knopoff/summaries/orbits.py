@@ -35,7 +35,7 @@ ASYMMETRIES = tuple(float(f"{10 ** (k / 5 - 3):.3e}") for k in range(13))
 LARGEST_FITTED = 1.0e-2
 
 #: Distances from a_c at which runs go up and down in a.
-OFFSETS = (-2e-3, -1e-3, -5e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
+OFFSETS = (-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
 
 _CURVE = ("law", "a")
 _BRANCH = ("law", "branch_asymmetry")
