@@ -48,7 +48,7 @@ class OrbitError(ValueError):
 class Orbit:
     """A periodic orbit of three blocks on which each outer block stops once a period.
 
-    reference : the state in the middle of the time in which blocks 1 and 3 both stick
+    reference : the state in the middle, to a tenth of it, of the time in which blocks 1 and 3 both stick
     residual : max norm of the state one period later minus the reference state
     monodromy : how perturbations at the reference instant return a period later, shape (6, 6)
     events : time since the reference instant, block (0 to 2) and kind (0 stop, 1 start) of every event of a period
@@ -137,7 +137,7 @@ def find_orbit(model: Model, guess: Instant, period: float, directions: Sequence
     Raises OrbitError if none is found to within TOLERANCE, or if one outer block stops more than once a period.
     """
     for _ in range(ATTEMPTS):
-        state, period = solve(model, guess, period, directions[: len(directions) - bool(guess.stuck[1])])
+        state, period = solve(model, guess, period, directions)
         solver, events = flow(model, state, period, perturbed=True)
         end = instant(solver)
         residual = float(np.abs(end.vector() - state.vector()).max())
@@ -155,8 +155,8 @@ def find_orbit(model: Model, guess: Instant, period: float, directions: Sequence
 
 
 def solve(model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]]) -> tuple[Instant, float]:
-    """Return the state and the period that solve the equations best from a guess."""
-    basis = np.array(directions, dtype=float)
+    """Return the state and the period that solve the equations best from a guess, the same blocks stuck."""
+    basis = np.array(directions[: len(directions) - bool(guess.stuck[1])], dtype=float)
     weight = basis / basis.sum(axis=1, keepdims=True)
     origin = guess.vector()
     count = len(basis)
@@ -218,8 +218,8 @@ def multipliers(orbit: Orbit) -> np.ndarray:
     """Return the six Floquet multipliers of a synchronized orbit, complex, shape (6,).
 
     In turn: transverse (blocks 1 against 3); flow, which is 1; two in which blocks 1 and 3 move alike, the larger
-    modulus first; and two that are 0, since blocks 1 and 3 stop. The first and the last four are computed; the second
-    is how far the flow direction returns as itself.
+    modulus first; and two that are 0 by definition, since blocks 1 and 3 stop. The second is computed as the share of
+    the flow direction that returns.
 
     The 3 × 3 matrix of the mirror-symmetric perturbations (x_1 = x_3, x_2, U_2') has the eigenvalue of the flow and the
     two others, which follow from its trace and the sum of its principal minors.
