@@ -65,6 +65,7 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/summarize.smk"
 include: "workflow/rules/attractors.smk"
 include: "workflow/rules/basins.smk"
+include: "workflow/rules/orbits.smk"
 include: "workflow/rules/figures.smk"
 
 

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.figures import distance, friction_laws, mean_distance, motion
+from burridge_knopoff.figures import distance, friction_laws, mean_distance, motion, orbits
 from burridge_knopoff.figures.style import write_figure
 from burridge_knopoff.simulation import simulate
+from burridge_knopoff.summaries.orbits import summarize
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +43,11 @@ def test_distance_draws_both_scales(point):
     figure = distance.draw({"plus": point})
     assert (figure.axes[0].get_lines()[0].get_ydata() == point["distance"].values).all()
     assert figure.axes[1].get_yscale() == "log"
+
+
+def test_orbits_says_that_there_are_none():
+    figure = orbits.draw(summarize(2, [0.1], 0.1, "one_sided"), xr.Dataset())
+    assert [panel.texts[0].get_text() for panel in figure.axes] == ["no synchronized orbit found"] * 4
 
 
 def test_friction_laws_are_the_models():

@@ -7,7 +7,11 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import Friction
 from burridge_knopoff.simulation import simulate
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.flow import Model
 
 GRID = [0.05, 0.08, 0.2, 0.22]
 NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]
@@ -111,6 +115,16 @@ def test_agreement_summary(results):
     assert [line.split(":")[0] for line in lines] == ["minus", "plus"]
 
 
+def test_orbits_summary(results):
+    with xr.open_dataset(results / "summary" / "orbits.nc") as orbits:
+        assert orbits["a"].values.tolist() == GRID
+        assert (orbits["status"] == 0).all()
+        assert orbits["critical_a"].values == pytest.approx([0.0869729046661, 0.0887172229712], abs=1e-12)
+        for law in ("linearized", "nonlinear"):
+            orbit = Family(Model(Chain(3), Friction(law, 0.0))).at(0.2)
+            assert orbits["period"].sel(law=law, a=0.2).item() == pytest.approx(orbit.period, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -124,6 +138,7 @@ def test_agreement_summary(results):
         "lyapunov",
         "basins",
         "basin_fractions",
+        "orbits",
     ],
 )
 def test_figures_are_pictures(results, name):

@@ -23,6 +23,7 @@ rule figures:
                 "agreement",
                 "basin_fractions",
                 *(["basins"] if BASIN_MAPS else []),
+                "orbits",
                 *(f"motion_{initial}" for initial in STUDY.initial),
             ],
             format=FORMATS,
@@ -167,3 +168,19 @@ rule figure_agreement:
         "figure: agreement of the two laws"
     script:
         "../scripts/figure_agreement.py"
+
+
+rule figure_orbits:
+    input:
+        orbits=rules.orbits.output[0],
+        runs=rules.mean_distance.output[0],
+    output:
+        multiext(f"{FIGURES}/orbits", ".pdf", ".png"),
+    log:
+        f"{RESULTS}/logs/figure_orbits.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_orbits.tsv"
+    message:
+        "figure: the synchronized orbit and where it is lost"
+    script:
+        "../scripts/figure_orbits.py"

@@ -15,6 +15,7 @@ rule summary:
         f"{SUMMARY}/agreement.nc",
         f"{SUMMARY}/agreement.csv",
         f"{SUMMARY}/agreement.txt",
+        f"{SUMMARY}/orbits.nc",
 
 
 rule mean_distance:

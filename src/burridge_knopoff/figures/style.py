@@ -55,11 +55,17 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 
 
 def new_figure(
-    width: float, height: float, rows: int = 1, columns: int = 1, share_rows: bool = True
+    width: float, height: float, rows: int = 1, columns: int = 1, share_rows: bool = True, share_columns: bool = True
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y if asked."""
+    """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y, if asked."""
     figure = Figure(figsize=(width, height), layout="constrained")
-    axes = figure.subplots(rows, columns, sharex="col", sharey="row" if share_rows else False, squeeze=False)
+    axes = figure.subplots(
+        rows,
+        columns,
+        sharex="col" if share_columns else False,
+        sharey="row" if share_rows else False,
+        squeeze=False,
+    )
     return figure, list(axes.flat)
 
 

@@ -69,11 +69,17 @@ def instant(solver: EventDriven) -> Instant:
     return Instant(position, velocity, slip == 0)
 
 
-def new_solver(model: Model, log: EventLog | None = None, perturbations: np.ndarray | None = None) -> EventDriven:
-    """Return a solver that observes nothing: `map` for the linearized law, `series` for the nonlinear one.
+def new_solver(
+    model: Model,
+    log: EventLog | None = None,
+    perturbations: np.ndarray | None = None,
+    observer: Observer | None = None,
+) -> EventDriven:
+    """Return a solver of its own: `map` for the linearized law, `series` for the nonlinear one.
 
     log : where events are kept; without one they are only counted
     perturbations : tangent vectors to carry along, columns of shape (2 blocks, vectors); see `kernel.tangent`
+    observer : what measures the run, and ends it; without one nothing is measured
 
     Set its `end` and `halting_block`, call `begin(position, velocity, stuck)` and then `run()`, which returns HALTED
     each time that block has just stopped, COMPLETED at the end, RUNNING if it is to be called again.
@@ -86,11 +92,11 @@ def new_solver(model: Model, log: EventLog | None = None, perturbations: np.ndar
     solver = EventDriven(
         new_state(model.chain, model.friction, model.v, model.contact),
         EventLog(blocks, 0.0, False, EVENTS_PER_BLOCK_AND_UNIT * blocks) if log is None else log,
-        Observer(blocks, SERIES_ORDER, never, [], []),
+        Observer(blocks, SERIES_ORDER, never, [], []) if observer is None else observer,
         exponents,
         SERIES_ORDER,
         model.friction.law == "linearized",
         STEP_LIMIT,
     )
-    solver.observing = False
+    solver.observing = observer is not None
     return solver

@@ -1,0 +1,154 @@
+"""The synchronized orbit against a: its multipliers, what takes its place beyond a_c, and how alike the laws are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+
+MARKERS = ("o", "D", "s", "^", "v", "P", "X")
+
+# What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
+NEAR = 0.93
+
+
+@styled
+def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
+    """Draw multipliers, ⟨J⟩ around a_c, the amplitude law beyond it, and the difference of the laws.
+
+    orbits : the summary of the synchronized orbits; runs : that of the mean distance, drawn beside the orbits
+    """
+    figure, panels = new_figure(PAGE, 5.2, rows=2, columns=2, share_rows=False, share_columns=False)
+    if not np.isfinite(orbits["critical_a"]).any():
+        for panel in panels:
+            panel.text(0.5, 0.5, "no synchronized orbit found", ha="center", transform=panel.transAxes)
+            panel.set_axis_off()
+        return figure
+    for index, law in enumerate(orbits["law"].values):
+        one = orbits.sel(law=law)
+        _draw_multipliers(panels[0], one, color(index))
+        _draw_distance(panels[1], one, runs.sel(law=law), color(index))
+        _draw_amplitude(panels[2], one, color(index), MARKERS[index])
+    _draw_difference(panels[3], orbits)
+    laws = [Line2D([], [], color=color(index), label=f"{law} law") for index, law in enumerate(orbits["law"].values)]
+    panels[0].set(xlabel="$a$", ylabel="Floquet multiplier")
+    panels[0].axhline(1.0, color="0.6", linewidth=0.6, zorder=0)
+    panels[0].axhline(-1.0, color="0.6", linewidth=0.6, zorder=0)
+    panels[0].legend(handles=[*laws, *_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric"))])
+    panels[1].set(xlabel="$a$", ylabel=r"$\langle J\rangle$")
+    panels[1].set_ylim(-0.001, 1.08 * float(orbits["branch_mean_distance"].max()))
+    names = runs["initial"].values
+    panels[1].legend(
+        handles=[
+            *_styles(("-", ":"), ("stable orbit", "unstable orbit")),
+            *(
+                Line2D(
+                    [], [], color="0.3", linestyle="none", marker=MARKERS[k % len(MARKERS)], markersize=3, label=name
+                )
+                for k, name in enumerate(names)
+            ),
+        ],
+        loc="upper left",
+    )
+    panels[2].set(xlabel=r"$|a - a_c|$", ylabel=r"$|x_1 - x_3|$", xscale="log", yscale="log")
+    panels[2].legend(loc="upper left")
+    panels[3].set(xlabel="$a$", ylabel="difference of the laws", yscale="log")
+    panels[3].legend(loc="lower right")
+    label_panels(
+        panels,
+        ["multipliers of the synchronized orbit", r"around $a_c$", r"beyond $a_c$", "nonlinear against linearized law"],
+    )
+    return figure
+
+
+def _styles(styles: tuple[Any, ...], labels: tuple[str, ...]) -> list[Line2D]:
+    return [
+        Line2D([], [], color="0.3", linestyle=style, label=text) for style, text in zip(styles, labels, strict=True)
+    ]
+
+
+def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
+    a = one["a"].values
+    panel.plot(a, one["transverse_multiplier"].values, "-", color=hue)
+    symmetric = one.sel(mode="symmetric_1")
+    modulus = np.hypot(symmetric["multiplier_real"].values, symmetric["multiplier_imaginary"].values)
+    # The modulus, of a complex pair as well, with the sign of the real part.
+    panel.plot(a, np.where(symmetric["multiplier_real"].values < 0.0, -modulus, modulus), "--", color=hue)
+    panel.plot(one["critical_a"].item(), 1.0, "o", color=hue, markersize=3.5)
+
+
+def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: str) -> None:
+    """Draw ⟨J⟩ of the stable and the unstable orbits, and of the runs of a study nearby."""
+    critical = one["critical_a"].item()
+    offset, distance, stable = _dense_branch(one)
+    low, high = NEAR * critical, np.nanmax([critical, *(critical + offset)])
+    panel.plot([low, critical], [0.0, 0.0], "-", color=hue)
+    panel.plot([critical, high], [0.0, 0.0], ":", color=hue)
+    for mask, style in ((stable, "-"), (~stable, ":")):
+        panel.plot(critical + offset, np.where(mask, distance, np.nan), style, color=hue)
+    near = (runs["a"].values >= low) & (runs["a"].values <= high)
+    for k, initial in enumerate(runs["initial"].values):
+        run = runs.sel(initial=initial).isel(a=near)
+        panel.plot(
+            run["a"].values,
+            run["mean_distance"].values,
+            MARKERS[k % len(MARKERS)],
+            color=hue,
+            markersize=3,
+            linestyle="none",
+            clip_on=True,
+        )
+
+
+def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a − a_c, ⟨J⟩ and stability along the asymmetric orbits, between those that are known as well.
+
+    (a − a_c)/d² and ⟨J⟩/d are smooth in the asymmetry d, and nearly constant: they are what is interpolated.
+    """
+    known = np.isfinite(one["branch_offset"].values)
+    if not known.any():
+        return np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
+    d = one["branch_asymmetry"].values[known]
+    dense = np.linspace(0.0, d[-1], 200)
+    offset = dense**2 * np.interp(dense, d, one["branch_offset"].values[known] / d**2)
+    distance = dense * np.interp(dense, d, one["branch_mean_distance"].values[known] / d)
+    stable = np.interp(dense, d, one["branch_multiplier"].values[known]) < 1.0
+    return offset, distance, stable
+
+
+def _draw_amplitude(panel: Axes, one: xarray.Dataset, hue: str, marker: str) -> None:
+    offset = np.abs(one["branch_offset"].values)
+    asymmetry = one["branch_asymmetry"].values
+    panel.plot(offset, asymmetry, marker, color=hue, markersize=3.5, markerfacecolor="none", linestyle="none")
+    exponent = one["amplitude_exponent"].item()
+    if np.isfinite(exponent):
+        fitted = one["amplitude_coefficient"].item() * offset**exponent
+        panel.plot(offset, fitted, "-", linewidth=0.7, color=hue, label=f"{one['law'].item()}: exponent {exponent:.5f}")
+
+
+def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
+    """Draw how far the laws are apart at the same a, and at the same slope of the friction at the driver velocity."""
+    a = orbits["a"].values
+    both = orbits.sel(law="nonlinear") - orbits.sel(law="linearized")
+    for index, (plain, scaled, symbol) in enumerate(
+        (
+            ("transverse_multiplier", "effective_multiplier_difference", r"\mu"),
+            ("period", "effective_period_difference", "T"),
+        )
+    ):
+        hue = color(index + 2)
+        panel.plot(a, _positive(both[plain].values), "--", color=hue, label=rf"$|\Delta {symbol}|$, same $a$")
+        label = rf"$|\Delta {symbol}|$, same $a/(1 + av)^2$"
+        panel.plot(a, _positive(orbits[scaled].values), "-", color=hue, label=label)
+
+
+def _positive(values: np.ndarray) -> np.ndarray:
+    """Return moduli, with those that a logarithmic axis cannot show left out."""
+    modulus = np.abs(values)
+    return np.where(modulus > 0.0, modulus, np.nan)

@@ -1,0 +1,237 @@
+"""Periodic orbits on which the outer blocks of three stick once a period, as fixed points of the return map.
+
+An orbit is held by its state in the middle of the time in which blocks 1 and 3 both stick, the reference instant. Their
+stops and starts are far from either end of a period, so that the flow over a fixed time is smooth there. The unknowns
+are the positions, the velocity of block 2 where it slips, and the period T; the equations are φ_T(z) = z and a phase
+condition, that corrections are perpendicular to the flow. Powell's hybrid of Newton's method solves them with the
+Jacobian from the tangent dynamics of the kernel. Stability of the orbit plays no part.
+
+The synchronized orbit is the mirror-symmetric one, on which blocks 1 and 3 move alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import root
+
+from burridge_knopoff.kernel.event_driven import EventDriven
+from burridge_knopoff.kernel.events import EventLog
+from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, RUNNING
+from burridge_knopoff.stability.flow import Instant, Model, instant, new_solver
+
+# What the kernel's `run` returns besides RUNNING: at the end, and when the block to halt at has stopped.
+COMPLETED = 0
+HALTED = -2
+
+#: Largest difference, in any position or velocity, between the state and the state one period later; times v beyond 1,
+#: since positions and velocities grow with v.
+TOLERANCE = 1e-14
+
+# Directions in which a state is sought: those of a mirror-symmetric one, and all; the last is that of U_2'.
+SYMMETRIC = ((1, 0, 1, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 0, 0, 1, 0))
+ALL = ((1, 0, 0, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 1, 0, 0, 0), (0, 0, 0, 0, 1, 0))
+
+# A solution on another set of stuck blocks than it was sought on is sought again, this often at most.
+ATTEMPTS = 6
+
+LONGEST_PERIOD = 500.0
+
+
+class OrbitError(ValueError):
+    """There is no such orbit, or it was not found; the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A periodic orbit of three blocks on which each outer block stops once a period.
+
+    reference : the state in the middle, to a tenth of it, of the time in which blocks 1 and 3 both stick
+    residual : max norm of the state one period later minus the reference state
+    monodromy : how perturbations at the reference instant return a period later, shape (6, 6)
+    events : time since the reference instant, block (0 to 2) and kind (0 stop, 1 start) of every event of a period
+    """
+
+    model: Model
+    reference: Instant
+    period: float
+    residual: float
+    monodromy: np.ndarray
+    events: tuple[tuple[float, int, int], ...]
+
+    def times(self, block: int, kind: int) -> list[float]:
+        """Return the times, since the reference instant, at which a block stops (kind 0) or starts (kind 1)."""
+        return [time for time, moved, event in self.events if (moved, event) == (block, kind)]
+
+    @property
+    def lateral_slip_time(self) -> float:
+        """Time T_s for which block 1 slips in a period."""
+        return self.times(0, 0)[0] - self.times(0, 1)[0]
+
+    @property
+    def center_stick_time(self) -> float:
+        """Time for which block 2 sticks in a period, all its sticks together."""
+        stops, starts = self.times(1, 0), self.times(1, 1)
+        return sum(starts) - sum(stops) + (self.period if self.reference.stuck[1] else 0.0)
+
+    @property
+    def asymmetry(self) -> float:
+        """x_1 − x_3 while both blocks stick; 0 on the synchronized orbit."""
+        return float(self.reference.position[0] - self.reference.position[2])
+
+
+def flow(
+    model: Model, start: Instant, time: float, perturbed: bool = False
+) -> tuple[EventDriven, tuple[tuple[float, int, int], ...]]:
+    """Return the solver after a time, and the events on the way: time, block (0 …) and kind (0 stop, 1 start).
+
+    perturbed : whether the tangent map is carried along; its columns that are velocities of stuck blocks are 0
+    Raises OrbitError if the run does not complete.
+    """
+    blocks = model.chain.blocks
+    log = EventLog(blocks, 0.0, True, EVENTS_PER_BLOCK_AND_UNIT * blocks)
+    solver = new_solver(model, log, _free_directions(start) if perturbed else None)
+    after(solver, start, time)
+    values = log.events.values()
+    moved, kind = values[:, 0].astype(int) - 1, values[:, 1].astype(int)
+    return solver, tuple(zip(log.events.times().tolist(), moved.tolist(), kind.tolist(), strict=True))
+
+
+def after(solver: EventDriven, start: Instant, time: float) -> Instant:
+    """Return the state that a solver reaches from a state after a time.
+
+    Raises OrbitError if the run does not complete.
+    """
+    solver.end = time
+    solver.begin(start.position, start.velocity, start.stuck)
+    if run(solver) != COMPLETED:
+        raise OrbitError(f"the run ends at τ = {solver.clock!r}, before {time!r}")
+    return instant(solver)
+
+
+def _free_directions(start: Instant) -> np.ndarray:
+    """Return all perturbations of a state as columns, but 0 for those of velocities of stuck blocks."""
+    return np.diag(np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
+
+
+def run(solver: EventDriven) -> int:
+    """Run on until the solver halts, completes or fails, and return which."""
+    while (code := solver.run()) == RUNNING:
+        pass
+    return code
+
+
+def rate(model: Model, at: Instant) -> np.ndarray:
+    """Return the time derivative of positions and velocities, shape (2 blocks,)."""
+    force = model.friction(model.v) - _products(model.chain.stiffness, at.position)
+    return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force - model.friction(at.velocity))])
+
+
+def find_orbit(model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]] = SYMMETRIC) -> Orbit:
+    """Return the periodic orbit near a state in which blocks 1 and 3 both stick.
+
+    directions : in which the state may be changed: SYMMETRIC or ALL
+
+    Raises OrbitError if none is found to within TOLERANCE, or if one outer block stops more than once a period.
+    """
+    for _ in range(ATTEMPTS):
+        state, period = solve(model, guess, period, directions)
+        solver, events = flow(model, state, period, perturbed=True)
+        end = instant(solver)
+        residual = float(np.abs(end.vector() - state.vector()).max())
+        if (end.stuck != state.stuck).any() or residual > TOLERANCE * max(1.0, model.v):
+            if not (end.stuck[0] and end.stuck[2]):
+                break
+            guess = end
+            continue
+        orbit = Orbit(model, state, period, residual, solver.tangent.matrix(), events)
+        middle = _middle(orbit)
+        if middle == 0.0:
+            return orbit
+        guess = instant(flow(model, state, period + middle)[0])
+    raise OrbitError(f"a = {model.friction.a!r}: no periodic orbit found near the guess")
+
+
+def solve(model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]]) -> tuple[Instant, float]:
+    """Return the state and the period that solve the equations best from a guess, the same blocks stuck."""
+    basis = np.array(directions[: len(directions) - bool(guess.stuck[1])], dtype=float)
+    weight = basis / basis.sum(axis=1, keepdims=True)
+    origin = guess.vector()
+    count = len(basis)
+    phase = _products(basis, rate(model, guess))
+    perturbations = _free_directions(guess)
+    # One solver for all iterations: to make one takes far longer than a period does.
+    solver = new_solver(model, perturbations=perturbations)
+
+    def equations(unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if not 0.0 < unknown[count] < LONGEST_PERIOD:
+            raise OrbitError(f"a = {model.friction.a!r}: no periodic orbit found near the guess")
+        state = _place(origin, basis, unknown[:count], guess.stuck)
+        solver.exponents.carry(perturbations)
+        end = after(solver, state, float(unknown[count]))
+        jacobian = np.zeros((count + 1, count + 1))
+        for k, direction in enumerate(basis):
+            change = (solver.tangent.matrix() * direction).sum(axis=1) - direction
+            jacobian[:count, k] = _products(weight, change)
+        jacobian[:count, count] = _products(weight, rate(model, end))
+        jacobian[count, :count] = phase
+        values = np.append(_products(weight, end.vector() - state.vector()), (phase * unknown[:count]).sum())
+        return values, jacobian
+
+    # MINPACK's own linear algebra: the last bit of LAPACK's depends on where in memory its arguments lie.
+    solution = root(equations, np.append(np.zeros(count), period), jac=True, method="hybr", options={"xtol": 1e-16})
+    return _place(origin, basis, solution.x[:count], guess.stuck), float(solution.x[count])
+
+
+def _products(vectors: np.ndarray, of: np.ndarray) -> np.ndarray:
+    """Return the products of each row with a vector, added up in the same order everywhere."""
+    return (vectors * of).sum(axis=1)
+
+
+def _place(origin: np.ndarray, basis: np.ndarray, amount: np.ndarray, stuck: np.ndarray) -> Instant:
+    state = origin + (basis * amount[:, None]).sum(axis=0)
+    return Instant(state[:3], state[3:], stuck)
+
+
+def _middle(orbit: Orbit) -> float:
+    """Return how far the middle of the common stick of blocks 1 and 3 is from the reference; 0 if it is near enough.
+
+    Raises OrbitError unless both stop exactly once a period.
+    """
+    if any(len(orbit.times(block, kind)) != 1 for block in (0, 2) for kind in (0, 1)):
+        raise OrbitError(f"a = {orbit.model.friction.a!r}: an outer block stops more than once a period, or not at all")
+    begin = max(orbit.times(block, 0)[0] for block in (0, 2)) - orbit.period
+    end = min(orbit.times(block, 1)[0] for block in (0, 2))
+    middle = 0.5 * (begin + end)
+    return middle if abs(middle) > 0.1 * (end - begin) else 0.0
+
+
+def transverse_multiplier(orbit: Orbit) -> float:
+    """Return by which factor a difference between blocks 1 and 3 has grown after a period of a synchronized orbit."""
+    change = orbit.monodromy[:, 0] - orbit.monodromy[:, 2]
+    return float(0.5 * (change[0] - change[2]))
+
+
+def multipliers(orbit: Orbit) -> np.ndarray:
+    """Return the six Floquet multipliers of a synchronized orbit, complex, shape (6,).
+
+    In turn: transverse (blocks 1 against 3); flow, which is 1; two in which blocks 1 and 3 move alike, the larger
+    modulus first; and two that are 0 by definition, since blocks 1 and 3 stop. The second is computed as the share of
+    the flow direction that returns.
+
+    The 3 × 3 matrix of the mirror-symmetric perturbations (x_1 = x_3, x_2, U_2') has the eigenvalue of the flow and the
+    two others, which follow from its trace and the sum of its principal minors.
+    """
+    columns = (np.array(SYMMETRIC, dtype=float)[:, None, :] * orbit.monodromy).sum(axis=2)
+    matrix = columns[:, [0, 1, 4]].T
+    direction = rate(orbit.model, orbit.reference)[[0, 1, 4]]
+    trivial = float((direction * _products(matrix, direction)).sum() / (direction * direction).sum())
+    trace = matrix.trace() - trivial
+    minors = sum(matrix[i, i] * matrix[j, j] - matrix[i, j] * matrix[j, i] for i, j in ((0, 1), (0, 2), (1, 2)))
+    product = minors - trivial * trace
+    split = np.sqrt(complex(0.25 * trace * trace - product))
+    pair = 0.5 * trace + split, 0.5 * trace - split
+    pair = pair if abs(pair[0]) >= abs(pair[1]) else pair[::-1]
+    return np.array([transverse_multiplier(orbit), trivial, *pair, 0.0, 0.0], dtype=complex)

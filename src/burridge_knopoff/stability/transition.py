@@ -1,0 +1,112 @@
+"""Where the synchronized orbit changes: at a_c it is lost, and at grazing_a block 2 begins to stick.
+
+Both are the least a at which a continuous function of the orbit changes its sign.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.flow import Instant, new_solver
+from burridge_knopoff.stability.orbit import Orbit, OrbitError, after, multipliers, transverse_multiplier
+
+#: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
+SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))
+
+# The least relative tolerance that brentq takes: four units in the last place.
+RELATIVE = 4 * np.finfo(float).eps
+
+# Asymmetry d for finite differences, in units of v: rounding of the quotient and the d⁴ that extrapolation leaves are
+# about 1e-12 both.
+DIFFERENCE = 1e-3
+
+# Step in a for the slope of the multiplier.
+SLOPE_STEP = 1e-4
+
+# Instants of a period between which the least speed is looked for.
+SAMPLES = 96
+
+
+def critical_a(family: Family) -> float:
+    """Return a_c, where the modulus of the transverse multiplier reaches 1; NaN if it does not."""
+    return change_point(family, lambda orbit: abs(transverse_multiplier(orbit)) - 1.0)
+
+
+def symmetric_flip_a(family: Family) -> float:
+    """Return the a at which a multiplier of mirror-symmetric perturbations reaches −1; NaN if none does."""
+    return change_point(family, lambda orbit: float(multipliers(orbit)[2:4].real.min()) + 1.0)
+
+
+def grazing_a(family: Family) -> float:
+    """Return the a at which block 2 begins to stick; NaN if it does not.
+
+    Below it the least speed of block 2 is positive. Above it the stick lasts about the square root of the distance from
+    it, so that minus the square of its length continues the least speed through 0.
+    """
+    return change_point(family, lambda orbit: least_center_speed(orbit) or -(orbit.center_stick_time**2))
+
+
+def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
+    """Return the least a in the scanned range at which a function of the orbit changes its sign; NaN if it does not."""
+    last: tuple[float, float] | None = None
+    for a in SCAN:
+        try:
+            here = a, value(family.at(a))
+        except OrbitError:
+            last = None
+            continue
+        if last is not None and (here[1] > 0.0) != (last[1] > 0.0):
+            return float(brentq(lambda a: value(family.at(a)), last[0], a, xtol=1e-17, rtol=RELATIVE))
+        last = here
+    return math.nan
+
+
+def least_center_speed(orbit: Orbit) -> float:
+    """Return the least speed of block 2 in a period, 0 if it sticks."""
+    if orbit.center_stick_time > 0.0:
+        return 0.0
+    time = np.linspace(0.0, orbit.period, SAMPLES + 1)
+    solver = new_solver(orbit.model)
+
+    def speed(t: float) -> float:
+        return float(after(solver, orbit.reference, t).velocity[1])
+
+    slowest = min(range(1, SAMPLES), key=lambda k: speed(float(time[k])))
+    bounds = (time[slowest - 1], time[slowest + 1])
+    return float(minimize_scalar(speed, bounds=bounds, method="bounded", options={"xatol": 1e-10}).fun)
+
+
+def apart(state: Instant, asymmetry: float) -> Instant:
+    """Return a state with block 1 moved forward and block 3 back, by half the asymmetry each."""
+    shift = np.array([0.5 * asymmetry, 0.0, -0.5 * asymmetry])
+    return Instant(state.position + shift, state.velocity, state.stuck)
+
+
+def finite_difference_multiplier(orbit: Orbit) -> float:
+    """Return the transverse multiplier of a synchronized orbit without the tangent map.
+
+    Blocks 1 and 3 are moved apart by d and followed for a period. By mirror symmetry what is left of d is an odd
+    function of d, so that one step of Richardson's extrapolation leaves an error of order d⁴.
+    """
+
+    solver = new_solver(orbit.model)
+
+    def ratio(d: float) -> float:
+        end = after(solver, apart(orbit.reference, d), orbit.period)
+        return float(end.position[0] - end.position[2]) / d
+
+    d = DIFFERENCE * orbit.model.v
+    return (4.0 * ratio(0.5 * d) - ratio(d)) / 3.0
+
+
+def critical_a_error(family: Family, a: float) -> float:
+    """Return by how much a_c changes if finite differences take the place of the tangent map."""
+    orbit = family.at(a)
+    low, high = (transverse_multiplier(family.at(a + side * SLOPE_STEP)) for side in (-1, 1))
+    slope = (high - low) / (2.0 * SLOPE_STEP)
+    return abs((finite_difference_multiplier(orbit) - transverse_multiplier(orbit)) / slope)

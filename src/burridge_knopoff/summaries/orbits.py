@@ -1,0 +1,224 @@
+"""The synchronized orbit over law and a, where it is lost, what branches off there, and how alike the laws are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.flow import Model
+from burridge_knopoff.stability.orbit import OrbitError, multipliers, transverse_multiplier
+from burridge_knopoff.stability.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
+
+MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
+DIRECTIONS = ("up", "down")
+
+#: Whether there is an orbit. At a = 0 nothing feeds or damps the motion: no periodic orbit is isolated.
+ORBIT_STATUS = {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"}
+FOUND, NEUTRAL, NOT_FOUND, NOT_THREE_BLOCKS = ORBIT_STATUS
+
+KINDS = {-1: "undetermined", 1: "pitchfork", 2: "flip"}
+SIDES = {-1: "undetermined", 0: "subcritical", 1: "supercritical"}
+UNDETERMINED, PITCHFORK, FLIP = KINDS
+SUBCRITICAL, SUPERCRITICAL = 0, 1
+
+#: Asymmetries x_1 − x_3 of the orbits that branch off, in units of v, and up to which the amplitude law is fitted.
+ASYMMETRIES = tuple(float(f"{10 ** (k / 5 - 3):.3e}") for k in range(13))
+LARGEST_FITTED = 1.0e-2
+
+#: Distances from a_c at which runs go up and down in a.
+OFFSETS = (-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
+
+_CURVE = ("law", "a")
+_BRANCH = ("law", "branch_asymmetry")
+VARIABLES = {
+    "status": Variable(_CURVE, "i1", "whether the synchronized orbit was found", flag("i1", ORBIT_STATUS)),
+    "period": Variable(_CURVE, "f8", "period T of the synchronized orbit"),
+    "residual": Variable(_CURVE, "f8", "largest difference of the state after one period"),
+    "lateral_slip_time": Variable(_CURVE, "f8", "time T_s for which blocks 1 and 3 slip in a period"),
+    "center_stick_time": Variable(_CURVE, "f8", "time for which block 2 sticks in a period"),
+    "transverse_multiplier": Variable(_CURVE, "f8", "Floquet multiplier mu of x_1 - x_3"),
+    "multiplier_real": Variable((*_CURVE, "mode"), "f8", "real part of the Floquet multipliers"),
+    "multiplier_imaginary": Variable((*_CURVE, "mode"), "f8", "imaginary part of the Floquet multipliers"),
+    "critical_a": Variable(("law",), "f8", "a_c, at which |mu| reaches 1"),
+    "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is taken from finite differences of the flow"),
+    "grazing_a": Variable(("law",), "f8", "a at which block 2 begins to stick"),
+    "symmetric_flip_a": Variable(("law",), "f8", "a at which a multiplier of symmetric perturbations reaches -1"),
+    "bifurcation_kind": Variable(("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", KINDS)),
+    "bifurcation_side": Variable(
+        ("law",), "i1", "side of a_c on which the orbits that branch off lie", flag("i1", SIDES)
+    ),
+    "branch_offset": Variable(_BRANCH, "f8", "a - a_c at which the asymmetric orbit exists"),
+    "branch_period": Variable(_BRANCH, "f8", "period of the asymmetric orbit"),
+    "branch_residual": Variable(_BRANCH, "f8", "largest difference of the state after one period"),
+    "branch_multiplier": Variable(_BRANCH, "f8", "largest modulus of the multipliers of the asymmetric orbit"),
+    "branch_mean_distance": Variable(_BRANCH, "f8", "<J> over a period of the asymmetric orbit"),
+    "amplitude_exponent": Variable(("law",), "f8", "exponent of |x_1 - x_3| against a - a_c, fitted"),
+    "amplitude_exponent_error": Variable(("law",), "f8", "standard error of the exponent"),
+    "amplitude_coefficient": Variable(("law",), "f8", "coefficient of that power law"),
+    "sweep_asymmetry": Variable(
+        ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| of runs that go through a_c in steps of a"
+    ),
+    "hysteresis": Variable(("law",), "f8", "largest difference of |x_1 - x_3| between going up and going down"),
+    "effective_a": Variable(("a",), "f8", "a / (1 + a v)^2, slope of the nonlinear law at the driver velocity"),
+    "effective_period_difference": Variable(
+        ("a",), "f8", "period of the nonlinear law at a minus that of the linearized law at effective_a"
+    ),
+    "effective_multiplier_difference": Variable(
+        ("a",), "f8", "mu of the nonlinear law at a minus that of the linearized law at effective_a"
+    ),
+    "effective_critical_a_difference": Variable((), "f8", "effective_a of the nonlinear a_c minus the linearized a_c"),
+    "effective_grazing_a_difference": Variable(
+        (), "f8", "effective_a of the nonlinear grazing_a minus the linearized grazing_a"
+    ),
+}
+_COORDINATES = {
+    "mode": Variable(("mode",), "O", "Floquet mode", coordinate=True),
+    "branch_asymmetry": Variable(_BRANCH[1:], "f8", "x_1 - x_3 while both stick", coordinate=True),
+    "direction": Variable(("direction",), "O", "direction in which a goes", coordinate=True),
+    "sweep_offset": Variable(("sweep_offset",), "f8", "a - a_c of the runs of a sweep", coordinate=True),
+}
+
+
+def summarize(blocks: int, grid: Sequence[float], v: float, contact: str) -> xarray.Dataset:
+    """Return the Dataset of the synchronized orbits of a chain, which has three blocks for there to be any.
+
+    grid : values of a; the transitions do not depend on them
+    """
+    asymmetry = v * np.array(ASYMMETRIES)
+    coordinates = _coordinates(grid, asymmetry)
+    sizes = {name: len(coordinates[name][1]) for name in coordinates}
+    values: dict[str, Any] = {
+        name: np.full(
+            [sizes[dimension] for dimension in item.dimensions], UNDETERMINED if item.dtype == "i1" else np.nan
+        )
+        for name, item in VARIABLES.items()
+    }
+    families: list[Family | None] = []
+    for i, law in enumerate(LAWS):
+        try:
+            families.append(Family(Model(Chain(blocks), Friction(law, 0.0), v, contact)))
+        except OrbitError as error:
+            print(f"{law}: {error}")
+            families.append(None)
+        _fill_curve(values, i, families[i], grid, NOT_FOUND if blocks == 3 else NOT_THREE_BLOCKS)
+        _fill_transition(values, i, families[i], asymmetry)
+    _compare(values, families, grid, v)
+    return summary(
+        "The synchronized orbit of three blocks, its Floquet multipliers, and where it is lost",
+        VARIABLES,
+        values,
+        coordinates,
+        {"history": "snakemake, from the equations of motion", "v": v, "contact": contact},
+    )
+
+
+def _coordinates(grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]:
+    values = {"mode": MODES, "branch_asymmetry": asymmetry, "direction": DIRECTIONS, "sweep_offset": OFFSETS}
+    named = axes((), grid)
+    del named["initial"]
+    for name, item in _COORDINATES.items():
+        attributes = item.all_attributes()
+        if item.dtype == "O":
+            del attributes["units"]
+        named[name] = (name, np.array(values[name], dtype=item.dtype), attributes)
+    return named
+
+
+def _fill_curve(values: dict[str, Any], i: int, family: Family | None, grid: Sequence[float], missing: int) -> None:
+    """Fill in what is known along the grid for the law of that number."""
+    for k, a in enumerate(grid):
+        values["status"][i, k] = NEUTRAL if a == 0.0 and missing == NOT_FOUND else missing
+        if family is None or a == 0.0:
+            continue
+        try:
+            orbit = family.at(a)
+        except OrbitError as error:
+            print(f"{LAWS[i]}: {error}")
+            continue
+        found = multipliers(orbit)
+        values["status"][i, k] = FOUND
+        values["period"][i, k] = orbit.period
+        values["residual"][i, k] = orbit.residual
+        values["lateral_slip_time"][i, k] = orbit.lateral_slip_time
+        values["center_stick_time"][i, k] = orbit.center_stick_time
+        values["transverse_multiplier"][i, k] = transverse_multiplier(orbit)
+        values["multiplier_real"][i, k] = found.real
+        values["multiplier_imaginary"][i, k] = found.imag
+
+
+def _fill_transition(values: dict[str, Any], i: int, family: Family | None, asymmetry: np.ndarray) -> None:
+    """Fill in where the orbit of the law of that number changes, and what branches off."""
+    if family is None:
+        return
+    critical = critical_a(family)
+    values["critical_a"][i] = critical
+    values["grazing_a"][i] = grazing_a(family)
+    values["symmetric_flip_a"][i] = symmetric_flip_a(family)
+    if not np.isfinite(critical):
+        return
+    values["critical_a_error"][i] = critical_a_error(family, critical)
+    kind = PITCHFORK if transverse_multiplier(family.at(critical)) > 0.0 else FLIP
+    values["bifurcation_kind"][i] = kind
+    runs = critical + np.array(OFFSETS)
+    values["sweep_asymmetry"][i] = sweep(family, runs), sweep(family, runs[::-1])[::-1]
+    values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
+    if kind == PITCHFORK:
+        _fill_branch(values, i, family, critical, asymmetry)
+
+
+def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float, asymmetry: np.ndarray) -> None:
+    """Fill in the orbits that branch off where the multiplier is 1, the side on which they lie, and their amplitude."""
+    for k, d in enumerate(asymmetry):
+        try:
+            orbit = branch_orbit(family, critical, float(d))
+        except OrbitError as error:
+            print(f"{LAWS[i]}: {error}")
+            continue
+        values["branch_offset"][i, k] = orbit.model.friction.a - critical
+        values["branch_period"][i, k] = orbit.period
+        values["branch_residual"][i, k] = orbit.residual
+        values["branch_multiplier"][i, k] = leading_modulus(orbit)
+        values["branch_mean_distance"][i, k] = mean_distance(orbit)
+    small = np.array(ASYMMETRIES) <= LARGEST_FITTED
+    offset = values["branch_offset"][i, small]
+    if (offset > 0.0).all() or (offset < 0.0).all():
+        values["bifurcation_side"][i] = SUPERCRITICAL if offset[0] > 0.0 else SUBCRITICAL
+        fit = fit_power_law(np.abs(offset), asymmetry[small])
+        values["amplitude_exponent"][i] = fit.exponent
+        values["amplitude_exponent_error"][i] = fit.error
+        values["amplitude_coefficient"][i] = fit.coefficient
+
+
+def _compare(values: dict[str, Any], families: Sequence[Family | None], grid: Sequence[float], v: float) -> None:
+    """Fill in how the nonlinear law at a differs from the linearized one at a / (1 + a v)²."""
+    values["effective_a"] = effective_a(np.asarray(grid, dtype=float), v)
+    for name in ("critical_a", "grazing_a"):
+        linearized, nonlinear = values[name]
+        values[f"effective_{name}_difference"] = effective_a(nonlinear, v) - linearized
+    linearized_family = families[LAWS.index("linearized")]
+    nonlinear_row = LAWS.index("nonlinear")
+    for k, a in enumerate(values["effective_a"]):
+        if linearized_family is None or values["status"][nonlinear_row, k] != FOUND:
+            continue
+        try:
+            orbit = linearized_family.at(float(a))
+        except OrbitError:
+            continue
+        values["effective_period_difference"][k] = values["period"][nonlinear_row, k] - orbit.period
+        values["effective_multiplier_difference"][k] = values["transverse_multiplier"][
+            nonlinear_row, k
+        ] - transverse_multiplier(orbit)
+
+
+def effective_a(a: Any, v: float) -> Any:
+    """Return minus the slope of the nonlinear law 1/(1 + a U') at U' = v, elementwise."""
+    return a / (1.0 + a * v) ** 2

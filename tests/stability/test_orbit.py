@@ -1,0 +1,155 @@
+"""Periodic orbits and their multipliers against closed forms, 40-digit arithmetic and finite differences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.flow import Instant, Model, instant
+from burridge_knopoff.stability.orbit import OrbitError, find_orbit, flow, multipliers, transverse_multiplier
+from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
+
+VALUES = (1e-4, 0.0025, 0.02, 0.0355, 0.036, 0.05, 0.0869, 0.1, 0.2, 0.3)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("a", VALUES)
+def test_the_state_returns(families, law, a):
+    orbit = families[law].at(a)
+    end = instant(flow(orbit.model, orbit.reference, orbit.period)[0])
+    assert np.abs(end.vector() - orbit.reference.vector()).max() <= 1e-14
+    assert orbit.residual <= 1e-14
+    assert orbit.asymmetry == 0.0
+    assert [len(orbit.times(block, kind)) for block in (0, 2) for kind in (0, 1)] == [1, 1, 1, 1]
+    assert multipliers(orbit)[1] == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
+def test_the_state_returns_in_exact_arithmetic(families, law, a):
+    orbit = families[law].at(a)
+    position, velocity = slipping_state(orbit)
+    run = after_a_period(orbit, position, velocity)
+    # Errors of the state grow by the multipliers at most, those of the period by the speed.
+    assert np.abs(np.array(run.position, dtype=float) - position).max() < 5e-15
+    assert np.abs(np.array(run.velocity, dtype=float) - velocity).max() < 5e-15
+    assert len(run.events) == len(orbit.events)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
+def test_transverse_multiplier_in_exact_arithmetic(families, law, a):
+    orbit = families[law].at(a)
+    assert transverse_multiplier(orbit) == pytest.approx(exact_transverse_multiplier(orbit), abs=1e-12)
+
+
+@pytest.mark.parametrize("a", VALUES)
+def test_transverse_multiplier_in_closed_form(families, a):
+    orbit = families["linearized"].at(a)
+    time, omega = orbit.lateral_slip_time, np.sqrt(2.0 - 0.25 * a * a)
+    closed = np.exp(0.5 * a * time) * (np.cos(omega * time) - 0.5 * a / omega * np.sin(omega * time))
+    assert transverse_multiplier(orbit) == pytest.approx(closed, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("a", [0.02, 0.05, 0.15])
+def test_multipliers_against_finite_differences(families, law, a):
+    """The eigenvalues of the differenced period map are the multipliers; of stuck velocities there is no difference."""
+    orbit = families[law].at(a)
+    free = [0, 1, 2] if orbit.reference.stuck[1] else [0, 1, 2, 4]
+    step = 1e-6
+    matrix = np.zeros((6, 6))
+    for column in free:
+        ends = []
+        for sign in (1.0, -1.0):
+            state = orbit.reference.vector()
+            state[column] += sign * step
+            start = Instant(state[:3], state[3:], orbit.reference.stuck)
+            ends.append(instant(flow(orbit.model, start, orbit.period)[0]).vector())
+        matrix[:, column] = (ends[0] - ends[1]) / (2.0 * step)
+    expected = np.linalg.eigvals(matrix)
+    for value in multipliers(orbit):
+        # A double multiplier 0 splits by the root of the error of the differences.
+        assert np.abs(expected - value).min() < 1e-4 if abs(value) < 1e-3 else np.abs(expected - value).min() < 1e-7
+    assert np.prod(multipliers(orbit)[:4]) == pytest.approx(
+        np.linalg.det(matrix[np.ix_([0, 1, 2, 4], [0, 1, 2, 4])]), abs=1e-7
+    )
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_run_from_the_initial_state_ends_on_the_orbit(families, law):
+    run = simulate(law, 0.05, "minus", transient=4000.0, window=200.0)
+    stops = run.event_time[(run.event_block == 1) & (run.event_kind == 0)]
+    assert np.diff(stops) == pytest.approx(families[law].at(0.05).period, abs=1e-10)
+    assert len(stops) > 30
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_small_a_is_a_grazing_normal_mode(families, law):
+    """As a falls to 0 the orbit becomes the slow symmetric mode, λ = 3 − √3, in which block 1 just comes to rest."""
+    omega = np.sqrt(3.0 - np.sqrt(3.0))
+    errors = []
+    for a in (1e-4, 1e-6):
+        orbit = families[law].at(a)
+        errors.append(orbit.period - 2.0 * np.pi / omega)
+        assert orbit.period - orbit.lateral_slip_time == pytest.approx(2.36 * np.sqrt(a), rel=0.005)
+    assert abs(errors[1]) < 1e-7
+    assert abs(errors[1]) < 0.02 * abs(errors[0])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_linearized_law_has_no_scale(families, law):
+    """Divided by v, the linearized equations do not contain v: period and multipliers do not depend on it."""
+    orbit = families[law].at(0.1)
+    other = Family(replace(orbit.model, v=0.3)).at(0.1)
+    same = law == "linearized"
+    assert (abs(other.period - orbit.period) < 1e-12) == same
+    assert (abs(transverse_multiplier(other) - transverse_multiplier(orbit)) < 1e-11) == same
+
+
+def test_an_orbit_does_not_depend_on_the_way_to_it(families):
+    fine = Family(replace(families["nonlinear"].model, v=0.1))
+    for a in np.arange(0.055, 0.1501, 0.005):
+        orbit = fine.at(float(a))
+    direct = families["nonlinear"].at(float(a))
+    assert orbit.period == pytest.approx(direct.period, abs=1e-13)
+    assert transverse_multiplier(orbit) == pytest.approx(transverse_multiplier(direct), abs=1e-12)
+
+
+def test_a_guess_far_from_any_orbit_is_refused(families):
+    orbit = families["linearized"].at(0.05)
+    with pytest.raises(OrbitError, match=r"a = 0\.05: "):
+        find_orbit(orbit.model, orbit.reference, 0.4 * orbit.period)
+
+
+@pytest.mark.parametrize("a", [0.0, -0.1, 2.0])
+def test_friction_parameters_without_an_orbit(families, a):
+    with pytest.raises(OrbitError, match="0 < a < 2"):
+        families["linearized"].at(a)
+
+
+@pytest.mark.parametrize("blocks", [2, 4])
+def test_other_chains_are_refused(blocks):
+    with pytest.raises(OrbitError, match="3 blocks"):
+        Family(Model(Chain(blocks), Friction("linearized", 0.05)))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(families, law):
+    flip = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
+    for a, doubled in ((flip - 0.002, False), (flip + 0.002, True)):
+        orbit = families[law].at(a)
+        assert (multipliers(orbit)[2].real < -1.0) == doubled
+        position, velocity = slipping_state(orbit)
+        position[1] += 1e-4
+        initial = InitialState("near", position, velocity)
+        run = simulate(law, a, initial, transient=10000.0, window=100.0, batches=2)
+        assert run.mean_distance < 1e-12
+        turns = np.diff(run.event_time[(run.event_block == 1) & (run.event_kind == 0)])
+        assert turns[2:] == pytest.approx(turns[:-2], abs=1e-6)
+        assert (abs(turns[1] - turns[0]) > 0.05) == doubled

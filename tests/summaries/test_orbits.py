@@ -1,0 +1,74 @@
+"""The summary of the synchronized orbit: what it holds, and what it says where there is none."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.flow import Model
+from burridge_knopoff.stability.orbit import multipliers, transverse_multiplier
+from burridge_knopoff.summaries.orbits import effective_a, summarize
+
+
+@pytest.fixture(scope="module")
+def found():
+    return summarize(3, [0.0, 0.05, 0.1], 0.1, "one_sided")
+
+
+def test_the_curve_is_that_of_the_orbits(found):
+    assert found["status"].values.tolist() == [[1, 0, 0]] * 2
+    assert found.attrs["v"] == 0.1
+    for law in LAWS:
+        for a in (0.05, 0.1):
+            orbit = Family(Model(Chain(3), Friction(law, 0.0))).at(a)
+            point = found.sel(law=law, a=a)
+            values = point["multiplier_real"].values + 1j * point["multiplier_imaginary"].values
+            assert values == pytest.approx(multipliers(orbit), abs=1e-12)
+            assert values[0] == point["transverse_multiplier"].item()
+            assert point["period"].item() == pytest.approx(orbit.period, abs=1e-13)
+            assert point["lateral_slip_time"].item() == pytest.approx(orbit.lateral_slip_time, abs=1e-12)
+            assert point["residual"].item() <= 1e-14
+    assert np.isnan(found["period"].sel(a=0.0)).all()
+
+
+def test_the_bifurcation_is_told_from_the_orbits(found):
+    meanings = {
+        name: dict(zip(found[name].attrs["flag_values"], found[name].attrs["flag_meanings"].split(), strict=True))
+        for name in ("bifurcation_kind", "bifurcation_side")
+    }
+    assert [meanings["bifurcation_kind"][value] for value in found["bifurcation_kind"].values] == ["pitchfork"] * 2
+    assert [meanings["bifurcation_side"][value] for value in found["bifurcation_side"].values] == ["supercritical"] * 2
+    assert (found["branch_offset"] > 0.0).all()
+    assert (found["branch_multiplier"] < 1.0).all()
+    assert (found["branch_residual"] <= 1e-14).all()
+    assert (abs(found["amplitude_exponent"] - 0.5) < 1e-5).all()
+    assert (found["hysteresis"] < 1e-9).all()
+    ends = found["sweep_asymmetry"]
+    assert (ends.sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
+
+
+def test_the_law_at_the_same_slope(found):
+    """The stored differences are those of orbits found for themselves."""
+    scaled = effective_a(0.1, 0.1)
+    slope = (Friction("nonlinear", 0.1)(0.1 + 1e-4) - Friction("nonlinear", 0.1)(0.1 - 1e-4)) / 2e-4
+    assert scaled == pytest.approx(-slope, rel=1e-9)
+    pair = [Family(Model(Chain(3), Friction(law, 0.0))).at(a) for law, a in zip(LAWS, (scaled, 0.1), strict=True)]
+    point = found.sel(a=0.1)
+    assert point["effective_a"].item() == scaled
+    expected = transverse_multiplier(pair[1]) - transverse_multiplier(pair[0])
+    assert point["effective_multiplier_difference"].item() == pytest.approx(expected, abs=1e-12)
+    assert point["effective_period_difference"].item() == pytest.approx(pair[1].period - pair[0].period, abs=1e-12)
+    linearized, nonlinear = found["critical_a"].values
+    assert found["effective_critical_a_difference"].item() == effective_a(nonlinear, 0.1) - linearized
+
+
+@pytest.mark.parametrize(("blocks", "v", "status"), [(2, 0.1, 3), (5, 0.1, 3), (3, 1000.0, 2)])
+def test_no_orbit_is_told_not_a_crash(blocks, v, status):
+    # Under a symmetric contact so fast a driver makes blocks slip backward: no block stops once a period.
+    none = summarize(blocks, [0.1, 0.2], v, "symmetric")
+    assert (none["status"] == status).all()
+    for name in ("period", "critical_a", "grazing_a", "multiplier_real", "branch_offset", "hysteresis"):
+        assert np.isnan(none[name]).all()
+    assert (none["bifurcation_kind"] == -1).all()
+    assert (none["bifurcation_side"] == -1).all()

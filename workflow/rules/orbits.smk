@@ -1,0 +1,25 @@
+# Stability: what the equations of motion say without a point file.
+
+
+rule orbits:
+    output:
+        f"{SUMMARY}/orbits.nc",
+    log:
+        f"{RESULTS}/logs/orbits.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/orbits.tsv"
+    resources:
+        mem_mb=400,
+        runtime=30,
+    params:
+        model={
+            "blocks": len(next(iter(STUDY.config["initial"].values()))["position"]),
+            "v": STUDY.config["v"],
+            "contact": STUDY.config["contact"],
+        },
+        grid=list(STUDY.grid.values()),
+        sources=source_fingerprint(STABILITY_SOURCES),
+    message:
+        "the synchronized orbit and where it is lost"
+    script:
+        "../scripts/orbits.py"
