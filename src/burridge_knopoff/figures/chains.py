@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, styled
+from burridge_knopoff.stability.chains import STANDARD_ERRORS
 
 COLUMNS = 3
 ROW_HEIGHT = 1.35
@@ -23,9 +24,9 @@ SHIFT = 0.15
 def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
     """Draw the synchronized fraction against a, a panel for each number of blocks, and ⟨J⟩ of two blocks for both laws.
 
-    Bars: confidence intervals, undetermined states counted either way. Strips at the top: where some symmetric motion
-    has a negative transverse exponent, the mark of stable synchrony. Shaded at two blocks: values of a at which the
-    laws disagree for at least one initial state.
+    Bars: confidence intervals, undetermined states counted either way; open circles: the fraction with all of those
+    counted as synchronized. Squares at the top: some symmetric motion has a transverse exponent that is negative beyond
+    its error, so that synchrony is stable. Shaded at two blocks: the laws disagree for at least one initial state.
     """
     blocks = chains["blocks"].values
     rows = math.ceil(len(blocks) / COLUMNS)
@@ -42,10 +43,13 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
         panel.set_xlabel("$a$")
         panel.tick_params(labelbottom=True)
     for panel in grid[:, 0]:
-        panel.set_ylabel("synchronized")
-    laws = chains["law"].values
-    if len(laws) > 1:
-        panels[0].legend(laws, loc="center right")
+        panel.set_ylabel("fraction")
+    handles, labels = panels[0].get_legend_handles_labels()
+    # Points with bars come last of themselves.
+    order = np.roll(np.arange(len(labels)), chains.sizes["law"])
+    panels[0].legend(
+        [handles[k] for k in order], [labels[k] for k in order], loc="center right", handletextpad=0.3, fontsize=7.0
+    )
     wide = lower.subplots()
     _draw_two_blocks(wide, two_blocks)
     titles = [f"$N={count}$" for count in blocks]
@@ -63,12 +67,22 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         fraction = run["synchronized_fraction"].values
         bars = [fraction - run["synchronized_low"].values, run["synchronized_high"].values - fraction]
         shifted = a + index * SHIFT * step
+        name = f", {law}" if index or chain.sizes["law"] > 1 else ""
         panel.errorbar(
             shifted, fraction, np.maximum(bars, 0.0), fmt="-o", markersize=2.4, linewidth=0.8, elinewidth=0.6,
-            color=color(index), label=law,
+            color=color(index), label=f"synchronized{name}",
         )  # fmt: skip
-        stable = (run["symmetric_exponent"] < 0.0).any("symmetric_state").values
-        panel.plot(a[stable], np.full(stable.sum(), 1.1 + 0.05 * index), "s", markersize=2.0, color=color(index))
+        open_questions = run["undetermined_fraction"].values > 0.0
+        panel.plot(
+            shifted[open_questions], (fraction + run["undetermined_fraction"].values)[open_questions], "o",
+            markersize=2.8, markeredgewidth=0.6, fillstyle="none", color=color(index), label=f"or undetermined{name}",
+        )  # fmt: skip
+        below = run["symmetric_exponent"] + STANDARD_ERRORS * run["symmetric_error"] < 0.0
+        stable = below.any("symmetric_state").values
+        panel.plot(
+            a[stable], np.full(stable.sum(), 1.1 + 0.05 * index), "s", markersize=2.0, color=color(index),
+            label=f"synchrony stable{name}",
+        )  # fmt: skip
     panel.set_ylim(-0.05, 1.2)
     panel.set_yticks([0.0, 0.5, 1.0])
 
