@@ -17,8 +17,8 @@ from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.simulation import RUNNING, STATUS, Settings, run
-from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
+from burridge_knopoff.simulation import Settings, run
+from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, begin, instant, new_solver
 from burridge_knopoff.stability.sampling import sample_states
 
 OUTCOMES = {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}
@@ -217,16 +217,13 @@ def watch_chain(
                 for name in Fate.__dataclass_fields__:
                     results[name][i, j, k] = getattr(fate, name)
             for k, state in enumerate(initial[: sample.symmetric_states]):
-                pair = _symmetric_exponent(model, symmetrized(begin(model, state, sample.start)), watch.quarter)
-                results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = pair
+                results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
+                    model, begin(model, state, sample.start), watch.quarter, watch.quarter
+                )
             results["lyapunov_exponent"][i, j], results["lyapunov_error"][i, j] = _lyapunov_exponent(
                 model, initial[0], sample.start, watch
             )
     return results
-
-
-def _symmetric_exponent(model: Model, state: Instant, quarter: float) -> tuple[float, float]:
-    return transverse_exponent(model, state, quarter, quarter)
 
 
 def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: Watch) -> tuple[float, float]:
@@ -243,7 +240,7 @@ def _run_until(solver: EventDriven, end: float) -> bool:
     solver.end = end
     while (status := solver.run()) == RUNNING:
         pass
-    return STATUS[status] == "completed"
+    return bool(status == COMPLETED)
 
 
 def _antisymmetric(perturbation: np.ndarray) -> np.ndarray:
