@@ -29,7 +29,7 @@ from burridge_knopoff.stability.chains import (
 from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
 
 V = 0.1
-SAMPLE = Sample(states=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_states=2)
+SAMPLE = Sample(samples=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=2)
 
 
 def model(blocks, a, law="linearized"):
@@ -216,8 +216,8 @@ def test_symmetrized_and_pair_distances():
 def test_a_watched_chain_is_its_states_one_by_one():
     watch = Watch(time_limit=1000.0)
     results = watch_chain(3, ["linearized"], [0.05, 0.2], SAMPLE, watch, V, "one_sided")
-    assert results["outcome"].shape == (1, 2, SAMPLE.states)
-    assert results["symmetric_exponent"].shape == (1, 2, SAMPLE.symmetric_states)
+    assert results["outcome"].shape == (1, 2, SAMPLE.samples)
+    assert results["symmetric_exponent"].shape == (1, 2, SAMPLE.symmetric_samples)
     for j, a in enumerate((0.05, 0.2)):
         for k, state in enumerate(SAMPLE.initial(3)):
             assert results["outcome"][0, j, k] == fate(model(3, a), state, watch).outcome

@@ -9,7 +9,7 @@ from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.summaries import chains, two_blocks
 
-SAMPLE = Sample(states=5, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_states=1)
+SAMPLE = Sample(samples=5, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=1)
 AGREEMENT = {"relative_tolerance": 0.1, "standard_errors": 3.0}
 MOTION = {
     "zero_exponent": 5e-4,

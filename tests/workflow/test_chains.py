@@ -15,10 +15,10 @@ chains:
   blocks: [3, 2]
   a: [0.02, {from: 0.1, to: 0.2, step: 0.1}]
   laws: [linearized, nonlinear]
-  states: 3
-  symmetric_states: 1
+  samples: 3
+  symmetric_samples: 1
   time_limit: 400
-  two_blocks: {a: [0.02, 0.15], states: 2}
+  two_blocks: {a: [0.02, 0.15], samples: 2}
 """
 )
 

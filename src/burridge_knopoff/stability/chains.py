@@ -169,22 +169,22 @@ def transverse_exponent(model: Model, state: Instant, alignment: float, window: 
 
 @dataclass(frozen=True)
 class Sample:
-    """Which initial states are watched: `states` of them in a box, drawn with a seed, under a convention of start.
+    """Which initial states are watched: `samples` of them in a box, drawn with a seed, under a convention of start.
 
     position, velocity : (low, high) of every U_i(0) and every U_i'(0)
-    symmetric_states : from how many of them, made symmetric, symmetric motion begins
+    symmetric_samples : from how many of them, made symmetric, symmetric motion begins
     """
 
-    states: int
+    samples: int
     seed: int
     position: Sequence[float]
     velocity: Sequence[float]
-    symmetric_states: int
+    symmetric_samples: int
     start: str = "moving"
 
     def initial(self, blocks: int) -> list[InitialState]:
         """Return the initial states of a chain."""
-        drawn = sample_states(blocks, self.states, self.position, self.velocity, self.seed)
+        drawn = sample_states(blocks, self.samples, self.position, self.velocity, self.seed)
         return [
             InitialState(f"state{number}", tuple(position), tuple(velocity))
             for number, (position, velocity) in enumerate(zip(*drawn, strict=True), 1)
@@ -196,7 +196,7 @@ def watch_chain(
 ) -> dict[str, np.ndarray]:
     """Watch all sampled states of a chain under each law at each a of a grid.
 
-    Returns arrays of shape (laws, grid, states): the fields of `Fate`; of shape (laws, grid, symmetric states):
+    Returns arrays of shape (laws, grid, states): the fields of `Fate`; of shape (laws, grid, symmetric samples):
     `symmetric_exponent` and its error, the largest transverse exponent of symmetric motion after a quarter of the time
     limit, over another quarter; and of shape (laws, grid): `lyapunov_exponent`, the largest one of the first state in
     the second half of the time limit, and its error.
@@ -205,7 +205,7 @@ def watch_chain(
     shape = (len(laws), len(grid))
     results: dict[str, np.ndarray] = {
         **{name: np.full((*shape, len(initial)), np.nan) for name in Fate.__dataclass_fields__},
-        **{f"symmetric_{name}": np.full((*shape, sample.symmetric_states), np.nan) for name in ("exponent", "error")},
+        **{f"symmetric_{name}": np.full((*shape, sample.symmetric_samples), np.nan) for name in ("exponent", "error")},
         **{f"lyapunov_{name}": np.full(shape, np.nan) for name in ("exponent", "error")},
     }
     for i, law in enumerate(laws):
@@ -216,7 +216,7 @@ def watch_chain(
                 fate = watch_state(model, solver, begin(model, state, sample.start), watch)
                 for name in Fate.__dataclass_fields__:
                     results[name][i, j, k] = getattr(fate, name)
-            for k, state in enumerate(initial[: sample.symmetric_states]):
+            for k, state in enumerate(initial[: sample.symmetric_samples]):
                 results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
                     model, begin(model, state, sample.start), watch.quarter, watch.quarter
                 )

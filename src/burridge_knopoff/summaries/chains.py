@@ -81,7 +81,7 @@ def chain_dataset(
         f"Mirror synchrony of sampled initial states, {blocks} blocks",
         CHAIN_VARIABLES,
         values,
-        _coordinates(laws, grid, sample.states, sample.symmetric_states),
+        _coordinates(laws, grid, sample.samples, sample.symmetric_samples),
         {
             "history": "snakemake chains",
             "blocks": blocks,
