@@ -59,6 +59,7 @@ wildcard_constraints:
     law="|".join(LAWS),
     initial="|".join(STUDY.initial),
     a=r"\d+\.\d+",
+    blocks=r"\d+",
 
 
 include: "workflow/rules/simulate.smk"
@@ -67,6 +68,7 @@ include: "workflow/rules/attractors.smk"
 include: "workflow/rules/basins.smk"
 include: "workflow/rules/orbits.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/chains.smk"
 
 
 rule all:

@@ -108,6 +108,21 @@ BAD = [
     ({"lyapunov_alignment": 1e10}, ["lyapunov_alignment: 1", "1e+09"]),
     ({"lyapunov_exponent": 3}, ["lyapunov_exponent: unknown key", "lyapunov_exponents"]),
     ({"figures": {"a": 0.0801}}, ["figures.a: 0.0801", "grid"]),
+    ({"chains": {"block": [3]}}, ["chains.block: unknown key"]),
+    ({"chains": {"blocks": [1]}}, ["chains.blocks[0]: 1", "≥ 2"]),
+    ({"chains": {"blocks": [3, 3]}}, ["chains.blocks: [3, 3]", "each value once"]),
+    ({"chains": {"blocks": []}}, ["chains.blocks: []", "at least 1"]),
+    ({"chains": {"a": [2.0]}}, ["chains.a[0]: 2.0", "< 2"]),
+    ({"chains": {"a": [0.1, 0.1]}}, ["chains.a: 0.1 is listed twice"]),
+    ({"chains": {"laws": ["linear"]}}, ["chains.laws[0]: 'linear'", "linearized | nonlinear"]),
+    ({"chains": {"samples": 0}}, ["chains.samples: 0", "≥ 1"]),
+    ({"chains": {"samples": 3}}, ["chains.symmetric_samples: 4", "at most chains.samples (3)"]),
+    ({"chains": {"position": [1.0, -1.0]}}, ["chains.position: [1.0, -1.0]", "low < high"]),
+    ({"chains": {"position": [1.0]}}, ["chains.position: [1.0]", "at least 2"]),
+    ({"chains": {"velocity": [-0.1, 0.1]}}, ["chains.velocity[0]: -0.1", "≥ 0"]),
+    ({"chains": {"time_limit": 100}}, ["chains.time_limit: 100", "≥ 200"]),
+    ({"chains": {"synchronization_distance": 0}}, ["chains.synchronization_distance: 0", "≥ 1e-14"]),
+    ({"chains": {"two_blocks": {"a": [{"from": 0.1, "to": 0.2, "step": 0.03}]}}}, ["chains.two_blocks.a[0].step"]),
 ]
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -110,6 +111,7 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     _check_runs(filled, file)
     _check_boxes(filled, file)
     _fill_basins(filled, set(grid.values()), file)
+    _check_chains(filled, file)
     shown = filled["figures"].get("a")
     if shown is not None and shown not in grid.values():
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
@@ -203,7 +205,7 @@ def _check_runs(config: Mapping[str, Any], file: str) -> None:
 
 
 def _check_boxes(config: Mapping[str, Any], file: str) -> None:
-    boxes = [("attractors", key) for key in ("position", "velocity")]
+    boxes = [(section, key) for section in ("attractors", "chains") for key in ("position", "velocity")]
     boxes += [("basins", key) for key in ("first_position", "last_position")]
     for section, key in boxes:
         low, high = config[section][key]
@@ -252,23 +254,27 @@ def _check_states(config: Mapping[str, Any], file: str) -> None:
             raise ConfigError(f"{file}: initial.{name}.{error}") from error
 
 
+def _check_chains(config: dict[str, Any], file: str) -> None:
+    """Turn the lists of a into numbers, and check the counts of states."""
+    chains = config["chains"]
+    chains["a"] = _values(chains["a"], f"{file}: chains.a")
+    chains["two_blocks"]["a"] = _values(chains["two_blocks"]["a"], f"{file}: chains.two_blocks.a")
+    if chains["symmetric_samples"] > chains["samples"]:
+        raise ConfigError(
+            f"{file}: chains.symmetric_samples: {chains['symmetric_samples']!r} is not allowed: "
+            f"at most chains.samples ({chains['samples']!r})"
+        )
+
+
 def _grid_name(a: float, digits: int) -> str:
     return f"{a:.{digits}f}"
 
 
 def _grid(config: Mapping[str, Any], file: str) -> dict[str, float]:
     """Return {name: value}, ascending; every value the double nearest to its decimal."""
-    values: list[float] = []
-    for position, item in enumerate(config["a"]):
-        # Adding 0 turns -0.0 into 0.0.
-        values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{file}: a[{position}]")
-        if len(values) > MAXIMUM_POINTS:
-            raise ConfigError(f"{file}: a: more than {MAXIMUM_POINTS} values; at most that many are allowed")
     grid: dict[str, float] = {}
-    for value in sorted(values):
+    for value in _values(config["a"], f"{file}: a"):
         name = _grid_name(value, config["a_digits"])
-        if grid.get(name) == value:
-            raise ConfigError(f"{file}: a: {value!r} is listed twice, as a number or by two ranges; once is allowed")
         if name in grid:
             raise ConfigError(
                 f"{file}: a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "
@@ -276,6 +282,21 @@ def _grid(config: Mapping[str, Any], file: str) -> dict[str, float]:
             )
         grid[name] = value
     return grid
+
+
+def _values(items: Sequence[Any], place: str) -> list[float]:
+    """Return the numbers and the values of the ranges in a list, ascending; none may be there twice."""
+    values: list[float] = []
+    for position, item in enumerate(items):
+        # Adding 0 turns -0.0 into 0.0.
+        values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{place}[{position}]")
+        if len(values) > MAXIMUM_POINTS:
+            raise ConfigError(f"{place}: more than {MAXIMUM_POINTS} values; at most that many are allowed")
+    values.sort()
+    for value, following in pairwise(values):
+        if value == following:
+            raise ConfigError(f"{place}: {value!r} is listed twice, as a number or by two ranges; once is allowed")
+    return values
 
 
 def _range(item: Mapping[str, float], place: str) -> list[float]:

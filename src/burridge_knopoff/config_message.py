@@ -69,6 +69,8 @@ def _allowed(error: Any) -> str:
         return f"at least {error.validator_value}"
     if error.validator == "maxItems":
         return f"at most {error.validator_value}"
+    if error.validator == "uniqueItems":
+        return "each value once"
     if schema.get("type") == "object":
         return "keys " + ", ".join(sorted(schema.get("properties", {}))) if "properties" in schema else "named entries"
     words = _TYPES.get(schema.get("type", ""), schema.get("type", ""))

@@ -68,7 +68,7 @@ def summarize(
             values["event_order_count"][j, k] = count
             values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
     values["kind"][...] = lyapunov["kind"].values
-    _judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
+    judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
     return summary(
         "Agreement of the linearized and the nonlinear friction law",
         VARIABLES,
@@ -84,7 +84,7 @@ def _sequence(point: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, 
     return time, block, kind
 
 
-def _judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
+def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
     """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
 
     There is no verdict where the kind of one of the two motions is not determined.

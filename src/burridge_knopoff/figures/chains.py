@@ -1,0 +1,104 @@
+"""Mirror synchrony of longer chains, and two blocks under both laws."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.style import PAGE, color, label_panels, styled
+from burridge_knopoff.stability.chains import STANDARD_ERRORS
+
+COLUMNS = 3
+ROW_HEIGHT = 1.35
+TWO_BLOCKS_HEIGHT = 2.3
+
+# Curves of two laws at the same a are drawn this share of a step apart.
+SHIFT = 0.15
+
+
+@styled
+def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
+    """Draw the synchronized fraction against a, a panel for each number of blocks, and ⟨J⟩ of two blocks for both laws.
+
+    Bars: confidence intervals, undetermined states counted either way; open circles: the fraction with all of those
+    counted as synchronized. Squares at the top: some symmetric motion has a transverse exponent that is negative beyond
+    its error, so that synchrony is stable. Shaded at two blocks: the laws disagree for at least one initial state.
+    """
+    blocks = chains["blocks"].values
+    rows = math.ceil(len(blocks) / COLUMNS)
+    figure = Figure(figsize=(PAGE, rows * ROW_HEIGHT + TWO_BLOCKS_HEIGHT + 0.4), layout="constrained")
+    heights = [rows * ROW_HEIGHT + 0.4, TWO_BLOCKS_HEIGHT]
+    upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
+    grid = upper.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False)
+    panels = list(grid.flat)
+    for panel in panels[len(blocks) :]:
+        panel.set_axis_off()
+    for panel, count in zip(panels, blocks, strict=False):
+        _draw_fraction(panel, chains.sel(blocks=count))
+    for panel in panels[max(0, len(blocks) - COLUMNS) : len(blocks)]:
+        panel.set_xlabel("$a$")
+        panel.tick_params(labelbottom=True)
+    for panel in grid[:, 0]:
+        panel.set_ylabel("fraction")
+    handles, labels = panels[0].get_legend_handles_labels()
+    # Points with bars come last of themselves.
+    order = np.roll(np.arange(len(labels)), chains.sizes["law"])
+    panels[0].legend(
+        [handles[k] for k in order], [labels[k] for k in order], loc="center right", handletextpad=0.3, fontsize=7.0
+    )
+    wide = lower.subplots()
+    _draw_two_blocks(wide, two_blocks)
+    titles = [f"$N={count}$" for count in blocks]
+    label_panels(
+        [*panels[: len(blocks)], wide], [*titles, r"$N=2$, both laws: $\langle J\rangle$ of each initial state"]
+    )
+    return figure
+
+
+def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
+    a = chain["a"].values
+    step = np.diff(a).min() if len(a) > 1 else 0.0
+    for index, law in enumerate(chain["law"].values):
+        run = chain.sel(law=law)
+        fraction = run["synchronized_fraction"].values
+        bars = [fraction - run["synchronized_low"].values, run["synchronized_high"].values - fraction]
+        shifted = a + index * SHIFT * step
+        name = f", {law}" if index or chain.sizes["law"] > 1 else ""
+        panel.errorbar(
+            shifted, fraction, np.maximum(bars, 0.0), fmt="-o", markersize=2.4, linewidth=0.8, elinewidth=0.6,
+            color=color(index), label=f"synchronized{name}",
+        )  # fmt: skip
+        open_questions = run["undetermined_fraction"].values > 0.0
+        panel.plot(
+            shifted[open_questions], (fraction + run["undetermined_fraction"].values)[open_questions], "o",
+            markersize=2.8, markeredgewidth=0.6, fillstyle="none", color=color(index), label=f"or undetermined{name}",
+        )  # fmt: skip
+        below = run["symmetric_exponent"] + STANDARD_ERRORS * run["symmetric_error"] < 0.0
+        stable = below.any("symmetric_state").values
+        panel.plot(
+            a[stable], np.full(stable.sum(), 1.1 + 0.05 * index), "s", markersize=2.0, color=color(index),
+            label=f"synchrony stable{name}",
+        )  # fmt: skip
+    panel.set_ylim(-0.05, 1.2)
+    panel.set_yticks([0.0, 0.5, 1.0])
+
+
+def _draw_two_blocks(panel: Axes, two_blocks: xarray.Dataset) -> None:
+    a = two_blocks["a"].values
+    half = 0.5 * (np.diff(a).min() if len(a) > 1 else 0.0)
+    for value in a[(two_blocks["agrees"] == 0).any("state").values]:
+        panel.axvspan(value - half, value + half, color="0.9", linewidth=0, zorder=0)
+    for index, law in enumerate(two_blocks["law"].values):
+        mean = two_blocks["mean_distance"].sel(law=law).values
+        for number, state in enumerate(mean):
+            panel.plot(
+                a, state, "ox"[index % 2], markersize=(3.4, 2.4)[index % 2], markeredgewidth=0.6, fillstyle="none",
+                color=color(index), label=law if number == 0 else None,
+            )  # fmt: skip
+    panel.set_xlabel("$a$")
+    panel.set_ylabel(r"$\langle J\rangle$")
+    panel.legend(loc="center right", title="shaded: the laws disagree")

@@ -1,0 +1,249 @@
+"""Do the mirror blocks of a chain synchronize? Sampled initial states are watched, and symmetric motion is perturbed.
+
+Blocks i and j = N + 1 − i are mirror blocks. The distance of a pair is J_i = sqrt((U_i' − U_j')² + (U_i − U_j)²), J of
+the paper for the end blocks; the mirror distance is the largest of them. For odd N the middle block belongs to no pair.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.kernel.event_driven import EventDriven
+from burridge_knopoff.simulation import Settings, run
+from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, begin, instant, new_solver
+from burridge_knopoff.stability.sampling import sample_states
+
+OUTCOMES = {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}
+UNDETERMINED, NOT_SYNCHRONIZED, SYNCHRONIZED = OUTCOMES
+
+# Time between two looks at the distances; no multiple of the period of the synchronous motion, about 5.6.
+INTERVAL = 20.0
+
+# The distance still falls if its maximum over a quarter of the run is below this share of that over the quarter before.
+FALLING = 0.5
+
+# Motion that stays nearer to symmetric motion than this is judged by the transverse exponent there.
+NEAR = 0.01
+STANDARD_ERRORS = 3.0
+
+# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time.
+RENEWAL = 10.0
+
+# Time for a perturbation to turn into the direction that grows most, where the motion itself has settled.
+ALIGNMENT = 200.0
+BATCHES = 5
+
+
+@dataclass(frozen=True)
+class Watch:
+    """How long a state is watched and when it counts as synchronized.
+
+    time_limit : a state that has not synchronized by then has not; multiple of INTERVAL
+    synchronization_distance : mirror distance at which the motion has synchronized, if its perturbations shrink
+    pair_distance : a pair of a motion that is not synchronized counts as synchronized below this
+    """
+
+    time_limit: float = 10_000.0
+    synchronization_distance: float = 1e-12
+    pair_distance: float = 1e-6
+
+    @property
+    def quarter(self) -> float:
+        """A quarter of the time limit."""
+        return 0.25 * self.time_limit
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What became of a state.
+
+    outcome : synchronized, the mirror distance has reached the synchronization distance and the transverse exponent
+        of the motion there is negative; undetermined, that exponent is not negative; or at the time limit the distance
+        still falls, or is small and the transverse exponent is not positive beyond its error; or the run failed; else
+        not synchronized
+    time : when the synchronization distance was reached, NaN if it was not
+    distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit; at `time`, if it
+        was reached
+    pairs : number of pairs that stay below the pair distance in the last quarter; all of them, if synchronized
+    transverse_exponent : of the symmetric motion that was reached or is near
+    """
+
+    outcome: int
+    time: float = math.nan
+    distance: float = math.nan
+    mean_distance: float = math.nan
+    pairs: int = 0
+    transverse_exponent: float = math.nan
+
+
+def pair_distances(state: Instant) -> np.ndarray:
+    """Return the distances J_i of the mirror pairs, from the ends to the middle, shape (blocks // 2,)."""
+    pairs = len(state.position) // 2
+    apart = [(values - values[::-1])[:pairs] for values in (state.position, state.velocity)]
+    return np.hypot(*apart)
+
+
+def symmetrized(state: Instant) -> Instant:
+    """Return the mirror-symmetric state next to this one; a block sticks if it or its mirror block does."""
+    stuck = state.stuck | state.stuck[::-1]
+    velocity = 0.5 * (state.velocity + state.velocity[::-1])
+    return Instant(0.5 * (state.position + state.position[::-1]), np.where(stuck, 0.0, velocity), stuck)
+
+
+def watch_state(model: Model, solver: EventDriven, start: Instant, watch: Watch) -> Fate:
+    """Watch a state until it has synchronized or the time limit is over.
+
+    solver : a solver of the model without perturbations, for any number of states
+    """
+    solver.begin(start.position, start.velocity, start.stuck)
+    history: list[np.ndarray] = []
+    for check in range(1, round(watch.time_limit / INTERVAL) + 1):
+        if not _run_until(solver, check * INTERVAL):
+            return Fate(UNDETERMINED)
+        state = instant(solver)
+        distances = pair_distances(state)
+        history.append(distances)
+        nearest = float(distances.max())
+        if nearest <= watch.synchronization_distance:
+            exponent, _ = transverse_exponent(model, state, ALIGNMENT, watch.quarter)
+            outcome = SYNCHRONIZED if exponent < 0.0 else UNDETERMINED
+            return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
+    quarter = len(history) // 4
+    last, before = np.array(history[-quarter:]), np.array(history[-2 * quarter : -quarter])
+    undetermined = last.max() < FALLING * before.max()
+    exponent = math.nan
+    if last.max() < NEAR:
+        exponent, error = transverse_exponent(model, instant(solver), ALIGNMENT, watch.quarter)
+        undetermined |= not exponent > STANDARD_ERRORS * error
+    return Fate(
+        UNDETERMINED if undetermined else NOT_SYNCHRONIZED,
+        distance=float(last.max()),
+        mean_distance=float(last.max(axis=1).mean()),
+        pairs=int(np.count_nonzero(last.max(axis=0) < watch.pair_distance)),
+        transverse_exponent=exponent,
+    )
+
+
+def transverse_exponent(model: Model, state: Instant, alignment: float, window: float) -> tuple[float, float]:
+    """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
+
+    The state is made symmetric, and an antisymmetric perturbation is carried along exactly (see `kernel.tangent`). The
+    exponent is its mean rate of growth over the window, which begins after a time of alignment; the standard error is
+    that of BATCHES equal batches. Negative: mirror blocks that are near each other synchronize. NaN if the run fails,
+    −∞ if the perturbation vanishes.
+    """
+    blocks = model.chain.blocks
+    index = np.arange(2 * blocks)
+    # A direction of no special symmetry but this one.
+    perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
+    solver = new_solver(model, perturbations=perturbation)
+    steps = max(1, round(window / BATCHES / RENEWAL))
+    growth = np.zeros(BATCHES)
+    state = symmetrized(state)
+    for step in range(-round(alignment / RENEWAL), BATCHES * steps):
+        perturbation[blocks:, 0] *= ~state.stuck
+        length = math.sqrt(math.fsum(perturbation[:, 0] ** 2))
+        if length == 0.0:
+            return -math.inf, math.nan
+        perturbation /= length
+        solver.tangent.load(perturbation)
+        solver.begin(state.position, state.velocity, state.stuck)
+        if not _run_until(solver, RENEWAL):
+            return math.nan, math.nan
+        # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
+        state = symmetrized(instant(solver))
+        perturbation = _antisymmetric(solver.tangent.matrix())
+        if step >= 0:
+            growth[step // steps] += 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
+    rate = growth / (steps * RENEWAL)
+    return float(rate.mean()), float(rate.std(ddof=1) / math.sqrt(BATCHES))
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Which initial states are watched: `samples` of them in a box, drawn with a seed, under a convention of start.
+
+    position, velocity : (low, high) of every U_i(0) and every U_i'(0)
+    symmetric_samples : from how many of them, made symmetric, symmetric motion begins
+    """
+
+    samples: int
+    seed: int
+    position: Sequence[float]
+    velocity: Sequence[float]
+    symmetric_samples: int
+    start: str = "moving"
+
+    def initial(self, blocks: int) -> list[InitialState]:
+        """Return the initial states of a chain."""
+        drawn = sample_states(blocks, self.samples, self.position, self.velocity, self.seed)
+        return [
+            InitialState(f"state{number}", tuple(position), tuple(velocity))
+            for number, (position, velocity) in enumerate(zip(*drawn, strict=True), 1)
+        ]
+
+
+def watch_chain(
+    blocks: int, laws: Sequence[str], grid: Sequence[float], sample: Sample, watch: Watch, v: float, contact: str
+) -> dict[str, np.ndarray]:
+    """Watch all sampled states of a chain under each law at each a of a grid.
+
+    Returns arrays of shape (laws, grid, states): the fields of `Fate`; of shape (laws, grid, symmetric samples):
+    `symmetric_exponent` and its error, the largest transverse exponent of symmetric motion after a quarter of the time
+    limit, over another quarter; and of shape (laws, grid): `lyapunov_exponent`, the largest one of the first state in
+    the second half of the time limit, and its error.
+    """
+    initial = sample.initial(blocks)
+    shape = (len(laws), len(grid))
+    results: dict[str, np.ndarray] = {
+        **{name: np.full((*shape, len(initial)), np.nan) for name in Fate.__dataclass_fields__},
+        **{f"symmetric_{name}": np.full((*shape, sample.symmetric_samples), np.nan) for name in ("exponent", "error")},
+        **{f"lyapunov_{name}": np.full(shape, np.nan) for name in ("exponent", "error")},
+    }
+    for i, law in enumerate(laws):
+        for j, a in enumerate(grid):
+            model = Model(Chain(blocks), Friction(law, a), v, contact)
+            solver = new_solver(model)
+            for k, state in enumerate(initial):
+                fate = watch_state(model, solver, begin(model, state, sample.start), watch)
+                for name in Fate.__dataclass_fields__:
+                    results[name][i, j, k] = getattr(fate, name)
+            for k, state in enumerate(initial[: sample.symmetric_samples]):
+                results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
+                    model, begin(model, state, sample.start), watch.quarter, watch.quarter
+                )
+            results["lyapunov_exponent"][i, j], results["lyapunov_error"][i, j] = _lyapunov_exponent(
+                model, initial[0], sample.start, watch
+            )
+    return results
+
+
+def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: Watch) -> tuple[float, float]:
+    half = 0.5 * watch.time_limit
+    options: dict[str, Any] = {"transient": half, "window": half, "batches": BATCHES, "events": "none"}
+    kept: dict[str, Any] = {"sampling": half, "trajectory": 0.0}
+    settings = Settings(v=model.v, contact=model.contact, start=start, lyapunov_exponents=1, **options, **kept)
+    trajectory = run(model.chain, model.friction, initial, settings)
+    return float(trajectory.lyapunov_exponent[0]), float(trajectory.lyapunov_error[0])
+
+
+def _run_until(solver: EventDriven, end: float) -> bool:
+    """Run on to a time; tell whether it was reached."""
+    solver.end = end
+    while (status := solver.run()) == RUNNING:
+        pass
+    return bool(status == COMPLETED)
+
+
+def _antisymmetric(perturbation: np.ndarray) -> np.ndarray:
+    """Return the part of a perturbation, shape (2 blocks, 1), that changes its sign in the mirror."""
+    tables = perturbation.reshape(2, -1)
+    return (0.5 * (tables - tables[:, ::-1])).reshape(-1, 1)

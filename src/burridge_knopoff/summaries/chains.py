@@ -1,0 +1,157 @@
+"""Which fraction of the sampled initial states synchronizes, against a and the number of blocks.
+
+A chain file holds what `stability.chains` found for one number of blocks; the summary puts all of them together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+from numpy.typing import ArrayLike
+
+from burridge_knopoff.dataset.summary import axes, open_summary, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.provenance import provenance
+from burridge_knopoff.stability.chains import (
+    NOT_SYNCHRONIZED,
+    OUTCOMES,
+    SYNCHRONIZED,
+    UNDETERMINED,
+    Sample,
+    Watch,
+    watch_chain,
+)
+from burridge_knopoff.stability.sampling import CONFIDENCE, fraction_interval
+from burridge_knopoff.summaries.two_blocks import STATE
+
+_POINT = ("law", "a")
+_OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance())
+_STATE = (*_POINT, "state")
+_SYMMETRIC = (*_POINT, "symmetric_state")
+CHAIN_VARIABLES = {
+    "outcome": Variable(_STATE, "i1", "what became of the mirror blocks", flag("i1", OUTCOMES)),
+    "time": Variable(_STATE, "f8", "time tau at which the synchronization distance was reached, NaN if it was not"),
+    "distance": Variable(
+        _STATE, "f8", "largest mirror distance in the last quarter of the time limit, or at that time"
+    ),
+    "mean_distance": Variable(
+        _STATE, "f8", "mean mirror distance in the last quarter of the time limit, or at that time"
+    ),
+    "pairs": Variable(_STATE, "i2", "number of mirror pairs that stay synchronized in the last quarter"),
+    "transverse_exponent": Variable(
+        _STATE,
+        "f8",
+        "largest transverse Lyapunov exponent of the symmetric motion that was reached or is near, else NaN",
+    ),
+    "symmetric_exponent": Variable(_SYMMETRIC, "f8", "largest transverse Lyapunov exponent of symmetric motion"),
+    "symmetric_error": Variable(_SYMMETRIC, "f8", "standard error of this exponent from batches"),
+    "lyapunov_exponent": Variable(_POINT, "f8", "largest Lyapunov exponent of the first state"),
+    "lyapunov_error": Variable(_POINT, "f8", "standard error of this exponent from batches"),
+}
+VARIABLES = {
+    **{
+        name: Variable(("blocks", *item.dimensions), item.dtype, item.long_name, item.attributes)
+        for name, item in CHAIN_VARIABLES.items()
+    },
+    **{
+        name: Variable(("blocks", *_POINT), "f8", long_name)
+        for name, long_name in {
+            "synchronized_fraction": "fraction of the states that synchronize",
+            "synchronized_low": "lower end of its confidence interval",
+            "synchronized_high": "upper end of its confidence interval, undetermined states counted as synchronized",
+            "undetermined_fraction": "fraction of the states that are undetermined",
+            "partial_fraction": "fraction of the states with at least one, but not all mirror pairs synchronized",
+            "mean_mirror_distance": "mean over the states of the mean mirror distance; synchronized states count as 0",
+        }.items()
+    },
+}
+
+
+def chain_dataset(
+    blocks: int, laws: Sequence[str], grid: Sequence[float], sample: Sample, watch: Watch, v: float, contact: str
+) -> xarray.Dataset:
+    """Return the chain file of one number of blocks; see `watch_chain`."""
+    values = watch_chain(blocks, laws, grid, sample, watch, v, contact)
+    return summary(
+        f"Mirror synchrony of sampled initial states, {blocks} blocks",
+        CHAIN_VARIABLES,
+        values,
+        _coordinates(laws, grid, sample.samples, sample.symmetric_samples),
+        {
+            "history": "snakemake chains",
+            "blocks": blocks,
+            "v": v,
+            "contact": contact,
+            **asdict(watch),
+            **asdict(sample),
+        },
+    )
+
+
+def summarize(paths: Sequence[str | Path]) -> xarray.Dataset:
+    """Put chain files together, in the order of their numbers of blocks, and count outcomes.
+
+    Raises ValueError, one line, if a file cannot be read or was made with other settings than the first.
+    """
+    chains = [open_summary(path) for path in paths]
+    for path, chain in zip(paths, chains, strict=True):
+        if _settings(chain) != _settings(chains[0]):
+            raise ValueError(f"{path}: made with other settings than {paths[0]}; delete both and run snakemake again")
+    chains.sort(key=lambda chain: chain.attrs["blocks"])
+    first = chains[0]
+    values = {name: np.stack([chain[name].values for chain in chains]) for name in CHAIN_VARIABLES}
+    values.update(_fractions(values["outcome"], values["pairs"], values["mean_distance"]))
+    coordinates = {
+        "blocks": (
+            "blocks",
+            np.array([chain.attrs["blocks"] for chain in chains], dtype="i4"),
+            {"long_name": "number N of blocks", "units": "1"},
+        ),
+        **_coordinates(first["law"].values, first["a"].values, first.sizes["state"], first.sizes["symmetric_state"]),
+    }
+    kept = {name: value for name, value in first.attrs.items() if name not in _OWN_ATTRIBUTES}
+    return summary(
+        "Mirror synchrony of longer chains", VARIABLES, values, coordinates, {"confidence": CONFIDENCE, **kept}
+    )
+
+
+def _settings(chain: xarray.Dataset) -> str:
+    """Return all that the chain files of a study have in common."""
+    shared = {name: np.asarray(value).tolist() for name, value in chain.attrs.items() if name not in _OWN_ATTRIBUTES}
+    return repr((shared, chain["law"].values.tolist(), chain["a"].values.tolist(), dict(chain.sizes)))
+
+
+def _coordinates(laws: ArrayLike, grid: ArrayLike, states: int, symmetric_states: int) -> dict[str, Any]:
+    symmetric = {"long_name": "number of the sampled initial state that was made symmetric", "units": "1"}
+    shared = axes([], np.asarray(grid).tolist())
+    return {
+        "law": ("law", np.array(laws, dtype=object), shared["law"][2]),
+        "a": shared["a"],
+        "state": ("state", np.arange(1, states + 1, dtype="i4"), STATE.all_attributes()),
+        "symmetric_state": ("symmetric_state", np.arange(1, symmetric_states + 1, dtype="i4"), symmetric),
+    }
+
+
+def _fractions(outcome: np.ndarray, pairs: np.ndarray, mean_distance: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the counted variables, shape (blocks, laws, a)."""
+    synchronized = outcome == SYNCHRONIZED
+    undetermined = outcome == UNDETERMINED
+    states = outcome.shape[-1]
+    low, high = np.zeros(outcome.shape[:-1]), np.zeros(outcome.shape[:-1])
+    for index in np.ndindex(low.shape):
+        certain, possible = synchronized[index].sum(), (synchronized | undetermined)[index].sum()
+        low[index] = fraction_interval(int(certain), states)[1]
+        high[index] = fraction_interval(int(possible), states)[2]
+    return {
+        "synchronized_fraction": synchronized.mean(axis=-1),
+        "synchronized_low": low,
+        "synchronized_high": high,
+        "undetermined_fraction": undetermined.mean(axis=-1),
+        "partial_fraction": ((outcome == NOT_SYNCHRONIZED) & (pairs > 0)).mean(axis=-1),
+        "mean_mirror_distance": np.where(synchronized, 0.0, mean_distance).mean(axis=-1),
+    }

@@ -1,0 +1,225 @@
+"""Mirror synchrony of chains: closed forms and variational equations for two blocks, symmetries, whole runs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.stability.chains import (
+    INTERVAL,
+    NOT_SYNCHRONIZED,
+    SYNCHRONIZED,
+    UNDETERMINED,
+    Sample,
+    Watch,
+    pair_distances,
+    symmetrized,
+    transverse_exponent,
+    watch_chain,
+    watch_state,
+)
+from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
+
+V = 0.1
+SAMPLE = Sample(samples=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=2)
+
+
+def model(blocks, a, law="linearized"):
+    return Model(Chain(blocks), Friction(law, a), V)
+
+
+def fate(chain, state, watch):
+    return watch_state(chain, new_solver(chain), begin(chain, state), watch)
+
+
+def two_block_exponent(a):
+    """Return the transverse exponent of two synchronous blocks under the linearized law, in closed form.
+
+    In synchrony each block feels K = 1: y'' = −y + a y' for its position y relative to uniform sliding, from y = −av,
+    y' = −v at its start until U' = y' + v = 0. The difference d of the blocks feels K = 3: d'' = −3d + a d'; it starts
+    with d' = 0, and the stop sets d' to 0 again: d is multiplied by one number in each period.
+    """
+    half = 0.5 * a
+    omega, transverse = math.sqrt(1.0 - half**2), math.sqrt(3.0 - half**2)
+    sine = (-V + half * a * V) / omega
+
+    def position(t):
+        return math.exp(half * t) * (-a * V * math.cos(omega * t) + sine * math.sin(omega * t))
+
+    def velocity(t):
+        rate = (omega * sine - half * a * V) * math.cos(omega * t) + (half * sine + omega * a * V) * math.sin(omega * t)
+        return V + math.exp(half * t) * rate
+
+    # U' grows like t² from the start, has its largest value about half a turn later, and is 0 again before 2π.
+    stop = brentq(velocity, math.pi, 2.0 * math.pi, xtol=1e-14)
+    period = stop + (position(stop) + a * V) / V
+    factor = math.exp(half * stop) * (math.cos(transverse * stop) - half / transverse * math.sin(transverse * stop))
+    return math.log(abs(factor)) / period
+
+
+def two_block_exponent_by_scipy(law, a):
+    """Return the same for either law, from SciPy and the variational equation."""
+    linear = law == "linearized"
+
+    def friction(u):
+        return 1.0 - a * u if linear else 1.0 / (1.0 + a * u)
+
+    def rhs(_, state):
+        x, u, d, rate = state
+        slope = a if linear else a / (1.0 + a * u) ** 2
+        return [u - V, friction(V) - x - friction(u), rate, -3.0 * d + slope * rate]
+
+    def stops(t, state):
+        return state[1] if t > 1.0 else 1.0
+
+    stops.terminal = True
+    start = friction(V) - 1.0
+    run = solve_ivp(rhs, (0.0, 20.0), [start, 0.0, 1.0, 0.0], "DOP853", rtol=1e-12, atol=1e-13, events=stops)
+    x, _, d, _ = run.y_events[0][0]
+    return math.log(abs(d)) / (run.t_events[0][0] + (x - start) / V)
+
+
+@pytest.mark.parametrize(
+    ("law", "a"), [*(("linearized", a) for a in (0.01, 0.03, 0.1, 0.3)), *(("nonlinear", a) for a in (0.02, 0.1))]
+)
+def test_transverse_exponent_of_two_blocks(law, a):
+    """The error is that of the phases at which the window begins and ends: it falls with the window's length."""
+    chain = model(2, a, law)
+    state = begin(chain, InitialState("state", (-1.0, -0.9), (0.1, 0.1)))
+    exponent, error = transverse_exponent(chain, state, 2000.0, 10_000.0)
+    assert exponent == pytest.approx(two_block_exponent_by_scipy(law, a), abs=2e-4)
+    assert error < 1e-3
+
+
+@pytest.mark.parametrize("a", [0.001, 0.05, 0.3])
+def test_the_closed_form_is_the_variational_equation(a):
+    assert two_block_exponent(a) == pytest.approx(two_block_exponent_by_scipy("linearized", a), abs=1e-8)
+
+
+def test_two_blocks_synchronize_below_the_critical_a_only():
+    critical = brentq(two_block_exponent, 0.03, 0.07)
+    assert critical == pytest.approx(0.05012, abs=1e-5)
+    state = InitialState("state", (-0.9, -0.85), (0.1, 0.1))
+    watch = Watch(time_limit=4000.0)
+    assert fate(model(2, critical - 0.01), state, watch).outcome == SYNCHRONIZED
+    beyond = fate(model(2, critical + 0.005), state, watch)
+    assert beyond.outcome == NOT_SYNCHRONIZED
+    assert 1e-3 < beyond.distance < 0.1
+    # So near that neither the distance nor its rate can tell within the time limit.
+    assert fate(model(2, critical - 1e-4), state, watch).outcome == UNDETERMINED
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+@pytest.mark.parametrize("blocks", [4, 7, 8, 10])
+def test_transverse_exponent_against_two_trajectories(blocks, law):
+    """A second trajectory is kept 1e-7 beside the symmetric one: the rate of growth of their distance is the same.
+
+    Antisymmetric parts only, so that errors of second order, which are symmetric, do not count.
+    """
+    chain = model(blocks, 0.2, law)
+    solver = new_solver(chain)
+    state = begin(chain, SAMPLE.initial(blocks)[0])
+    exponent, _ = transverse_exponent(chain, state, 100.0, 200.0)
+
+    def after_ten(state):
+        solver.begin(state.position, state.velocity, state.stuck)
+        solver.end = 10.0
+        assert solver.run() == 0
+        return instant(solver)
+
+    state = symmetrized(state)
+    direction = np.cos(1.0 + 2.3 * np.arange(2 * blocks))
+    logarithms = []
+    for _ in range(30):
+        tables = direction.reshape(2, -1)
+        tables = 0.5 * (tables - tables[:, ::-1])
+        tables[1, state.stuck] = 0.0
+        tables *= 1e-7 / np.linalg.norm(tables)
+        other = after_ten(Instant(state.position + tables[0], state.velocity + tables[1], state.stuck)).vector()
+        state = symmetrized(after_ten(state))
+        direction = other - state.vector()
+        tables = direction.reshape(2, -1)
+        logarithms.append(math.log(np.linalg.norm(0.5 * (tables - tables[:, ::-1])) / 1e-7))
+    assert sum(logarithms[10:]) / 200.0 == pytest.approx(exponent, abs=1e-5)
+
+
+@pytest.mark.parametrize(("blocks", "a"), [(2, 0.04), (3, 0.06), (4, 0.05), (7, 0.06)])
+def test_the_mirrored_sample_has_the_mirrored_fate(blocks, a):
+    chain = model(blocks, a)
+    watch = Watch(time_limit=2000.0)
+    for state in SAMPLE.initial(blocks)[:3]:
+        mirror = InitialState("mirror", state.position[::-1], state.velocity[::-1])
+        one, two = fate(chain, state, watch), fate(chain, mirror, watch)
+        assert one.outcome == two.outcome
+        assert one.pairs == two.pairs
+        if one.outcome == SYNCHRONIZED:
+            assert abs(one.time - two.time) <= INTERVAL
+        else:
+            assert one.distance == pytest.approx(two.distance, rel=1e-6)
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_three_blocks_against_whole_runs(law):
+    """For three blocks the mirror distance is J: outcome, largest and mean distance are those of a run."""
+    watch = Watch(time_limit=3000.0)
+    outcomes = set()
+    for a in (0.06, 0.2):
+        for state in SAMPLE.initial(3)[:4]:
+            mine = fate(model(3, a, law), state, watch)
+            run = simulate(law, a, state, transient=2250.0, window=750.0, sampling=INTERVAL, events="none")
+            outcomes.add(mine.outcome)
+            if mine.outcome == SYNCHRONIZED:
+                assert run.mean_distance < 1e-9
+                assert run.distance[np.searchsorted(run.time, mine.time)] <= watch.synchronization_distance
+                assert mine.transverse_exponent < 0.0
+                continue
+            last = run.distance[run.time > 2250.0 + 0.5 * INTERVAL]
+            if run.lyapunov_exponent[0] < 1e-3:
+                assert mine.distance == pytest.approx(last.max(), rel=1e-6)
+                assert mine.mean_distance == pytest.approx(last.mean(), rel=1e-6)
+    assert outcomes == {SYNCHRONIZED, NOT_SYNCHRONIZED}
+
+
+def test_a_run_cut_off_while_it_synchronizes_is_undetermined():
+    chain = model(2, 0.04)
+    state = InitialState("state", (-0.9, -0.85), (0.1, 0.1))
+    assert fate(chain, state, Watch(time_limit=600.0)).outcome == UNDETERMINED
+    assert fate(chain, state, Watch(time_limit=6000.0)).outcome == SYNCHRONIZED
+
+
+def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
+    """The distance is 0 from the first instant, but the motion repels: no verdict."""
+    state = InitialState("state", (-1.0, -1.0), (0.1, 0.1))
+    result = fate(model(2, 0.1), state, Watch(time_limit=2000.0))
+    assert result.distance == 0.0
+    assert result.transverse_exponent > 0.03
+    assert result.outcome == UNDETERMINED
+
+
+def test_symmetrized_and_pair_distances():
+    state = Instant(np.array([1.0, 5.0, 4.0]), np.array([0.0, 1.0, 3.0]), np.array([True, False, False]))
+    assert pair_distances(state).tolist() == [math.hypot(3.0, 3.0)]
+    symmetric = symmetrized(state)
+    assert symmetric.position.tolist() == [2.5, 5.0, 2.5]
+    assert symmetric.velocity.tolist() == [0.0, 1.0, 0.0]
+    assert symmetric.stuck.tolist() == [True, False, True]
+
+
+def test_a_watched_chain_is_its_states_one_by_one():
+    watch = Watch(time_limit=1000.0)
+    results = watch_chain(3, ["linearized"], [0.05, 0.2], SAMPLE, watch, V, "one_sided")
+    assert results["outcome"].shape == (1, 2, SAMPLE.samples)
+    assert results["symmetric_exponent"].shape == (1, 2, SAMPLE.symmetric_samples)
+    for j, a in enumerate((0.05, 0.2)):
+        for k, state in enumerate(SAMPLE.initial(3)):
+            assert results["outcome"][0, j, k] == fate(model(3, a), state, watch).outcome
+    assert (results["symmetric_exponent"][0, 0] < 0.0).all()
+    assert (results["symmetric_exponent"][0, 1] > 0.0).all()

@@ -1,0 +1,102 @@
+"""Fractions and intervals follow from the outcomes; two blocks under both laws."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.figures.chains import draw
+from burridge_knopoff.stability.chains import Sample, Watch
+from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.summaries import chains, two_blocks
+
+SAMPLE = Sample(samples=5, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=1)
+AGREEMENT = {"relative_tolerance": 0.1, "standard_errors": 3.0}
+MOTION = {
+    "zero_exponent": 5e-4,
+    "chaotic_exponent": 1e-3,
+    "standard_errors": 3.0,
+    "period_tolerance": 1e-6,
+    "longest_period": 60,
+}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("chains")
+    paths = [folder / f"blocks{blocks}.nc" for blocks in (10, 2)]
+    for blocks, path in zip((10, 2), paths, strict=True):
+        dataset = chains.chain_dataset(
+            blocks, ["linearized"], [0.02, 0.2], SAMPLE, Watch(time_limit=400.0), 0.1, "one_sided"
+        )
+        write_summary(dataset, path)
+    return paths
+
+
+@pytest.fixture(scope="module")
+def compared():
+    settings = two_blocks.run_settings(transient=1500.0, window=400.0, batches=4)
+    initial = Sample(2, 1, (-1.5, 1.5), (0.0, 0.2), 0).initial(2)
+    return two_blocks.summarize(initial, [0.03, 0.15, 0.3], settings, 1e-6, MOTION, AGREEMENT)
+
+
+def test_chains_are_ordered_by_their_number_of_blocks(files):
+    summary = chains.summarize(files)
+    assert summary["blocks"].values.tolist() == [2, 10]
+    assert summary.attrs["time_limit"] == 400.0
+    first = chains.chain_dataset(2, ["linearized"], [0.02, 0.2], SAMPLE, Watch(time_limit=400.0), 0.1, "one_sided")
+    for name in chains.CHAIN_VARIABLES:
+        assert np.array_equal(summary[name].sel(blocks=2), first[name], equal_nan=True), name
+
+
+def test_fractions_count_outcomes(files):
+    import xarray
+
+    chain = xarray.load_dataset(files[0])
+    chain["outcome"][0, 0] = [1, 1, -1, 0, 0]
+    chain["pairs"][0, 0] = [5, 5, 0, 2, 0]
+    chain["mean_distance"][0, 0] = [1e-13, 1e-13, 0.1, 0.2, 0.3]
+    path = files[0].with_name("altered.nc")
+    write_summary(chain, path)
+    point = chains.summarize([path]).isel(blocks=0, law=0, a=0)
+    assert point["synchronized_fraction"] == 0.4
+    assert point["undetermined_fraction"] == 0.2
+    assert point["partial_fraction"] == 0.2
+    assert point["mean_mirror_distance"] == pytest.approx(0.12)
+    assert point["synchronized_low"] == fraction_interval(2, 5)[1]
+    assert point["synchronized_high"] == fraction_interval(3, 5)[2]
+
+
+def test_a_damaged_chain_file_is_named(files):
+    path = files[0].with_name("damaged.nc")
+    path.write_bytes(files[0].read_bytes()[:1000])
+    with pytest.raises(ValueError, match=r"damaged\.nc: not a readable file"):
+        chains.summarize([path])
+
+
+def test_files_of_other_settings_do_not_mix(files):
+    path = files[0].with_name("other.nc")
+    write_summary(
+        chains.chain_dataset(3, ["linearized"], [0.02, 0.2], SAMPLE, Watch(time_limit=200.0), 0.1, "one_sided"), path
+    )
+    with pytest.raises(ValueError, match=r"other\.nc: made with other settings"):
+        chains.summarize([*files, path])
+
+
+def test_two_blocks_agree_where_both_synchronize(compared):
+    assert compared["agrees"].sel(a=0.03).values.tolist() == [1, 1]
+    assert (compared["kind"].sel(a=0.03) == 0).all()
+    assert compared["agreeing_fraction"].sel(a=0.03) == 1.0
+    assert (np.isnan(compared["parting_a"]) | (compared["parting_a"] > 0.03)).all()
+    low = fraction_interval(2, 2)[1]
+    assert compared["agreeing_low"].sel(a=0.03) == low
+    mean = compared["mean_distance"].values
+    assert np.array_equal(compared["difference"].values, mean[1] - mean[0])
+
+
+def test_the_figure_shows_the_fractions(files, compared):
+    summary = chains.summarize(files)
+    panels = draw(summary, compared).axes
+    titled = [panel for panel in panels if panel.get_title(loc="left")]
+    assert [panel.get_title(loc="left")[:8] for panel in titled] == ["(a) $N=2", "(b) $N=1", "(c) $N=2"]
+    shown = titled[0].get_lines()[0].get_ydata()
+    assert shown.tolist() == summary["synchronized_fraction"].sel(blocks=2).values[0].tolist()

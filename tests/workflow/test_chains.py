@@ -1,0 +1,74 @@
+"""The optional stage of longer chains: its target, its files, and their bytes."""
+
+import re
+
+import pytest
+import xarray as xr
+from matplotlib.image import imread
+
+from tests.workflow.conftest import TINY, Study
+
+CHAINS = (
+    TINY
+    + """
+chains:
+  blocks: [3, 2]
+  a: [0.02, {from: 0.1, to: 0.2, step: 0.1}]
+  laws: [linearized, nonlinear]
+  samples: 3
+  symmetric_samples: 1
+  time_limit: 400
+  two_blocks: {a: [0.02, 0.15], samples: 2}
+"""
+)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    study = Study(tmp_path_factory.mktemp("chains"), CHAINS)
+    study.ok("chains")
+    return study
+
+
+def test_the_target_makes_its_files_and_no_points(study):
+    made = set(study.files("chains", "summary", "figures", "points"))
+    assert made == {
+        *("chains/blocks2.nc", "chains/blocks3.nc", "summary/chains.nc", "summary/two_blocks.nc"),
+        *("figures/chains.pdf", "figures/chains.png"),
+    }
+    results = study.folder / "results" / "tiny"
+    with xr.open_dataset(results / "summary" / "chains.nc") as summary:
+        assert summary["blocks"].values.tolist() == [2, 3]
+        assert summary["law"].values.tolist() == ["linearized", "nonlinear"]
+        assert summary["a"].values.tolist() == [0.02, 0.1, 0.2]
+        assert summary["outcome"].shape == (2, 2, 3, 3)
+        assert all(variable.attrs["long_name"] for variable in summary.variables.values())
+    with xr.open_dataset(results / "summary" / "two_blocks.nc") as summary:
+        assert summary["mean_distance"].shape == (2, 2, 2)
+    assert imread(results / "figures" / "chains.png").shape[1] > 1500
+    for log in (results / "logs").rglob("*.log"):
+        assert log.read_text() == "", log
+
+
+def test_the_default_target_leaves_them_out(study):
+    run = study.ok("-n")
+    assert not re.search(r"^(watch_chain|chains_summary|two_blocks|figure_chains) ", run, re.MULTILINE)
+
+
+def test_the_same_bytes_on_one_core_and_in_another_folder(study, tmp_path):
+    other = Study(tmp_path, CHAINS)
+    other.ok("chains", cores=1)
+    folders = ("chains", "summary", "figures")
+    mine = study.files(*folders)
+    assert {name for name, content in other.files(*folders).items() if mine[name] != content} == set()
+    assert len(mine) == 6
+
+
+def test_the_model_reruns_them_and_the_points_do_not(study):
+    planned = study.ok("chains", "-n")
+    assert "Nothing to be done" in planned
+    study.config.write_text(CHAINS + "sampling: 2\n")
+    assert "Nothing to be done" in study.ok("chains", "-n")
+    study.config.write_text(CHAINS + "v: 0.2\n")
+    assert re.search(r"^watch_chain +2$", study.ok("chains", "-n"), re.MULTILINE)
+    study.config.write_text(CHAINS)

@@ -1,0 +1,105 @@
+# Longer chains, and two blocks under both laws: an optional stage with a target of its own, `snakemake -c2 chains`.
+
+CHAINS = STUDY.config["chains"]
+CHAIN_MODEL = {key: STUDY.config[key] for key in ("v", "contact", "start")}
+# Long chains take longest; they begin first.
+CHAIN_BLOCKS = sorted(CHAINS["blocks"], reverse=True)
+
+
+rule chains:
+    input:
+        f"{SUMMARY}/chains.nc",
+        f"{SUMMARY}/two_blocks.nc",
+        multiext(f"{FIGURES}/chains", ".pdf", ".png"),
+    message:
+        f"longer chains: {SUMMARY}/chains.nc, {SUMMARY}/two_blocks.nc and {FIGURES}/chains.png"
+
+
+rule watch_chain:
+    output:
+        f"{RESULTS}/chains/blocks{{blocks}}.nc",
+    log:
+        f"{RESULTS}/logs/chains/blocks{{blocks}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/chains/blocks{{blocks}}.tsv"
+    priority: 1
+    resources:
+        mem_mb=400,
+        runtime=30,
+    params:
+        chains={
+            key: value
+            for key, value in CHAINS.items()
+            if key not in ("blocks", "two_blocks")
+        },
+        model=CHAIN_MODEL,
+        threshold=STUDY.config["synchronization_threshold"],
+        sources=source_fingerprint(STABILITY_SOURCES),
+    message:
+        "mirror synchrony of sampled states, {wildcards.blocks} blocks"
+    script:
+        "../scripts/watch_chain.py"
+
+
+rule chains_summary:
+    input:
+        expand(rules.watch_chain.output, blocks=CHAIN_BLOCKS),
+    output:
+        f"{SUMMARY}/chains.nc",
+    log:
+        f"{RESULTS}/logs/chains_summary.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/chains_summary.tsv"
+    resources:
+        mem_mb=400,
+        runtime=10,
+    message:
+        "fraction of synchronizing states over number of blocks and a"
+    script:
+        "../scripts/chains_summary.py"
+
+
+rule two_blocks:
+    output:
+        f"{SUMMARY}/two_blocks.nc",
+    log:
+        f"{RESULTS}/logs/two_blocks.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/two_blocks.tsv"
+    resources:
+        mem_mb=400,
+        runtime=30,
+    params:
+        sample={key: CHAINS[key] for key in ("seed", "position", "velocity")},
+        two_blocks=CHAINS["two_blocks"],
+        settings={
+            key: STUDY.config[key]
+            for key in (*CHAIN_MODEL, "transient", "window", "batches")
+        },
+        threshold=STUDY.config["synchronization_threshold"],
+        motion=STUDY.config["motion"],
+        agreement=STUDY.config["agreement"],
+        sources=source_fingerprint(STABILITY_SOURCES),
+    message:
+        "two blocks: linearized against nonlinear law"
+    script:
+        "../scripts/two_blocks.py"
+
+
+rule figure_chains:
+    input:
+        chains=f"{SUMMARY}/chains.nc",
+        two_blocks=f"{SUMMARY}/two_blocks.nc",
+    output:
+        multiext(f"{FIGURES}/chains", ".pdf", ".png"),
+    log:
+        f"{RESULTS}/logs/figure_chains.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_chains.tsv"
+    resources:
+        mem_mb=400,
+        runtime=10,
+    message:
+        "figure: longer chains, two blocks under both laws"
+    script:
+        "../scripts/figure_chains.py"
