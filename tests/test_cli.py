@@ -149,7 +149,7 @@ def test_an_interrupt_ends_a_long_run_with_one_line(tmp_path):
 def test_help_names_every_setting():
     from dataclasses import fields
 
-    from burridge_knopoff.simulation import Settings
+    from burridge_knopoff.settings import Settings
 
     text = bk("simulate", "--help").stdout
     for item in fields(Settings):

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from burridge_knopoff.chain import Chain
 from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.simulation import Settings, simulate
+from burridge_knopoff.settings import Settings
+from burridge_knopoff.simulation import simulate
 
 
 @pytest.mark.parametrize("initial", ["minus", "plus"])
@@ -206,7 +207,8 @@ def test_bad_input_is_refused_in_one_line(options, words):
 
 
 def test_settings_are_the_schema_defaults(repository):
-    from burridge_knopoff.config import RUN_KEYS, read_schema
+    from burridge_knopoff.config import read_schema
+    from burridge_knopoff.config.checks import RUN_KEYS
 
     schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
     for key in (*RUN_KEYS, "step"):

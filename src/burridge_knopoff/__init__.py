@@ -11,13 +11,14 @@ if TYPE_CHECKING:
     from burridge_knopoff.chain import Chain
     from burridge_knopoff.friction import Friction
     from burridge_knopoff.initial import InitialState
-    from burridge_knopoff.simulation import Settings, Trajectory, simulate
+    from burridge_knopoff.settings import Settings
+    from burridge_knopoff.simulation import Trajectory, simulate
 
 _HOME = {
     "Chain": "chain",
     "Friction": "friction",
     "InitialState": "initial",
-    "Settings": "simulation",
+    "Settings": "settings",
     "Trajectory": "simulation",
     "simulate": "simulation",
 }

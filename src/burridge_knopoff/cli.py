@@ -138,7 +138,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from burridge_knopoff.files import check_target
     from burridge_knopoff.friction import Friction
     from burridge_knopoff.initial import initial_state
-    from burridge_knopoff.simulation import Settings, run
+    from burridge_knopoff.settings import Settings
+    from burridge_knopoff.simulation import run
 
     try:
         check_target(options.out)

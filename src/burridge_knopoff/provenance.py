@@ -18,6 +18,7 @@ POINT_SOURCES = (
     "chain.py",
     "friction.py",
     "initial.py",
+    "settings.py",
     "simulation.py",
     *(f"kernel/{path.name}" for path in sorted((PACKAGE / "kernel").glob("*.p*")) if path.suffix in (".py", ".pxd")),
 )

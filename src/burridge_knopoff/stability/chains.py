@@ -17,7 +17,8 @@ from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.simulation import Settings, run
+from burridge_knopoff.settings import Settings
+from burridge_knopoff.simulation import run
 from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, begin, instant, new_solver
 from burridge_knopoff.stability.sampling import sample_states
 

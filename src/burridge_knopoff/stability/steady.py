@@ -10,7 +10,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import Settings, Trajectory, run
+from burridge_knopoff.settings import Settings
+from burridge_knopoff.simulation import Trajectory, run
 from burridge_knopoff.stability.flow import Instant, Model
 from burridge_knopoff.summaries.motion import PERIODIC, QUASIPERIODIC, SYNCHRONIZED, motion_kind, section_period
 

@@ -16,7 +16,8 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import LAWS, Friction
 from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import Settings, Trajectory, run
+from burridge_knopoff.settings import Settings
+from burridge_knopoff.simulation import Trajectory, run
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.summaries.agreement import judge
 from burridge_knopoff.summaries.event_order import common_order

@@ -8,6 +8,10 @@ from typing import Any
 _TYPES = {"number": "a finite number", "integer": "a whole number", "string": "text", "array": "a list"}
 
 
+class ConfigError(ValueError):
+    """A config that is not allowed; the message is one line: file, key, value, what is allowed."""
+
+
 def explain(error: Any) -> str:
     """Return «key: value is not allowed: what is» for a jsonschema ValidationError."""
     key = _key(error.absolute_path)

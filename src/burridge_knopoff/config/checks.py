@@ -1,0 +1,105 @@
+"""Rules of a config that a schema cannot state: keys that must fit each other, and defaults that follow from others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from burridge_knopoff.config.grid import values_of
+from burridge_knopoff.config.message import ConfigError
+
+#: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss.
+BASIN_A = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
+
+#: Config keys that are options of `bk simulate` under the same name.
+RUN_KEYS = (
+    "v",
+    "contact",
+    "start",
+    "transient",
+    "window",
+    "batches",
+    "sampling",
+    "trajectory",
+    "trajectory_sampling",
+    "events",
+    "event_window",
+    "lyapunov_exponents",
+    "lyapunov_alignment",
+)
+
+
+def check_runs(config: Mapping[str, Any], file: str) -> None:
+    """Let the settings of the runs be checked by the code that will run them."""
+    from burridge_knopoff.settings import Settings
+
+    blocks = len(next(iter(config["initial"].values()))["position"])
+    for solver in config["solver"].values():
+        try:
+            Settings(solver=solver, step=config["step"], **{key: config[key] for key in RUN_KEYS}).check_blocks(blocks)
+        except ValueError as error:
+            raise ConfigError(f"{file}: {error}") from error
+
+
+def check_boxes(config: Mapping[str, Any], file: str) -> None:
+    """Check that every interval [low, high] has low < high."""
+    boxes = [(section, key) for section in ("attractors", "chains") for key in ("position", "velocity")]
+    boxes += [("basins", key) for key in ("first_position", "last_position")]
+    for section, key in boxes:
+        low, high = config[section][key]
+        if not low < high:
+            raise ConfigError(f"{file}: {section}.{key}: [{low}, {high}] is not allowed: [low, high] with low < high")
+
+
+def fill_basins(config: Mapping[str, Any], grid: set[float], file: str) -> None:
+    """Check the maps of basins against grid and states, and fill in what depends on these."""
+    basins = config["basins"]
+    for law, usual in BASIN_A.items():
+        if law not in basins:
+            basins[law] = [a for a in usual if a in grid]
+        for a in basins[law]:
+            if a not in grid:
+                raise ConfigError(f"{file}: basins.{law}: {a!r} is not allowed: a value of the grid")
+        basins[law] = [float(a) for a in basins[law]]
+    name = basins.setdefault("initial", next(iter(config["initial"])))
+    if name not in config["initial"]:
+        raise ConfigError(f"{file}: basins.initial: {name!r} is not allowed: {' | '.join(config['initial'])}")
+    if basins["tiles"] > basins["pixels"]:
+        raise ConfigError(
+            f"{file}: basins.tiles: {basins['tiles']} is not allowed: at most the {basins['pixels']} rows of a map"
+        )
+
+
+def check_states(config: Mapping[str, Any], file: str) -> None:
+    """Check the initial states, and fill in the numbers of those that are known by name."""
+    from burridge_knopoff.initial import PAPER_STATES, InitialState
+
+    for name, state in config["initial"].items():
+        if not state and name not in PAPER_STATES:
+            raise ConfigError(
+                f"{file}: initial.{name}: unknown initial state; without position and velocity only these are known: "
+                f"{' | '.join(PAPER_STATES)}"
+            )
+        if not state:
+            state.update(position=list(PAPER_STATES[name].position), velocity=list(PAPER_STATES[name].velocity))
+    blocks = {len(state["position"]) for state in config["initial"].values()}
+    if len(blocks) > 1:
+        counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in config["initial"].items())
+        raise ConfigError(f"{file}: initial: states of one study have the same number of positions ({counts})")
+    for name, state in config["initial"].items():
+        try:
+            InitialState(name, state["position"], state["velocity"]).check_contact(config["contact"])
+        except ValueError as error:
+            raise ConfigError(f"{file}: initial.{name}.{error}") from error
+
+
+def check_chains(config: dict[str, Any], file: str) -> None:
+    """Turn the lists of a into numbers, and check the counts of states."""
+    chains = config["chains"]
+    chains["a"] = values_of(chains["a"], f"{file}: chains.a")
+    chains["two_blocks"]["a"] = values_of(chains["two_blocks"]["a"], f"{file}: chains.two_blocks.a")
+    if chains["symmetric_samples"] > chains["samples"]:
+        raise ConfigError(
+            f"{file}: chains.symmetric_samples: {chains['symmetric_samples']!r} is not allowed: "
+            f"at most chains.samples ({chains['samples']!r})"
+        )

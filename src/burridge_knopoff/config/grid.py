@@ -1,0 +1,59 @@
+"""Values of a: lists of numbers and ranges, and the names that they have in file names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from decimal import Decimal, InvalidOperation
+from itertools import pairwise
+from typing import Any
+
+from burridge_knopoff.config.message import ConfigError
+
+MAXIMUM_POINTS = 1_000_000
+
+
+def grid_of(config: Mapping[str, Any], file: str) -> dict[str, float]:
+    """Return {name: value}, ascending; every value the double nearest to its decimal."""
+    grid: dict[str, float] = {}
+    for value in values_of(config["a"], f"{file}: a"):
+        name = f"{value:.{config['a_digits']}f}"
+        if name in grid:
+            raise ConfigError(
+                f"{file}: a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "
+                "values that differ within a_digits decimals are needed"
+            )
+        grid[name] = value
+    return grid
+
+
+def values_of(items: Sequence[Any], place: str) -> list[float]:
+    """Return the numbers and the values of the ranges in a list, ascending; none may be there twice."""
+    values: list[float] = []
+    for position, item in enumerate(items):
+        # Adding 0 turns -0.0 into 0.0.
+        values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{place}[{position}]")
+        if len(values) > MAXIMUM_POINTS:
+            raise ConfigError(f"{place}: more than {MAXIMUM_POINTS} values; at most that many are allowed")
+    values.sort()
+    for value, following in pairwise(values):
+        if value == following:
+            raise ConfigError(f"{place}: {value!r} is listed twice, as a number or by two ranges; once is allowed")
+    return values
+
+
+def _range(item: Mapping[str, float], place: str) -> list[float]:
+    try:
+        first, last, step = (Decimal(repr(item[key])) for key in ("from", "to", "step"))
+    except InvalidOperation as error:
+        raise ConfigError(f"{place}: {dict(item)!r} is not allowed: finite numbers") from error
+    if last < first:
+        raise ConfigError(f"{place}.to: {item['to']!r} is not allowed: at least from ({item['from']!r})")
+    count = (last - first) / step
+    if count > MAXIMUM_POINTS:
+        raise ConfigError(f"{place}.step: {item['step']!r} is not allowed: at most {MAXIMUM_POINTS} values in a range")
+    if count != int(count):
+        raise ConfigError(
+            f"{place}.step: {item['step']!r} is not allowed: it does not divide the range "
+            f"{item['from']!r} to {item['to']!r}"
+        )
+    return [float(first + step * k) for k in range(int(count) + 1)]

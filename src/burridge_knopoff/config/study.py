@@ -1,0 +1,180 @@
+"""The configuration of a study: validated against the schema, with defaults filled in, and turned into grid points."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from burridge_knopoff.config.checks import (
+    RUN_KEYS,
+    check_boxes,
+    check_chains,
+    check_runs,
+    check_states,
+    fill_basins,
+)
+from burridge_knopoff.config.grid import grid_of
+from burridge_knopoff.config.message import ConfigError
+from burridge_knopoff.files import display_path
+from burridge_knopoff.friction import LAWS
+
+LARGEST = 1e300
+
+#: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
+PAPER_A = 0.08
+
+
+@dataclass(frozen=True)
+class Study:
+    """A validated study: its config with all defaults, and the grid of a as {name in file names: exact value}."""
+
+    config: Mapping[str, Any]
+    grid: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Name of the study and of its results folder."""
+        return self.config["study"]
+
+    @property
+    def initial(self) -> tuple[str, ...]:
+        """Names of the initial states."""
+        return tuple(self.config["initial"])
+
+    @property
+    def figure_point(self) -> str:
+        """Name of the value of a that the figures of single runs show."""
+        shown = self.config["figures"].get("a", PAPER_A)
+        return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
+
+    @property
+    def marked_states(self) -> dict[str, tuple[float, float]]:
+        """U_1(0) and U_N(0) of the initial states that lie in the plane of the maps of basins, by name."""
+        states = self.config["initial"]
+        plane = states[self.config["basins"]["initial"]]
+        return {
+            name: (state["position"][0], state["position"][-1])
+            for name, state in states.items()
+            if state["position"][1:-1] == plane["position"][1:-1] and state["velocity"] == plane["velocity"]
+        }
+
+    def options(self, law: str, initial: str, a: str) -> str:
+        """Return the options of `bk simulate` for one grid point, named by its wildcards.
+
+        Raises ConfigError if a is not a value of the grid.
+        """
+        if a not in self.grid:
+            raise ConfigError(f"a{a}.nc: not a point of study {self.name}: a is not in its grid")
+        config = self.config
+        state = config["initial"][initial]
+        options = [("law", law), ("a", repr(self.grid[a])), ("initial", initial)]
+        options += [(key, ",".join(repr(float(value)) for value in state[key])) for key in ("position", "velocity")]
+        options.append(("solver", config["solver"][law]))
+        if config["solver"][law] == "rk4":
+            options.append(("step", repr(config["step"])))
+        options += [(key.replace("_", "-"), str(config[key])) for key in RUN_KEYS]
+        return " ".join(f"--{key}={value}" if value.startswith("-") else f"--{key} {value}" for key, value in options)
+
+
+def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> Study:
+    """Validate a config against its schema and the rules that a schema cannot state.
+
+    file : name of the config file, for messages
+    Raises ConfigError.
+    """
+    _check_names(config, file)
+    filled = _with_defaults(copy.deepcopy(dict(config)), schema)
+    _check_schema(filled, schema, file)
+    grid = grid_of(filled, file)
+    check_states(filled, file)
+    check_runs(filled, file)
+    check_boxes(filled, file)
+    fill_basins(filled, set(grid.values()), file)
+    check_chains(filled, file)
+    shown = filled["figures"].get("a")
+    if shown is not None and shown not in grid.values():
+        raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
+    return Study(filled, grid)
+
+
+def check_file(path: str | Path) -> None:
+    """Raise ConfigError if a key stands twice in one place of a YAML file: the first would be dropped in silence."""
+    import yaml
+
+    def walk(node: Any) -> None:
+        if isinstance(node, yaml.MappingNode):
+            seen = set()
+            for key, value in node.value:
+                if key.value in seen:
+                    line = key.start_mark.line + 1
+                    raise ConfigError(f"{display_path(path)}: {key.value}: stands twice (line {line}); once is allowed")
+                seen.add(key.value)
+                walk(value)
+        elif isinstance(node, yaml.SequenceNode):
+            for item in node.value:
+                walk(item)
+
+    # Without aliases resolved: an anchor's content is walked where it is written.
+    walk(yaml.compose(Path(path).read_text(encoding="utf-8"), Loader=yaml.SafeLoader))
+
+
+def read_schema(path: str | Path) -> dict[str, Any]:
+    """Return the schema in a YAML file."""
+    import yaml
+
+    return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+
+
+def _with_defaults(config: Any, schema: Mapping[str, Any]) -> Any:
+    if isinstance(config, dict):
+        for key, item in schema.get("properties", {}).items():
+            if key not in config and "default" in item:
+                config[key] = copy.deepcopy(item["default"])
+            if key in config:
+                config[key] = _with_defaults(config[key], item)
+    return config
+
+
+@cache
+def _validator_class() -> Any:
+    import jsonschema
+
+    def number(checker: Any, value: Any) -> bool:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        return is_number and -LARGEST <= value <= LARGEST
+
+    def integer(checker: Any, value: Any) -> bool:
+        return isinstance(value, int) and number(checker, value)
+
+    base = jsonschema.Draft202012Validator
+    checker = base.TYPE_CHECKER.redefine("number", number).redefine("integer", integer)
+    return jsonschema.validators.extend(base, type_checker=checker)
+
+
+def _check_schema(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> None:
+    errors = sorted(_validator_class()(schema).iter_errors(config), key=lambda error: [str(key) for key in error.path])
+    if not errors:
+        return
+    from burridge_knopoff.config.message import explain
+
+    raise ConfigError(f"{file}: {explain(errors[0])}")
+
+
+def _check_names(config: Any, file: str, place: str = "") -> None:
+    """Refuse keys that are not text, and names that end in a line break, which a pattern does not see."""
+    if isinstance(config, Mapping):
+        for key, value in config.items():
+            if not isinstance(key, str) or key != key.strip():
+                raise ConfigError(f"{file}: {place}{key!r} is not allowed as a key: text without spaces around it")
+            _check_names(value, file, f"{place}{key}.")
+    if place == "study." and isinstance(config, str) and config != config.strip():
+        raise ConfigError(f"{file}: study: {config!r} is not allowed: text without spaces or line breaks around it")
+
+
+def all_points(study: Study) -> list[tuple[str, str, str]]:
+    """Return (law, initial, a) of every point job, in the order of the summaries."""
+    return [(law, initial, a) for law in LAWS for initial in study.initial for a in study.grid]

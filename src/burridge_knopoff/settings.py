@@ -1,0 +1,93 @@
+"""The settings of one run, besides chain, friction law and initial state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from burridge_knopoff.chain import MAXIMUM_BLOCKS
+from burridge_knopoff.initial import CONTACTS, STARTS
+
+SOLVERS = ("map", "series", "rk4")
+EVENTS = ("none", "window", "all")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run is made of besides chain, friction law and initial state; times in units of 1/ω.
+
+    v : driver velocity
+    contact : one_sided (a stuck block holds against any pull below 1) or symmetric (it holds while |s| ≤ 1)
+    start : moving (every block slips at τ = 0) or tested (the stick rule is applied at τ = 0)
+    solver : map (linearized law only), series or rk4; by default map for the linearized law, series for the nonlinear
+    step : step of rk4
+    transient, window : J is averaged over [transient, transient + window]
+    batches : number of equal batches of the window for the error of ⟨J⟩
+    sampling : interval between samples of J, from τ = 0
+    trajectory, trajectory_sampling : length and interval of the last part of the run kept as positions and velocities
+    events : which events are kept: window (all of them, those of the last event_window time units of the window with
+        the states of all blocks), all (the whole run with states) or none
+    lyapunov_exponents : how many Lyapunov exponents are computed, the largest first; NaN under rk4
+    lyapunov_alignment : time before the window from which the perturbations turn into their directions
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    v: float = 0.1
+    contact: str = "one_sided"
+    start: str = "moving"
+    solver: str = ""
+    step: float = 1e-3
+    transient: float = 3000.0
+    window: float = 7000.0
+    batches: int = 7
+    sampling: float = 5.0
+    trajectory: float = 30.0
+    trajectory_sampling: float = 0.05
+    events: str = "window"
+    event_window: float = 1500.0
+    lyapunov_exponents: int = 3
+    lyapunov_alignment: float = 1000.0
+
+    def __post_init__(self) -> None:
+        for key, allowed in (("contact", CONTACTS), ("start", STARTS), ("events", EVENTS)):
+            if getattr(self, key) not in allowed:
+                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: {' | '.join(allowed)}")
+        if self.solver and self.solver not in SOLVERS:
+            raise ValueError(f"solver: {self.solver!r} is not allowed: {' | '.join(SOLVERS)}")
+        _check_range("v", self.v, 1e-6, 1e3)
+        _check_range("step", self.step, 1e-9, 10.0)
+        _check_range("transient", self.transient, 0.0, 1e9)
+        _check_range("window", self.window, 1e-3, 1e9)
+        _check_range("event_window", self.event_window, 0.0, 1e9)
+        _check_range("lyapunov_alignment", self.lyapunov_alignment, 0.0, 1e9)
+        _check_range("sampling", self.sampling, 1e-6, 1e9)
+        _check_range("trajectory", self.trajectory, 0.0, 1e9)
+        _check_range("trajectory_sampling", self.trajectory_sampling, 1e-6, 1e9)
+        for key, low, high in (("batches", 2, 10_000), ("lyapunov_exponents", 0, 2 * MAXIMUM_BLOCKS)):
+            count = getattr(self, key)
+            if isinstance(count, bool) or not isinstance(count, int) or not low <= count <= high:
+                raise ValueError(f"{key}: {count!r} is not allowed: {low} to {high}")
+        for key, samples in (
+            ("sampling", (self.transient + self.window) / self.sampling),
+            ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
+        ):
+            if samples > 1e7:
+                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: it asks for more than 1e7 samples")
+
+    def check_blocks(self, blocks: int) -> None:
+        """Raise ValueError if the settings do not fit a chain of that many blocks."""
+        if self.lyapunov_exponents > 2 * blocks:
+            raise ValueError(
+                f"lyapunov_exponents: {self.lyapunov_exponents!r} is not allowed: at most {2 * blocks}, two a block"
+            )
+
+    @property
+    def duration(self) -> float:
+        """End of the run."""
+        return self.transient + self.window
+
+
+def _check_range(key: str, value: float, low: float, high: float) -> None:
+    if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
+        raise ValueError(f"{key}: {value!r} is not allowed: {low:g} to {high:g}")
