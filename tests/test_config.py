@@ -214,7 +214,7 @@ def test_ranges_are_exact_decimals(first, count, step):
     """Every grid value is the double nearest to its decimal, so that a0.0800 is 0.08 and not 0.08000000000000002."""
     from decimal import Decimal
 
-    from burridge_knopoff.config import _range
+    from burridge_knopoff.config.grid import _range
 
     start = Decimal(first) * Decimal(step)
     stop = start + count * Decimal(step)

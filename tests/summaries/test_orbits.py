@@ -23,7 +23,7 @@ def test_the_curve_is_that_of_the_orbits(found):
         for a in (0.05, 0.1):
             orbit = Family(Model(Chain(3), Friction(law, 0.0))).at(a)
             point = found.sel(law=law, a=a)
-            values = point["multiplier_real"].values + 1j * point["multiplier_imaginary"].values
+            values = point["multiplier"].sel(part="real").values + 1j * point["multiplier"].sel(part="imaginary").values
             assert values == pytest.approx(multipliers(orbit), abs=1e-12)
             assert values[0] == point["transverse_multiplier"].item()
             assert point["period"].item() == pytest.approx(orbit.period, abs=1e-13)
@@ -68,7 +68,7 @@ def test_no_orbit_is_told_not_a_crash(blocks, v, status):
     # Under a symmetric contact so fast a driver makes blocks slip backward: no block stops once a period.
     none = summarize(blocks, [0.1, 0.2], v, "symmetric")
     assert (none["status"] == status).all()
-    for name in ("period", "critical_a", "grazing_a", "multiplier_real", "branch_offset", "hysteresis"):
+    for name in ("period", "critical_a", "grazing_a", "multiplier", "branch_offset", "hysteresis"):
         assert np.isnan(none[name]).all()
     assert (none["bifurcation_kind"] == -1).all()
     assert (none["bifurcation_side"] == -1).all()

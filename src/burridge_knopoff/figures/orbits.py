@@ -77,9 +77,10 @@ def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
     a = one["a"].values
     panel.plot(a, one["transverse_multiplier"].values, "-", color=hue)
     symmetric = one.sel(mode="symmetric_1")
-    modulus = np.hypot(symmetric["multiplier_real"].values, symmetric["multiplier_imaginary"].values)
+    real, imaginary = (symmetric["multiplier"].sel(part=part).values for part in ("real", "imaginary"))
+    modulus = np.hypot(real, imaginary)
     # The modulus, of a complex pair as well, with the sign of the real part.
-    panel.plot(a, np.where(symmetric["multiplier_real"].values < 0.0, -modulus, modulus), "--", color=hue)
+    panel.plot(a, np.where(real < 0.0, -modulus, modulus), "--", color=hue)
     panel.plot(one["critical_a"].item(), 1.0, "o", color=hue, markersize=3.5)
 
 

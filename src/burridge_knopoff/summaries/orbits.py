@@ -19,7 +19,8 @@ from burridge_knopoff.stability.orbit import OrbitError, multipliers, transverse
 from burridge_knopoff.stability.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
 
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
-DIRECTIONS = ("up", "down")
+PARTS = ("real", "imaginary")
+DIRECTIONS = ("upward", "downward")
 
 #: Whether there is an orbit. At a = 0 nothing feeds or damps the motion: no periodic orbit is isolated.
 ORBIT_STATUS = {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"}
@@ -46,8 +47,7 @@ VARIABLES = {
     "lateral_slip_time": Variable(_CURVE, "f8", "time T_s for which blocks 1 and 3 slip in a period"),
     "center_stick_time": Variable(_CURVE, "f8", "time for which block 2 sticks in a period"),
     "transverse_multiplier": Variable(_CURVE, "f8", "Floquet multiplier mu of x_1 - x_3"),
-    "multiplier_real": Variable((*_CURVE, "mode"), "f8", "real part of the Floquet multipliers"),
-    "multiplier_imaginary": Variable((*_CURVE, "mode"), "f8", "imaginary part of the Floquet multipliers"),
+    "multiplier": Variable((*_CURVE, "mode", "part"), "f8", "Floquet multipliers"),
     "critical_a": Variable(("law",), "f8", "a_c, at which |mu| reaches 1"),
     "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is taken from finite differences of the flow"),
     "grazing_a": Variable(("law",), "f8", "a at which block 2 begins to stick"),
@@ -82,6 +82,7 @@ VARIABLES = {
 }
 _COORDINATES = {
     "mode": Variable(("mode",), "O", "Floquet mode", coordinate=True),
+    "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
     "branch_asymmetry": Variable(_BRANCH[1:], "f8", "x_1 - x_3 while both stick", coordinate=True),
     "direction": Variable(("direction",), "O", "direction in which a goes", coordinate=True),
     "sweep_offset": Variable(("sweep_offset",), "f8", "a - a_c of the runs of a sweep", coordinate=True),
@@ -122,7 +123,13 @@ def summarize(blocks: int, grid: Sequence[float], v: float, contact: str) -> xar
 
 
 def _coordinates(grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]:
-    values = {"mode": MODES, "branch_asymmetry": asymmetry, "direction": DIRECTIONS, "sweep_offset": OFFSETS}
+    values = {
+        "mode": MODES,
+        "part": PARTS,
+        "branch_asymmetry": asymmetry,
+        "direction": DIRECTIONS,
+        "sweep_offset": OFFSETS,
+    }
     named = axes((), grid)
     del named["initial"]
     for name, item in _COORDINATES.items():
@@ -151,8 +158,7 @@ def _fill_curve(values: dict[str, Any], i: int, family: Family | None, grid: Seq
         values["lateral_slip_time"][i, k] = orbit.lateral_slip_time
         values["center_stick_time"][i, k] = orbit.center_stick_time
         values["transverse_multiplier"][i, k] = transverse_multiplier(orbit)
-        values["multiplier_real"][i, k] = found.real
-        values["multiplier_imaginary"][i, k] = found.imag
+        values["multiplier"][i, k] = np.stack([found.real, found.imag], axis=-1)
 
 
 def _fill_transition(values: dict[str, Any], i: int, family: Family | None, asymmetry: np.ndarray) -> None:
