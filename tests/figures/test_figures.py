@@ -4,8 +4,10 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.colors import to_rgb
 
 from burridge_knopoff.figures import distance, friction_laws, mean_distance, motion, orbits
+from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.style import write_figure
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.summaries.orbits import summarize
@@ -26,10 +28,44 @@ def test_mean_distance_leaves_a_gap_where_a_run_has_no_result():
         },
         {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.1, 0.2]},
     )
-    panels = mean_distance.draw(dataset).axes
-    curve = panels[0].get_lines()[0]
-    assert np.array_equal(curve.get_ydata(), values[0, 0], equal_nan=True)
+    panels = mean_distance.draw(dataset, known_attractors()).axes
+    attractors, run = (line for line in panels[0].get_lines() if len(line.get_ydata()) in (2, 3))
+    assert np.array_equal(run.get_ydata(), values[0, 0], equal_nan=True)
+    assert attractors.get_ydata().tolist() == [0.1, 0.2]
     assert panels[0].get_title(loc="left") == "(a) linearized law"
+
+
+def known_attractors():
+    """One branch that exists at two of three values of a, which the run reaches at one under one convention."""
+    names = {"law": ["linearized", "nonlinear"], "contact": ["one_sided", "symmetric"], "start": ["moving", "tested"]}
+    branch = np.array([[[-1], [1], [1]]] * 2)
+    reached = np.full((2, 2, 2, 1, 3), -1)
+    reached[:, 0, 0, 0, 1] = 1
+    return xr.Dataset(
+        {
+            "branch": (("law", "a", "attractor"), branch),
+            "mean_distance": (("law", "a", "attractor"), np.array([[[np.nan], [0.1], [0.2]]] * 2)),
+            "initial_branch": (("law", "contact", "start", "initial", "a"), reached),
+        },
+        {**names, "initial": ["plus"], "a": [0.0, 0.1, 0.2]},
+    )
+
+
+def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white():
+    values = np.zeros((2, 1, 3))
+    names = ("law", "initial", "a")
+    means = xr.Dataset(
+        {"mean_distance": (names, values), "mean_distance_error": (names, values)},
+        {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.1, 0.2]},
+    )
+    attractors = known_attractors()
+    strips = mean_distance.draw(means, attractors).axes[2]
+    picture = strips.collections[0].get_array()
+    color = to_rgb(branch_colors(attractors)["linearized"][1])
+    assert picture.shape == (4, 3, 3)
+    assert np.allclose(picture[0, 1], color)
+    assert (picture[0, 0] == 1.0).all()
+    assert (picture[1:] == 1.0).all()
 
 
 def test_motion_draws_every_block(point):
