@@ -13,7 +13,7 @@ from burridge_knopoff.stability.attractors import ASYMMETRIC, SYMMETRIC, SYNCHRO
 from burridge_knopoff.stability.continuation import branches
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
-from burridge_knopoff.stability.steady import follow, lies_on
+from burridge_knopoff.stability.steady import lies_on, measure, visit
 from tests.summaries.test_agreement import MOTION
 
 SETTINGS = {
@@ -75,9 +75,8 @@ def test_an_unstable_motion_is_no_attractor():
     """A symmetric state stays symmetric for ever, though the synchronized motion is unstable at a = 0.1."""
     found = Search(model(a=0.1), SETTINGS, 1e-6, MOTION)
     symmetric = begin(found.model, InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
-    motion = follow(found.model, symmetric, 2000.0, 1000.0, 1e-3, 1e-6, MOTION)
-    assert motion.mean_distance == 0.0
-    assert motion.settled
+    assert measure(found.model, symmetric, 2000.0, 1000.0, 1e-6, MOTION).mean_distance == 0.0
+    assert visit(found.model, symmetric, 2000.0, 1000.0).settled(1e-6, 1e-3)
     index = found.reach(symmetric)
     assert found.attractors[index].symmetry == ASYMMETRIC
     assert found.attractors[index].motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
@@ -103,7 +102,7 @@ def test_pushes_from_within_the_radius_come_back(search):
 
 def test_a_motion_lies_on_its_own_attractor_only(search):
     for index, attractor in enumerate(search.attractors):
-        again = follow(search.model, attractor.motion.instant(), 500.0, 1000.0, 1e-3, 1e-6, MOTION)
+        again = visit(search.model, attractor.motion.instant(), 500.0, 1000.0).returns
         others = [other.motion for k, other in enumerate(search.attractors) if k not in (index, attractor.partner)]
         assert lies_on(again, attractor.motion, 1e-3)
         assert not any(lies_on(again, other, 1e-3) for other in others)

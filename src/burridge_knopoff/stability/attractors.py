@@ -15,13 +15,14 @@ import numpy as np
 from burridge_knopoff.kernel.proximity import Proximity
 from burridge_knopoff.stability.flow import Instant, Model, new_solver
 from burridge_knopoff.stability.steady import (
-    CLOSED,
     SPACINGS,
+    Returns,
     SteadyMotion,
-    follow,
     instant_of,
     least_distance,
     lies_on,
+    measure,
+    visit,
 )
 
 UNDETERMINED = -1
@@ -37,6 +38,9 @@ TRIALS = 3
 
 # Trajectories that are followed without finding anything new before the others are left to what is known.
 FRUITLESS = 3
+
+# Time, in transients, in which most trajectories have decided.
+QUICK = 0.3
 
 LARGEST_RADIUS = 0.05
 SMALLEST_RADIUS = 1e-5
@@ -88,23 +92,29 @@ class Search:
 
         −1 where a trajectory reaches nothing that settles.
         """
-        # Most states decide early. Of the others a few are followed until they settle, first those that have not
-        # decided after a transient, then those that have not decided at all.
-        for limit in (self.settings["transient"], self.settings["time_limit"]):
-            undecided = list(range(len(starts)))
-            known = UNDETERMINED
-            fruitless = 0
-            while fruitless < FRUITLESS:
-                if len(self.attractors) > known:
-                    known = len(self.attractors)
-                    found, _ = label(self.model, self.attractors, [starts[k] for k in undecided], limit)
-                    undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
-                if not undecided:
-                    break
-                self.reach(starts[undecided.pop(0)])
-                fruitless += len(self.attractors) == known
-        # Only with all attractors known are the labels those that another order of the states would give.
-        return self.known_labels(starts)
+        # Most states decide early: the first search is quick, and only the second gives every state its time. Only with
+        # all attractors known are the labels those that another order of the states would give.
+        undecided = list(range(len(starts)))
+        while True:
+            found, _ = label(
+                self.model, self.attractors, [starts[k] for k in undecided], QUICK * self.settings["transient"]
+            )
+            undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
+            if not self._discover([starts[k] for k in undecided]):
+                break
+        while True:
+            labels = self.known_labels(starts)
+            if not self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()]):
+                return labels
+
+    def _discover(self, starts: Sequence[Instant]) -> bool:
+        """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
+        known = len(self.attractors)
+        for start in starts[:FRUITLESS]:
+            self.reach(start)
+            if len(self.attractors) > known:
+                return True
+        return False
 
     def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:
         """Return the index of the attractor, among those known, that each state reaches; −1 for none of them."""
@@ -114,28 +124,35 @@ class Search:
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
         generator = np.random.default_rng(self.settings["seed"])
+        resolution = self.settings["resolution"]
         for _ in range(TRIALS):
-            motion = self._settle(start)
-            if motion is None:
+            found = self._settle(start)
+            if found is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if lies_on(motion, attractor.motion, self.settings["resolution"]):
+                if lies_on(found.returns, attractor.motion, resolution):
                     return index
             index = len(self.attractors)
-            if self._add(motion):
+            if self._add(found):
                 return index
             # An unstable motion that the trajectory has come very close to: pushed off, it goes on.
-            start = pushed(motion.instant(), 0.1 * self.settings["resolution"], generator)
+            start = pushed(found.instant(), 0.1 * resolution, generator)
         return UNDETERMINED
 
-    def _add(self, motion: SteadyMotion) -> bool:
-        """Add a motion, and its mirror image if that is another one; tell whether they are attractors."""
+    def _add(self, found: Returns) -> bool:
+        """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
+        settings = self.settings
+        closed = found.closed(self.motion["period_tolerance"])
+        window = settings["window"] * (1 if closed else FILLING)
+        motion = measure(self.model, found.instant(), settings["transient"], window, self.threshold, self.motion)
+        if motion is None:
+            return False
         mirrored = motion.mirrored()
         before = list(self.attractors)
         index = len(before)
         if motion.mean_distance < self.threshold:
             self.attractors.append(Attractor(motion, SYNCHRONIZED, index, LARGEST_RADIUS))
-        elif self._symmetric(motion):
+        elif self._symmetric(found):
             self.attractors.append(Attractor(motion.symmetrized(), SYMMETRIC, index, LARGEST_RADIUS))
         else:
             self.attractors.append(Attractor(motion, ASYMMETRIC, index + 1, LARGEST_RADIUS))
@@ -149,31 +166,31 @@ class Search:
             self.attractors[index] = replace(self.attractors[index], radius=radius)
         return True
 
-    def _settle(self, start: Instant) -> SteadyMotion | None:
-        """Return the motion that a state settles on, or None if it does not settle."""
+    def _settle(self, start: Instant) -> Returns | None:
+        """Return where a state returns to when it has settled, or None if it does not settle."""
         transient, window = self.settings["transient"], self.settings["window"]
-        resolution = self.settings["resolution"]
+        tolerance, resolution = self.motion["period_tolerance"], self.settings["resolution"]
         longest = PATIENCE * window
         while transient <= PATIENCE * self.settings["transient"]:
-            motion = follow(self.model, start, transient, window, resolution, self.threshold, self.motion)
-            if motion is None:
+            found = visit(self.model, start, transient, window)
+            if found is None:
                 return None
-            start = motion.instant()
-            closed = motion.kind in CLOSED
+            start = found.instant()
+            closed, settled = found.closed(tolerance), found.settled(tolerance, resolution)
             # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
             # like a set of its own; and a chaotic transient may still end.
-            filled = window >= FILLING * self.settings["window"] and self._symmetric(motion)
-            if motion.settled and (closed or filled or window == longest):
-                return motion
-            if not motion.settled:
+            filled = window >= FILLING * self.settings["window"] and self._symmetric(found)
+            if settled and (closed or filled or window == longest):
+                return found
+            if not settled:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
         return None
 
-    def _symmetric(self, motion: SteadyMotion) -> bool:
+    def _symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image."""
-        return least_distance(motion.returns, motion.mirror_returns) < self.settings["resolution"]
+        return least_distance(found.returns, found.mirror_returns) < self.settings["resolution"]
 
     def _bound_radii(self) -> None:
         """Bound all radii by the distances between the attractors."""

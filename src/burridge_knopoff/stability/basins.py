@@ -16,7 +16,10 @@ from burridge_knopoff.friction import Friction
 from burridge_knopoff.simulation import starts_stuck
 from burridge_knopoff.stability.attractors import FILLING, SYMMETRIC, UNDETERMINED, Attractor, new_proximity
 from burridge_knopoff.stability.flow import Instant, Model
-from burridge_knopoff.stability.steady import CLOSED, follow
+from burridge_knopoff.stability.steady import measure
+from burridge_knopoff.summaries.motion import PERIODIC, SYNCHRONIZED
+
+CLOSED = (SYNCHRONIZED, PERIODIC)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,7 @@ def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mappin
     model = Model(Chain(found.sizes["block"]), Friction(law, a), config["v"], config["contact"])
     settings = config["attractors"]
     slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
+    threshold, motion = config["synchronization_threshold"], config["motion"]
     attractors = []
     for slot in slots:
         one = found.isel(attractor=slot)
@@ -45,9 +49,7 @@ def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mappin
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         closed = one["kind"].item() in CLOSED
         window = settings["window"] * (1 if closed else FILLING)
-        threshold, motion = config["synchronization_threshold"], config["motion"]
-        # The state lies on the attractor: a short transient takes the last rounding of the file off.
-        steady = follow(model, start, settings["transient"], window, settings["resolution"], threshold, motion)
+        steady = measure(model, start, settings["transient"], window, threshold, motion)
         if steady is None:
             raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
         if one["symmetry"].item() == SYMMETRIC:

@@ -10,10 +10,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from burridge_knopoff.initial import InitialState
+from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.settings import Settings
-from burridge_knopoff.simulation import Trajectory, run
-from burridge_knopoff.stability.flow import Instant, Model
-from burridge_knopoff.summaries.motion import PERIODIC, QUASIPERIODIC, SYNCHRONIZED, motion_kind, section_period
+from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, run
+from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, new_solver
+from burridge_knopoff.summaries.motion import PERIODIC, QUASIPERIODIC, motion_kind, section_period
 
 # Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
 SHARE = 0.95
@@ -24,25 +25,53 @@ SPACINGS = 3.0
 # Closed orbits drift by less than this part of the resolution from one half of the window to the other once they have
 # settled; other sets fill up so slowly that the resolution itself must do.
 DRIFT = 100.0
-CLOSED = (SYNCHRONIZED, PERIODIC)
 
 BATCHES = 6
+EXPONENTS = 3
+
+# A set of fewer returns than this says nothing.
+FEWEST = 8
 
 # Velocity that is rounding.
 STANDING = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
-class SteadyMotion:
-    """A settled motion.
+class Returns:
+    """The returns of a trajectory in a window after a transient.
 
     returns : states at the stops of the first block, shape (n, 2 blocks), positions x_i and velocities U_i'
     mirror_returns : those of the mirrored motion
     spacing : distance (largest difference of a coordinate) between neighbouring returns
+    drift : distance between the returns of the first and of the second half of the window
+    """
+
+    returns: np.ndarray
+    mirror_returns: np.ndarray
+    spacing: float
+    drift: float
+
+    def closed(self, tolerance: float) -> bool:
+        """Tell whether the returns repeat: the motion is a closed orbit."""
+        return self.spacing <= tolerance
+
+    def settled(self, tolerance: float, resolution: float) -> bool:
+        """Tell whether both halves of the window show the same set."""
+        allowed = resolution / DRIFT if self.closed(tolerance) else resolution
+        return self.drift <= max(allowed, SPACINGS * self.spacing)
+
+    def instant(self) -> Instant:
+        """Return the state at the last return."""
+        return instant_of(self.returns[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyMotion:
+    """A settled motion with its observables.
+
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
     stop_rate : stops of each block in a unit of time, shape (blocks,)
     kind, exponent : kind of motion (summaries.motion) and Lyapunov exponents, the largest first
-    settled : whether both halves of the window show the same set
     """
 
     returns: np.ndarray
@@ -54,8 +83,6 @@ class SteadyMotion:
     kind: int
     section_period: int
     exponent: np.ndarray
-    exponent_error: np.ndarray
-    settled: bool
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
@@ -80,9 +107,47 @@ def instant_of(state: np.ndarray) -> Instant:
     return Instant(position.copy(), np.where(stuck, 0.0, velocity), stuck)
 
 
-def settings_of(model: Model, transient: float, window: float, exponents: int) -> Settings:
-    """Return the settings of a run of which only its returns, ⟨J⟩ and exponents are wanted."""
-    return Settings(
+def visit(model: Model, start: Instant, transient: float, window: float) -> Returns | None:
+    """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
+    blocks = model.chain.blocks
+    log = EventLog(blocks, transient, True, EVENTS_PER_BLOCK_AND_UNIT * blocks)
+    solver = new_solver(model, log)
+    solver.end = transient + window
+    solver.begin(start.position, start.velocity, start.stuck)
+    while (status := solver.run()) == RUNNING:
+        pass
+    if status != COMPLETED:
+        return None
+    events = log.events.values()
+    stops = [events[(events[:, 0] == block) & (events[:, 1] == 0.0), 2:] for block in (1, blocks)]
+    return _returns(stops[0], stops[1])
+
+
+def _returns(stops: np.ndarray, last_stops: np.ndarray) -> Returns | None:
+    """Return the set of the states at stops of the first block and of the last one, or None if there are too few."""
+    if min(len(stops), len(last_stops)) < FEWEST:
+        return None
+    position, velocity = np.split(last_stops, 2, axis=1)
+    first, second = np.array_split(stops, 2)
+    return Returns(
+        returns=stops,
+        mirror_returns=np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1),
+        spacing=_spacing(second),
+        drift=max(distance(first, second), distance(second, first)),
+    )
+
+
+def measure(
+    model: Model, start: Instant, transient: float, window: float, threshold: float, motion: Mapping[str, Any]
+) -> SteadyMotion | None:
+    """Measure the motion from a state that has settled; None if it does not complete or hardly ever stops.
+
+    transient : in which the perturbations turn into the directions of the exponents
+    threshold, motion : the config's synchronization_threshold and section `motion`, for the kind of motion
+    """
+    position = start.position + model.sliding_offset
+    initial = InitialState("continued", tuple(position), tuple(start.velocity))
+    settings = Settings(
         v=model.v,
         contact=model.contact,
         transient=transient,
@@ -91,69 +156,36 @@ def settings_of(model: Model, transient: float, window: float, exponents: int) -
         sampling=transient + window,
         trajectory=0.0,
         event_window=window,
-        lyapunov_exponents=exponents,
+        lyapunov_exponents=min(EXPONENTS, 2 * model.chain.blocks),
         lyapunov_alignment=transient,
     )
-
-
-def follow(
-    model: Model,
-    start: Instant,
-    transient: float,
-    window: float,
-    resolution: float,
-    threshold: float,
-    motion: Mapping[str, Any],
-) -> SteadyMotion | None:
-    """Follow a trajectory through a transient and a window; None if it does not complete or hardly ever stops.
-
-    resolution : distance below which attractors are not told apart
-    threshold, motion : the config's synchronization_threshold and section `motion`, for the kind of motion
-    """
-    position = start.position + model.sliding_offset
-    initial = InitialState("continued", tuple(position), tuple(start.velocity))
-    settings = settings_of(model, transient, window, min(3, 2 * model.chain.blocks))
     trajectory = run(model.chain, model.friction, initial, settings, np.asarray(start.stuck))
-    returns = returns_of(model, trajectory, 0)
-    mirror_returns = _mirror(returns_of(model, trajectory, model.chain.blocks - 1))
-    if trajectory.status != "completed" or min(len(returns), len(mirror_returns)) < 4:
+    if trajectory.status != "completed":
         return None
-    first, second = np.array_split(returns, 2)
-    spacing = _spacing(second)
-    drift = max(distance(first, second), distance(second, first))
+    states = np.concatenate([trajectory.event_position - model.sliding_offset, trajectory.event_velocity], axis=1)
+    stopped = trajectory.event_kind == 0
+    stops = [states[stopped & (trajectory.event_block == block)] for block in (1, model.chain.blocks)]
+    found = _returns(stops[0], stops[1])
+    if found is None:
+        return None
     upward = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
     period = section_period(upward, motion["period_tolerance"], motion["longest_period"])
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     kind = motion_kind(trajectory.mean_distance, threshold, period, exponent, error, motion)
-    if kind == QUASIPERIODIC and spacing <= motion["period_tolerance"]:
+    if kind == QUASIPERIODIC and found.closed(motion["period_tolerance"]):
         # A weakly attracting orbit of a long period: its exponent cannot be told from 0, but its returns repeat.
         kind = PERIODIC
-    stops = trajectory.event_block[trajectory.event_kind == 0]
     return SteadyMotion(
-        returns=returns,
-        mirror_returns=mirror_returns,
-        spacing=spacing,
+        returns=found.returns,
+        mirror_returns=found.mirror_returns,
+        spacing=found.spacing,
         mean_distance=trajectory.mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
-        stop_rate=np.bincount(stops, minlength=model.chain.blocks + 1)[1:] / window,
+        stop_rate=np.bincount(trajectory.event_block[stopped], minlength=model.chain.blocks + 1)[1:] / window,
         kind=kind,
         section_period=period,
         exponent=exponent,
-        exponent_error=error,
-        settled=drift <= max(resolution / DRIFT if kind in CLOSED else resolution, SPACINGS * spacing),
     )
-
-
-def returns_of(model: Model, trajectory: Trajectory, block: int) -> np.ndarray:
-    """Return the states at the stops of one block in the window, shape (n, 2 blocks), positions co-moving."""
-    chosen = (trajectory.event_block == block + 1) & (trajectory.event_kind == 0)
-    position = trajectory.event_position[chosen] - model.sliding_offset
-    return np.concatenate([position, trajectory.event_velocity[chosen]], axis=1)
-
-
-def _mirror(returns: np.ndarray) -> np.ndarray:
-    position, velocity = np.split(returns, 2, axis=1)
-    return np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
 
 
 def distance(first: np.ndarray, second: np.ndarray) -> float:
@@ -174,9 +206,9 @@ def least_distance(first: np.ndarray, second: np.ndarray) -> float:
     return float(nearest.min())
 
 
-def lies_on(motion: SteadyMotion, attractor: SteadyMotion, resolution: float) -> bool:
+def lies_on(returns: np.ndarray, attractor: SteadyMotion, resolution: float) -> bool:
     """Tell whether the returns of a settled motion lie on an attractor, as far as that is resolved.
 
     resolution : distance below which attractors are not told apart
     """
-    return distance(motion.returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)
+    return distance(returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)
