@@ -61,7 +61,7 @@ def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white():
     attractors = known_attractors()
     strips = mean_distance.draw(means, attractors).axes[2]
     picture = strips.collections[0].get_array()
-    color = to_rgb(branch_colors(attractors)["linearized"][1])
+    color = to_rgb(branch_colors(attractors)[1])
     assert picture.shape == (4, 3, 3)
     assert np.allclose(picture[0, 1], color)
     assert (picture[0, 0] == 1.0).all()

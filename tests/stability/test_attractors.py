@@ -10,7 +10,7 @@ from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.stability.attractors import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, Search, label
-from burridge_knopoff.stability.continuation import branches
+from burridge_knopoff.stability.continuation import branches, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.steady import lies_on, measure, visit
@@ -164,3 +164,18 @@ def test_samples_and_intervals():
     half = z / (1 + z * z / 10) * np.sqrt(0.9 * 0.1 / 10 + z * z / 400)
     assert (fraction, low, high) == pytest.approx((0.9, centre - half, centre + half))
     assert np.isnan(fraction_interval(0, 0)).all()
+
+
+def test_branches_of_two_laws_that_look_alike_carry_one_number():
+    """By ⟨J⟩ and by which blocks stick, at most values of a; the rest is numbered on."""
+    free, middle = (True, False, True), (True, True, True)
+    first = {0: {0: (0.0, middle)}, 1: {k: (0.14, middle) for k in range(4)}, 2: {k: (0.18, free) for k in range(3)}}
+    second = {
+        0: {0: (0.0, middle)},
+        1: {k: (0.181, free) for k in range(3)},
+        2: {k: (0.142, middle) for k in range(4)},
+        3: {1: (0.141, free), 2: (0.3, middle)},
+    }
+    assert same_numbers(first, second, 0.01) == {0: 0, 1: 2, 2: 1, 3: 3}
+    assert same_numbers(first, first, 0.01) == {0: 0, 1: 1, 2: 2}
+    assert same_numbers({}, second, 0.01) == {0: 0, 1: 1, 2: 2, 3: 3}

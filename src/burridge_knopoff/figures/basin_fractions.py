@@ -23,7 +23,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         one = attractors.sel(law=law)
-        _fractions(panels[column], one, colors[law])
+        _fractions(panels[column], one, colors)
         _sweeps(panels[len(laws) + column], one)
         panels[len(laws) + column].set_xlabel("$a$")
     panels[0].set_ylabel("fraction of initial states")
@@ -42,9 +42,9 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
     samples = int(attractors.attrs["samples"])
     branch, count = attractors["branch"].values, attractors["basin_count"].values
     for number, color in sorted(colors.items()):
-        if color == OTHER_COLOR:
-            continue
         there = (branch == number).any(axis=1)
+        if color == OTHER_COLOR or not there.any():
+            continue
         hits = np.where(branch == number, count, 0).sum(axis=1)
         interval = np.array([fraction_interval(int(hit), samples) for hit in hits])
         # Gaps where the branch does not exist.

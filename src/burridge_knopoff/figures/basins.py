@@ -24,13 +24,14 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.3), layout="constrained")
+    figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     colors = branch_colors(attractors)
     first, last = (basins[name].values for name in ("first_position", "last_position"))
     half = [0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5 for axis in (first, last)]
     extent = (first[0] - half[0], first[-1] + half[0], last[0] - half[1], last[-1] + half[1])
     titles = []
+    shown: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
         if number >= count:
             panel.set_axis_off()
@@ -42,12 +43,11 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
         present = sorted(
             set(zip(one["branch"].values.ravel().tolist(), one["side"].values.ravel().tolist(), strict=True))
         )
-        handles = []
         for branch, side in present:
-            shade = to_rgb("black") if branch < 0 else side_color(colors[law][branch], side)
+            shade = to_rgb("black") if branch < 0 else side_color(colors[branch], side)
             picture[(one["branch"].values == branch) & (one["side"].values == side)] = shade
             name = "undetermined" if branch < 0 else branch_name(branch) + {1: " (+)", -1: " (−)", 0: ""}[side]
-            handles.append(Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name))
+            shown[branch, -side] = Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name)
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="equal")
         for name, (x, y) in marked.items():
             panel.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=1.0)
@@ -60,10 +60,11 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
                 ha="right" if left else "left",
                 bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
             )
-        panel.legend(handles=handles, loc="upper right", frameon=True, framealpha=0.85, edgecolor="none", fontsize=7)
         if number >= count - columns:
             panel.set_xlabel("$U_1(0)$")
         if number % columns == 0:
             panel.set_ylabel("$U_N(0)$")
+    handles = [shown[key] for key in sorted(shown)]
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(5, len(handles)))
     label_panels(list(panels.flat)[:count], titles)
     return figure

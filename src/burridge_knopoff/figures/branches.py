@@ -13,17 +13,15 @@ OTHER_COLOR = "#999999"
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
 
 
-def branch_colors(attractors: xarray.Dataset) -> dict[str, dict[int, str]]:
-    """Return {law: {branch: colour}} for all branches; those of a short range share one colour."""
-    chosen: dict[str, dict[int, str]] = {}
-    for law in attractors["law"].values:
-        number, count = np.unique(attractors["branch"].sel(law=law).values, return_counts=True)
-        # Both sides of a branch fill a slot each; that does not change the order by much.
-        ranked = [int(n) for n in number[np.lexsort((number, -count))] if n > 0]
-        colors = dict.fromkeys(ranked, OTHER_COLOR)
-        colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
-        chosen[str(law)] = {0: COLORS[0], **colors}
-    return chosen
+def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
+    """Return the colour of each branch; those of a short range share one."""
+    branch = attractors["branch"].values
+    # Both sides of a branch fill a slot each: counted once.
+    there = {int(n): int((branch == n).any(axis=-1).sum()) for n in np.unique(branch) if n > 0}
+    ranked = sorted(there, key=lambda n: (-there[n], n))
+    colors = dict.fromkeys(ranked, OTHER_COLOR)
+    colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
+    return {0: COLORS[0], **colors}
 
 
 def side_color(color: str, side: int) -> tuple[float, float, float]:

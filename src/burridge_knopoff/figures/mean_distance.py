@@ -27,18 +27,19 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
     laws = mean_distance["law"].values
     rows = attractors.sizes["initial"] * attractors.sizes["contact"] * attractors.sizes["start"]
     strip = 0.13 * rows + 0.2
-    figure = Figure(figsize=(PAGE, 3.3 + strip), layout="constrained")
+    figure = Figure(figsize=(PAGE, 3.4 + strip), layout="constrained")
     panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, strip])
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         curves, conventions = panels[:, column]
-        _branches(curves, attractors.sel(law=law), colors[law])
+        _branches(curves, attractors.sel(law=law), colors)
         _runs(curves, mean_distance.sel(law=law))
-        _conventions(conventions, attractors.sel(law=law), colors[law])
+        _conventions(conventions, attractors.sel(law=law), colors)
         conventions.set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     panels[0, 0].set_ylim(bottom=-0.01)
-    _legend(figure, panels[0, 0], mean_distance, attractors, colors)
+    panels[0, 0].set_xlim(*cells(attractors["a"].values)[[0, -1]])
+    _legend(figure, mean_distance, colors)
     label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)])
     return figure
 
@@ -91,13 +92,7 @@ def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]
     panel.set_ylim(len(names), 0)
 
 
-def _legend(
-    figure: Figure,
-    panel: Axes,
-    runs: xarray.Dataset,
-    attractors: xarray.Dataset,
-    colors: dict[str, dict[int, str]],
-) -> None:
+def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str]) -> None:
     handles = [
         Line2D(
             [],
@@ -107,17 +102,17 @@ def _legend(
             marker=MARKERS[n % len(MARKERS)],
             markersize=3,
             markerfacecolor="white" if n % 2 else "black",
-            label=name,
+            label=f"run from {name}",
         )
         for n, name in enumerate(runs["initial"].values)
     ]
-    panel.legend(handles=handles, title="initial state", loc="upper left")
     shown: dict[str, str] = {}
-    for law in attractors["law"].values:
-        for branch, color in sorted(colors[law].items()):
-            shown.setdefault("other branches" if color == OTHER_COLOR else branch_name(branch), color)
-    entries = [
+    for branch, color in sorted(colors.items()):
+        shown.setdefault("other branches" if color == OTHER_COLOR else branch_name(branch), color)
+    # The colour of short branches comes last.
+    shown = dict(sorted(shown.items(), key=lambda item: item[1] == OTHER_COLOR))
+    handles += [
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
         for name, color in shown.items()
     ]
-    figure.legend(handles=entries, loc="outside lower center", ncols=min(7, len(entries)))
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(5, len(handles)))

@@ -39,10 +39,13 @@ TRIALS = 3
 # Trajectories that are followed without finding anything new before the others are left to what is known.
 FRUITLESS = 3
 
+# States, the first of each sample, whose labels are verified.
+VERIFIED = 60
+
 # Time, in transients, in which most trajectories have decided.
 QUICK = 0.3
 
-LARGEST_RADIUS = 0.05
+LARGEST_RADIUS = 0.02
 SMALLEST_RADIUS = 1e-5
 
 # Pushed trajectories have come back when they are this many times closer than they were pushed.
@@ -104,8 +107,32 @@ class Search:
                 break
         while True:
             labels = self.known_labels(starts)
-            if not self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()]):
+            more = self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
+            if not more and self._verified(starts[:VERIFIED], labels[:VERIFIED]):
                 return labels
+
+    def _verified(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
+        """Follow labelled states on until they are much closer to their attractors, and tell whether they come there.
+
+        If one settles elsewhere, something that was not known lies within the radius: it is known then, and the radius
+        of the attractor that the state was ascribed to is halved.
+        """
+        narrow = [replace(item, radius=self._recovered(item.motion, item.radius)) for item in self.attractors]
+        closer, _ = label(self.model, narrow, starts, self.settings["time_limit"])
+        doubtful = np.flatnonzero((closer != labels) & (labels != UNDETERMINED)).tolist()
+        verified = True
+        for k in doubtful[:FRUITLESS]:
+            if self.reach(starts[k]) not in (UNDETERMINED, labels[k]):
+                verified = False
+                attractor = self.attractors[labels[k]]
+                for index in {int(labels[k]), attractor.partner}:
+                    self.attractors[index] = replace(self.attractors[index], radius=attractor.radius / 2)
+        return verified
+
+    @staticmethod
+    def _recovered(motion: SteadyMotion, radius: float) -> float:
+        """Return how close to an attractor a trajectory has to come after a push by that radius."""
+        return max(SPACINGS * motion.spacing, radius / RECOVERY)
 
     def _discover(self, starts: Sequence[Instant]) -> bool:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
@@ -206,7 +233,7 @@ class Search:
         radius = self.attractors[index].radius
         generator = np.random.default_rng(self.settings["seed"])
         while radius > SMALLEST_RADIUS:
-            close = max(SPACINGS * motion.spacing, radius / RECOVERY)
+            close = self._recovered(motion, radius)
             narrow = [replace(item, radius=min(item.radius, close)) for item in self.attractors]
             left = self.settings["pushes"]
             while left > 0:

@@ -11,9 +11,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from burridge_knopoff.stability.attractors import SYNCHRONIZED, UNDETERMINED, Attractor, Search, pushed
 from burridge_knopoff.stability.flow import Instant, Model
+
+#: ⟨J⟩ and which blocks stick, on a branch at one a; and {branch: {position of a in the grid: that}}.
+BranchPoint = tuple[float, tuple[bool, ...]]
+BranchCurves = Mapping[int, dict[int, BranchPoint]]
 
 # Size of the seeded push that takes a state off an unstable symmetry, as part of the resolution.
 PUSH = 0.1
@@ -131,3 +136,31 @@ def _orientation(attractor: Attractor) -> int:
     last = len(attractor.motion.stop_rate) - 1
     own, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
     return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1
+
+
+def same_numbers(first: BranchCurves, second: BranchCurves, tolerance: float) -> dict[int, int]:
+    """Return new numbers for the branches of a second law, so that branches that both laws have carry one number.
+
+    Branches are paired so that as many values of a as possible lie on both of a pair, with ⟨J⟩ equal within the
+    tolerance and the same blocks sticking. The synchronized branch is 0 in both; what has no partner is numbered from
+    the largest number of the first law on.
+    """
+    numbers = [sorted(n for n in curves if n > 0) for curves in (first, second)]
+    common = np.array([[_overlap(first[m], second[n], tolerance) for n in numbers[1]] for m in numbers[0]])
+    renamed = {0: 0}
+    if common.size:
+        for row, column in zip(*linear_sum_assignment(common, maximize=True), strict=True):
+            if common[row, column] > 0:
+                renamed[numbers[1][column]] = numbers[0][row]
+    following = max([0, *numbers[0]]) + 1
+    for number in numbers[1]:
+        if number not in renamed:
+            renamed[number] = following
+            following += 1
+    return renamed
+
+
+def _overlap(first: dict[int, BranchPoint], second: dict[int, BranchPoint], tolerance: float) -> int:
+    """Return at how many a two branches look alike."""
+    shared = [(first[k], second[k]) for k in first.keys() & second.keys()]
+    return sum(abs(one[0] - other[0]) <= tolerance and one[1] == other[1] for one, other in shared)

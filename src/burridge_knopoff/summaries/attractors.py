@@ -15,12 +15,14 @@ from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
 from burridge_knopoff.stability.attractors import SYMMETRIES, UNDETERMINED, label
-from burridge_knopoff.stability.continuation import Continuation, continue_attractors
+from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
+from burridge_knopoff.stability.steady import EXPONENTS
 from burridge_knopoff.summaries.motion import KINDS
 
-EXPONENTS = 3
+#: Difference of ⟨J⟩ up to which branches of two laws may be the same at one a.
+SAME_BRANCH = 0.01
 
 _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
@@ -108,11 +110,18 @@ def one_law(
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
-    """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN."""
+    """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN.
+
+    Branches that the other laws share with the first one take its numbers.
+    """
     values = {}
     variables = {}
+    curves = [_curves(part) for part in parts]
+    numbers = [{n: n for n in curves[0]}, *(same_numbers(curves[0], other, SAME_BRANCH) for other in curves[1:])]
     for name, item in VARIABLES.items():
         arrays = [part[name].values for part in parts]
+        if name.endswith("branch"):
+            arrays = [_renumbered(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
         shape = np.max([array.shape for array in arrays], axis=0)
         whole = np.full((len(parts), *shape), _missing(name, item), dtype=item.dtype)
         for number, array in enumerate(arrays):
@@ -128,6 +137,26 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 
 
 _HEAD = ("Conventions", "title", "law", "software", "source_fingerprint", "git_commit")
+
+
+def _curves(part: xarray.Dataset) -> dict[int, dict[int, BranchPoint]]:
+    """Return the branches of one law in the form that `same_numbers` compares."""
+    curves: dict[int, dict[int, BranchPoint]] = {}
+    branch, mean = part["branch"].values, part["mean_distance"].values
+    # Mirror images have their stop rates the other way round; which blocks stick does not tell them apart.
+    sticks = part["stop_rate"].values > 0.0
+    for k, slot in np.argwhere(branch >= 0):
+        point = (float(mean[k, slot]), tuple(bool(stuck) for stuck in sticks[k, slot]))
+        curves.setdefault(int(branch[k, slot]), {})[int(k)] = point
+    return curves
+
+
+def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
+    """Return the numbers of branches replaced by new ones; what is undetermined stays so."""
+    result = np.full_like(branch, UNDETERMINED)
+    for before, after in renamed.items():
+        result[branch == before] = after
+    return result
 
 
 def _missing(name: str, item: Variable) -> Any:
