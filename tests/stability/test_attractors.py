@@ -169,11 +169,15 @@ def test_samples_and_intervals():
 def test_branches_of_two_laws_that_look_alike_carry_one_number():
     """By ⟨J⟩ and by which blocks stick, at most values of a; the rest is numbered on."""
     free, middle = (True, False, True), (True, True, True)
-    first = {0: {0: (0.0, middle)}, 1: {k: (0.14, middle) for k in range(4)}, 2: {k: (0.18, free) for k in range(3)}}
+    first = {
+        0: {0: (0.0, middle)},
+        1: dict.fromkeys(range(4), (0.14, middle)),
+        2: dict.fromkeys(range(3), (0.18, free)),
+    }
     second = {
         0: {0: (0.0, middle)},
-        1: {k: (0.181, free) for k in range(3)},
-        2: {k: (0.142, middle) for k in range(4)},
+        1: dict.fromkeys(range(3), (0.181, free)),
+        2: dict.fromkeys(range(4), (0.142, middle)),
         3: {1: (0.141, free), 2: (0.3, middle)},
     }
     assert same_numbers(first, second, 0.01) == {0: 0, 1: 2, 2: 1, 3: 3}
