@@ -81,7 +81,8 @@ def test_an_unstable_motion_is_no_attractor():
     assert found.attractors[index].symmetry == ASYMMETRIC
     assert found.attractors[index].motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
     stable = Search(model(a=0.08), SETTINGS, 1e-6, MOTION)
-    assert stable.attractors[stable.reach(symmetric)].symmetry == SYNCHRONIZED
+    index = stable.reach(symmetric)
+    assert stable.attractors[index].symmetry == SYNCHRONIZED
 
 
 def test_pushes_from_within_the_radius_come_back(search):

@@ -30,14 +30,21 @@ UNDETERMINED = -1
 # Longest transient, in those of the config, for a motion that is still settling.
 PATIENCE = 16
 
+# Drift, in resolutions, with which a motion that has not settled may still show a set.
+LOOSE = 10.0
+
 # Window, in those of the config, for a motion that is not periodic.
 FILLING = 4
 
 # Unstable motions that a trajectory may come close to before it is given up.
-TRIALS = 3
+TRIALS = 2
 
 # Trajectories that are followed without finding anything new before the others are left to what is known.
 FRUITLESS = 3
+
+# States that show a slow set, and how far they are pushed, in resolutions.
+PUSHED = 12
+PUSHED_BY = 5.0
 
 # States, the first of each sample, whose labels are verified.
 VERIFIED = 60
@@ -47,6 +54,10 @@ QUICK = 0.3
 
 LARGEST_RADIUS = 0.02
 SMALLEST_RADIUS = 1e-5
+
+# Radius below which a motion is no attractor at all. On some orbits a block just misses to stick, or to start: they
+# attract from one side only, and next to nothing of the other.
+TINY_RADIUS = 1e-8
 
 # Pushed trajectories have come back when they are this many times closer than they were pushed.
 RECOVERY = 10.0
@@ -68,12 +79,14 @@ class Attractor:
     symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric
     partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set
     radius : distance from its returns within which trajectories are captured
+    slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
     """
 
     motion: SteadyMotion
     symmetry: int
     partner: int
-    radius: float
+    radius: float = LARGEST_RADIUS
+    slow: bool = False
 
 
 @dataclass
@@ -174,18 +187,27 @@ class Search:
         motion = measure(self.model, found.instant(), settings["transient"], window, self.threshold, self.motion)
         if motion is None:
             return False
-        mirrored = motion.mirrored()
-        before = list(self.attractors)
-        index = len(before)
+        index = len(self.attractors)
         if motion.mean_distance < self.threshold:
-            self.attractors.append(Attractor(motion, SYNCHRONIZED, index, LARGEST_RADIUS))
+            new = [Attractor(motion, SYNCHRONIZED, index)]
         elif self._symmetric(found):
-            self.attractors.append(Attractor(motion.symmetrized(), SYMMETRIC, index, LARGEST_RADIUS))
+            new = [Attractor(motion.symmetrized(), SYMMETRIC, index)]
         else:
-            self.attractors.append(Attractor(motion, ASYMMETRIC, index + 1, LARGEST_RADIUS))
-            self.attractors.append(Attractor(mirrored, ASYMMETRIC, index, LARGEST_RADIUS))
+            new = [Attractor(motion, ASYMMETRIC, index + 1), Attractor(motion.mirrored(), ASYMMETRIC, index)]
+        if self._accept(new, SMALLEST_RADIUS):
+            return True
+        # A symmetric orbit that does not attract is unstable; a mirror pair may lie on one set that does as a whole.
+        if len(new) == 1:
+            return False
+        slow = Attractor(spread(self.model, motion, settings), SYMMETRIC, index, slow=True)
+        return self._accept([slow], SMALLEST_RADIUS) or self._accept(new, TINY_RADIUS)
+
+    def _accept(self, new: Sequence[Attractor], least: float) -> bool:
+        """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
+        before = list(self.attractors)
+        self.attractors = [*before, *new]
         self._bound_radii()
-        radius = self._captured(len(before))
+        radius = self._captured(len(before), least)
         if radius == 0.0:
             self.attractors = before
             return False
@@ -195,6 +217,7 @@ class Search:
 
     def _settle(self, start: Instant) -> Returns | None:
         """Return where a state returns to when it has settled, or None if it does not settle."""
+        found = None
         transient, window = self.settings["transient"], self.settings["window"]
         tolerance, resolution = self.motion["period_tolerance"], self.settings["resolution"]
         longest = PATIENCE * window
@@ -213,7 +236,8 @@ class Search:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
-        return None
+        # What has not settled by now drifts slowly along a set; whether the set attracts, pushes will tell.
+        return found if found is not None and found.drift <= LOOSE * resolution else None
 
     def _symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image."""
@@ -227,12 +251,15 @@ class Search:
             radius = min([attractor.radius, *(0.4 * value for value in apart)])
             self.attractors[index] = replace(attractor, radius=radius)
 
-    def _captured(self, index: int) -> float:
-        """Return a radius from which all of a number of random pushes come back, at most the present one; 0 if none."""
+    def _captured(self, index: int, least: float) -> float:
+        """Return a radius from which all of a number of random pushes come back, at most the present one.
+
+        0 if there is none of `least` or more.
+        """
         motion = self.attractors[index].motion
         radius = self.attractors[index].radius
         generator = np.random.default_rng(self.settings["seed"])
-        while radius > SMALLEST_RADIUS:
+        while radius >= least:
             close = self._recovered(motion, radius)
             narrow = [replace(item, radius=min(item.radius, close)) for item in self.attractors]
             left = self.settings["pushes"]
@@ -247,6 +274,22 @@ class Search:
                 return radius
             radius /= 2
         return 0.0
+
+
+def spread(model: Model, motion: SteadyMotion, settings: Mapping[str, Any]) -> SteadyMotion:
+    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
+
+    Near a resonance the motion on a torus is locked, or nearly so, to orbits that attract next to nothing. The torus
+    itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
+    """
+    generator = np.random.default_rng(settings["seed"])
+    clouds = [motion.returns, motion.mirror_returns]
+    for k in generator.integers(len(motion.returns), size=PUSHED):
+        start = pushed(instant_of(motion.returns[k]), PUSHED_BY * settings["resolution"], generator)
+        found = visit(model, start, QUICK * settings["transient"], settings["window"])
+        if found is not None:
+            clouds += [found.returns, found.mirror_returns]
+    return motion.with_returns(np.concatenate(clouds))
 
 
 def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:

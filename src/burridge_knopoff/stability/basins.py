@@ -14,7 +14,7 @@ import xarray
 from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.simulation import starts_stuck
-from burridge_knopoff.stability.attractors import FILLING, SYMMETRIC, UNDETERMINED, Attractor, new_proximity
+from burridge_knopoff.stability.attractors import FILLING, SYMMETRIC, UNDETERMINED, Attractor, new_proximity, spread
 from burridge_knopoff.stability.flow import Instant, Model
 from burridge_knopoff.stability.steady import measure
 from burridge_knopoff.summaries.motion import PERIODIC, SYNCHRONIZED
@@ -52,9 +52,12 @@ def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mappin
         steady = measure(model, start, settings["transient"], window, threshold, motion)
         if steady is None:
             raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
-        if one["symmetry"].item() == SYMMETRIC:
+        slow = bool(one["slow"].item())
+        if slow:
+            steady = spread(model, steady, settings)
+        elif one["symmetry"].item() == SYMMETRIC:
             steady = steady.symmetrized()
-        attractors.append(Attractor(steady, one["symmetry"].item(), int(slot), one["radius"].item()))
+        attractors.append(Attractor(steady, one["symmetry"].item(), int(slot), one["radius"].item(), slow))
     return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
 
 

@@ -65,8 +65,10 @@ def continue_attractors(
         size = PUSH * settings["resolution"]
         return [pushed(attractor.motion.instant(), size, generator) for attractor in search.attractors]
 
+    labels = []
     for k, search in enumerate(searches):
-        search.labels([*(seeds(searches[k - 1]) if k else []), *starts[k]])
+        before = seeds(searches[k - 1]) if k else []
+        labels.append((search.labels([*before, *starts[k]])[len(before) :], list(search.attractors)))
     for k in range(len(searches) - 2, -1, -1):
         searches[k].labels(seeds(searches[k + 1]))
     for k in range(1, len(searches)):
@@ -83,7 +85,10 @@ def continue_attractors(
         upward,
         downward,
         *branches(attractors, upward, downward),
-        [search.known_labels(states) for search, states in zip(searches, starts, strict=True)],
+        [
+            found if search.attractors == then else search.known_labels(states)
+            for search, states, (found, then) in zip(searches, starts, labels, strict=True)
+        ],
         settings["time_limit"],
     )
 

@@ -91,8 +91,12 @@ class SteadyMotion:
 
     def symmetrized(self) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
-        both = np.concatenate([self.returns, self.mirror_returns])
-        return SteadyMotion(**{**self.__dict__, "returns": both, "mirror_returns": both})
+        return self.with_returns(np.concatenate([self.returns, self.mirror_returns]))
+
+    def with_returns(self, returns: np.ndarray) -> SteadyMotion:
+        """Return the motion with these returns, a set that is its own mirror image."""
+        changed = {"returns": returns, "mirror_returns": returns, "spacing": _spacing(returns)}
+        return SteadyMotion(**{**self.__dict__, **changed})
 
     def instant(self) -> Instant:
         """Return the state at the last return."""

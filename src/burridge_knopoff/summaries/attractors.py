@@ -41,6 +41,12 @@ VARIABLES = {
     "stop_rate": _V((*_SLOT, "block"), "f8", "stops of a block in a unit of time"),
     "lyapunov_exponent": _V((*_SLOT, "exponent"), "f8", "Lyapunov exponents, the largest first"),
     "radius": _V(_SLOT, "f8", "distance from its returns within which trajectories are captured"),
+    "slow": _V(
+        _SLOT,
+        "i1",
+        "whether motion on the attractor is too slow to settle",
+        flag("i1", {-1: "none", 0: "no", 1: "yes"}),
+    ),
     "position": _V(
         (*_SLOT, "block"),
         "f8",
@@ -188,6 +194,7 @@ def _features(models: Sequence[Model], found: Continuation, samples: int) -> dic
             motion = here[i].motion
             values["branch"][at], values["side"][at] = found.branch[k][i], found.side[k][i]
             values["symmetry"][at], values["radius"][at] = here[i].symmetry, here[i].radius
+            values["slow"][at] = here[i].slow
             for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "stop_rate"):
                 values[name][at] = getattr(motion, name)
             values["lyapunov_exponent"][at][: len(motion.exponent)] = motion.exponent
@@ -227,11 +234,13 @@ def _reached(models: Sequence[Model], found: Continuation, states: Mapping[str, 
 def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
     """Follow each attractor of the smallest a upward and each of the largest a downward, step by step of the grid."""
     count = len(found.attractors)
-    ends = (0, count - 1)
+    # Where there is no attractor, as at a = 0, no sweep can begin.
+    there = [k for k in range(count) if found.attractors[k]] or [0]
+    ends = (there[0], there[-1])
     sweeps = max(1, *(len(found.attractors[end]) for end in ends))
     values = _empty({"direction": 2, "sweep": sweeps, "a": count})
     for direction, (end, steps, following) in enumerate(
-        zip(ends, (range(count), range(count - 1, -1, -1)), (found.upward, found.downward), strict=True)
+        zip(ends, (range(ends[0], count), range(ends[1], -1, -1)), (found.upward, found.downward), strict=True)
     ):
         order = np.lexsort((-found.side[end], found.branch[end]))
         for sweep, first in enumerate(order):
