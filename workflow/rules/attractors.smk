@@ -37,7 +37,8 @@ rule attractors:
     input:
         expand(rules.attractors_of_law.output, law=LAWS),
     output:
-        f"{SUMMARY}/attractors.nc",
+        dataset=f"{SUMMARY}/attractors.nc",
+        digest=f"{SUMMARY}/attractors.txt",
     log:
         f"{RESULTS}/logs/attractors.log",
     benchmark:

@@ -8,7 +8,7 @@ GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
 
 rule basin_tile:
     input:
-        rules.attractors.output,
+        rules.attractors.output.dataset,
     output:
         TILE,
     log:
@@ -39,7 +39,8 @@ rule basins:
             for tile in range(STUDY.config["basins"]["tiles"])
         ],
     output:
-        f"{SUMMARY}/basins.nc",
+        dataset=f"{SUMMARY}/basins.nc",
+        digest=f"{SUMMARY}/basins.txt",
     log:
         f"{RESULTS}/logs/basins.log",
     benchmark:

@@ -49,7 +49,7 @@ rule figure_friction_laws:
 rule figure_mean_distance:
     input:
         rules.mean_distance.output,
-        rules.attractors.output,
+        rules.attractors.output.dataset,
     output:
         multiext(f"{FIGURES}/mean_distance", ".pdf", ".png"),
     log:
@@ -124,7 +124,7 @@ rule figure_lyapunov:
 
 rule figure_basin_fractions:
     input:
-        rules.attractors.output,
+        rules.attractors.output.dataset,
     output:
         multiext(f"{FIGURES}/basin_fractions", ".pdf", ".png"),
     log:
@@ -139,8 +139,8 @@ rule figure_basin_fractions:
 
 rule figure_basins:
     input:
-        rules.basins.output,
-        rules.attractors.output,
+        rules.basins.output.dataset,
+        rules.attractors.output.dataset,
     output:
         multiext(f"{FIGURES}/basins", ".pdf", ".png"),
     log:

@@ -9,7 +9,8 @@ rule summary:
         f"{SUMMARY}/bifurcation.nc",
         f"{SUMMARY}/lyapunov.nc",
         f"{SUMMARY}/attractors.nc",
-        [f"{SUMMARY}/basins.nc"]
+        f"{SUMMARY}/attractors.txt",
+        [f"{SUMMARY}/basins.nc", f"{SUMMARY}/basins.txt"]
         if any(STUDY.config["basins"][law] for law in LAWS)
         else [],
         f"{SUMMARY}/agreement.nc",

@@ -19,7 +19,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     Both sides of a branch are counted together; bands are 95 % Wilson intervals.
     """
     laws = attractors["law"].values
-    figure, panels = new_figure(PAGE, 5.0, rows=2, columns=len(laws))
+    figure, panels = new_figure(PAGE, 5.2, rows=2, columns=len(laws))
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         one = attractors.sel(law=law)
@@ -29,9 +29,9 @@ def draw(attractors: xarray.Dataset) -> Figure:
     panels[0].set_ylabel("fraction of initial states")
     panels[0].set_ylim(-0.02, 1.02)
     panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
-    for column in range(len(laws)):
-        panels[column].legend(loc="upper right", fontsize=7)
-    panels[len(laws)].legend(loc="lower right")
+    entries = {line.get_label(): line for panel in panels for line in panel.get_lines()}
+    handles = [line for name, line in entries.items() if not str(name).startswith("_")]
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(5, len(handles)))
     titles = [f"{law} law: {what}" for what in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure
@@ -54,7 +54,7 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
-    styles = {"upward": ("black", ">", 3.4), "downward": ("#D55E00", "<", 2.4)}
+    styles = {"upward": ("black", ">", 3.6), "downward": ("#E69F00", "<", 2.2)}
     for direction, (color, marker, size) in styles.items():
         for number in range(attractors.sizes["sweep"]):
             values = attractors["sweep_mean_distance"].sel(direction=direction).isel(sweep=number).values
@@ -66,5 +66,5 @@ def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
                 markeredgewidth=0,
                 linewidth=0.5,
                 color=color,
-                label=f"{direction} from an attractor at the end" if number == 0 else None,
+                label=f"sweeps {direction}" if number == 0 else None,
             )

@@ -145,6 +145,37 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 _HEAD = ("Conventions", "title", "law", "software", "source_fingerprint", "git_commit")
 
 
+def digest(dataset: xarray.Dataset) -> str:
+    """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
+    lines = []
+    a = dataset["a"].values
+    for law in dataset["law"].values:
+        one = dataset.sel(law=law)
+        branch = one["branch"].values
+        for number in np.unique(branch[branch >= 0]):
+            slots = branch == number
+            where = a[slots.any(axis=1)]
+            mean = one["mean_distance"].values[slots]
+            kinds = ", ".join(KINDS[int(kind)] for kind in np.unique(one["kind"].values[slots]))
+            sticks = (one["stop_rate"].values[slots] > 0.0).any(axis=0)
+            never = [str(block) for block, sticking in zip(one["block"].values, sticks, strict=True) if not sticking]
+            share = np.where(slots, one["basin_fraction"].values, 0.0).sum(axis=1)
+            name = "synchronized" if number == 0 else f"branch {number}"
+            note = f"; block {', '.join(never)} never sticks" if never else ""
+            lines.append(
+                f"{law}, {name}: {len(where)} values of a, {where[0]:g} to {where[-1]:g}; <J> {mean.min():.4f} to "
+                f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g}){note}"
+            )
+        undetermined = one["undetermined_count"].values
+        total = int(undetermined[branch.max(axis=1) >= 0].sum())
+        empty = a[branch.max(axis=1) < 0]
+        lines.append(
+            f"{law}: {total} of {int(dataset.attrs['samples']) * (len(a) - len(empty))} sampled states are undetermined"
+            + (f"; no attractor at a = {', '.join(f'{value:g}' for value in empty)}" if len(empty) else "")
+        )
+    return "\n".join(lines) + "\n"
+
+
 def _curves(part: xarray.Dataset) -> dict[int, dict[int, BranchPoint]]:
     """Return the branches of one law in the form that `same_numbers` compares."""
     curves: dict[int, dict[int, BranchPoint]] = {}

@@ -98,6 +98,27 @@ def merge(maps: Sequence[tuple[str, float, Sequence[xarray.Dataset]]], config: M
     return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes)
 
 
+def digest(dataset: xarray.Dataset) -> str:
+    """Return, in a line for each map, the shares of the basins and the uncertainty exponent of their boundary."""
+    lines = []
+    for number in range(dataset.sizes["map"]):
+        one = dataset.isel(map=number)
+        pairs, counts = np.unique(
+            np.stack([one["branch"].values.ravel(), one["side"].values.ravel()]), axis=1, return_counts=True
+        )
+        shares = []
+        for (branch, side), count in zip(pairs.T, counts, strict=True):
+            name = {-1: "undetermined", 0: "synchronized"}.get(int(branch), f"branch {branch}")
+            name += {1: " (+)", -1: " (-)", 0: ""}[int(side)]
+            shares.append(f"{name} {100.0 * count / one['branch'].size:.2f} %")
+        alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
+        lines.append(
+            f"{LAWS[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; "
+            f"uncertainty exponent {alpha:.3f} +- {error:.3f}; decided at tau = {one['decision_time'].values.mean():.0f} in the mean"
+        )
+    return "\n".join(lines) + "\n"
+
+
 def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:
     values = {"first_position": first, "last_position": last}
     return {name: (name, values[name], {"long_name": text, "units": "1"}) for name, text in COORDINATES.items()}
