@@ -9,9 +9,10 @@ from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.attractors import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, Search, label
+from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.continuation import branches, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
+from burridge_knopoff.stability.labels import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, label
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.steady import lies_on, measure, visit
 from tests.summaries.test_agreement import MOTION

@@ -12,8 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.kernel.proximity import Proximity
-from burridge_knopoff.stability.flow import Instant, Model, new_solver
+from burridge_knopoff.stability.flow import Instant, Model
+from burridge_knopoff.stability.labels import (
+    ASYMMETRIC,
+    SYMMETRIC,
+    SYNCHRONIZED,
+    UNDETERMINED,
+    Attractor,
+    label,
+    pushed,
+)
 from burridge_knopoff.stability.steady import (
     SPACINGS,
     Returns,
@@ -24,8 +32,6 @@ from burridge_knopoff.stability.steady import (
     measure,
     visit,
 )
-
-UNDETERMINED = -1
 
 # Longest transient, in those of the config, for a motion that is still settling.
 PATIENCE = 16
@@ -49,10 +55,12 @@ PUSHED_BY = 5.0
 # States, the first of each sample, whose labels are verified.
 VERIFIED = 60
 
+# Rounds of labelling, each after something new was found, before the labels are left as they are.
+ROUNDS = 20
+
 # Time, in transients, in which most trajectories have decided.
 QUICK = 0.3
 
-LARGEST_RADIUS = 0.02
 SMALLEST_RADIUS = 1e-5
 
 # Radius below which a motion is no attractor at all. On some orbits a block just misses to stick, or to start: they
@@ -64,29 +72,6 @@ RECOVERY = 10.0
 
 # Pushed trajectories that are followed at once: one that does not come back spares the others.
 GROUP = 4
-
-# Successive returns near an attractor after which a trajectory counts as captured.
-CLOSE_RETURNS = 8
-
-SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = 0, 1, 2
-SYMMETRIES = {SYNCHRONIZED: "synchronized", SYMMETRIC: "symmetric", ASYMMETRIC: "asymmetric"}
-
-
-@dataclass(frozen=True, eq=False)
-class Attractor:
-    """A settled motion with what tells it from others.
-
-    symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric
-    partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set
-    radius : distance from its returns within which trajectories are captured
-    slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
-    """
-
-    motion: SteadyMotion
-    symmetry: int
-    partner: int
-    radius: float = LARGEST_RADIUS
-    slow: bool = False
 
 
 @dataclass
@@ -118,11 +103,12 @@ class Search:
             undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
             if not self._discover([starts[k] for k in undecided]):
                 break
-        while True:
+        for _ in range(ROUNDS):
             labels = self.known_labels(starts)
             more = self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
             if not more and self._verified(starts[:VERIFIED], labels[:VERIFIED]):
-                return labels
+                break
+        return labels
 
     def _verified(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
         """Follow labelled states on until they are much closer to their attractors, and tell whether they come there.
@@ -290,42 +276,3 @@ def spread(model: Model, motion: SteadyMotion, settings: Mapping[str, Any]) -> S
         if found is not None:
             clouds += [found.returns, found.mirror_returns]
     return motion.with_returns(np.concatenate(clouds))
-
-
-def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:
-    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random."""
-    blocks = len(start.position)
-    change = generator.uniform(-size, size, 2 * blocks)
-    velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
-    return Instant(start.position + change[:blocks], velocity, start.stuck)
-
-
-def label(
-    model: Model, attractors: Sequence[Attractor], starts: Sequence[Instant], time_limit: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return which attractor each state reaches and when that was certain.
-
-    −1 where no attractor is reached by the time limit.
-    """
-    labels = np.full(len(starts), UNDETERMINED, dtype=np.intc)
-    times = np.zeros(len(starts))
-    if not len(attractors) or not len(starts):
-        return labels, times
-    proximity = new_proximity(model, attractors, time_limit)
-    proximity.label(
-        np.array([start.position for start in starts]),
-        np.array([start.velocity for start in starts]),
-        np.array([start.stuck for start in starts]).astype(np.intc),
-        labels,
-        times,
-    )
-    return labels, times
-
-
-def new_proximity(model: Model, attractors: Sequence[Attractor], time_limit: float) -> Proximity:
-    """Return the kernel's labelling of trajectories for these attractors."""
-    solver = new_solver(model)
-    solver.halting_block = 0
-    solver.end = time_limit
-    clouds = [attractor.motion.returns for attractor in attractors]
-    return Proximity(solver, clouds, [attractor.radius for attractor in attractors], CLOSE_RETURNS)

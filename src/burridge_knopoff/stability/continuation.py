@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from burridge_knopoff.stability.attractors import SYNCHRONIZED, UNDETERMINED, Attractor, Search, pushed
+from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.flow import Instant, Model
+from burridge_knopoff.stability.labels import SYNCHRONIZED, UNDETERMINED, Attractor, pushed
 
 #: ⟨J⟩ and which blocks stick, on a branch at one a; and {branch: {position of a in the grid: that}}.
 BranchPoint = tuple[float, tuple[bool, ...]]

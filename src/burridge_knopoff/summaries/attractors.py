@@ -14,9 +14,9 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
-from burridge_knopoff.stability.attractors import SYMMETRIES, UNDETERMINED, label
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
+from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.steady import EXPONENTS
 from burridge_knopoff.summaries.motion import KINDS

@@ -11,8 +11,8 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.stability.attractors import UNDETERMINED
 from burridge_knopoff.stability.basins import known_attractors, label_states, pixel_centres, plane
+from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.uncertainty import SEPARATIONS, uncertain_fraction, uncertainty_exponent
 
 _PLANE = ("last_position", "first_position")
@@ -114,7 +114,8 @@ def digest(dataset: xarray.Dataset) -> str:
         alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
         lines.append(
             f"{LAWS[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; "
-            f"uncertainty exponent {alpha:.3f} +- {error:.3f}; decided at tau = {one['decision_time'].values.mean():.0f} in the mean"
+            f"uncertainty exponent {alpha:.3f} +- {error:.3f}; "
+            f"decided at tau = {one['decision_time'].values.mean():.0f} in the mean"
         )
     return "\n".join(lines) + "\n"
 

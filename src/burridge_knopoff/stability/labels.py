@@ -1,0 +1,78 @@
+"""Attractors as sets of returns with a radius, and which of them a trajectory reaches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.kernel.proximity import Proximity
+from burridge_knopoff.stability.flow import Instant, Model, new_solver
+from burridge_knopoff.stability.steady import SteadyMotion
+
+UNDETERMINED = -1
+
+LARGEST_RADIUS = 0.02
+
+# Successive returns near an attractor after which a trajectory counts as captured.
+CLOSE_RETURNS = 8
+
+SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = 0, 1, 2
+SYMMETRIES = {SYNCHRONIZED: "synchronized", SYMMETRIC: "symmetric", ASYMMETRIC: "asymmetric"}
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """A settled motion with what tells it from others.
+
+    symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric
+    partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set
+    radius : distance from its returns within which trajectories are captured
+    slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
+    """
+
+    motion: SteadyMotion
+    symmetry: int
+    partner: int
+    radius: float = LARGEST_RADIUS
+    slow: bool = False
+
+
+def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:
+    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random."""
+    blocks = len(start.position)
+    change = generator.uniform(-size, size, 2 * blocks)
+    velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
+    return Instant(start.position + change[:blocks], velocity, start.stuck)
+
+
+def label(
+    model: Model, attractors: Sequence[Attractor], starts: Sequence[Instant], time_limit: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which attractor each state reaches and when that was certain.
+
+    −1 where no attractor is reached by the time limit.
+    """
+    labels = np.full(len(starts), UNDETERMINED, dtype=np.intc)
+    times = np.zeros(len(starts))
+    if not len(attractors) or not len(starts):
+        return labels, times
+    proximity = new_proximity(model, attractors, time_limit)
+    proximity.label(
+        np.array([start.position for start in starts]),
+        np.array([start.velocity for start in starts]),
+        np.array([start.stuck for start in starts]).astype(np.intc),
+        labels,
+        times,
+    )
+    return labels, times
+
+
+def new_proximity(model: Model, attractors: Sequence[Attractor], time_limit: float) -> Proximity:
+    """Return the kernel's labelling of trajectories for these attractors."""
+    solver = new_solver(model)
+    solver.halting_block = 0
+    solver.end = time_limit
+    clouds = [attractor.motion.returns for attractor in attractors]
+    return Proximity(solver, clouds, [attractor.radius for attractor in attractors], CLOSE_RETURNS)
