@@ -1,5 +1,5 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
-# `make benchmark`: the tables of docs/performance.md (about ten minutes).
+# `make benchmark`: the tables of docs/performance.md (about half an hour).
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -50,8 +50,11 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/peers.py
 	.venv-benchmark/bin/python benchmarks/chain_length.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
+	.venv-benchmark/bin/python benchmarks/basins.py
 	.venv-benchmark/bin/python benchmarks/point_job.py
 	.venv-benchmark/bin/python benchmarks/study.py
+	.venv-benchmark/bin/python benchmarks/stages.py
+	.venv-benchmark/bin/python benchmarks/stages.py --target chains
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:

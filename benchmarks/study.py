@@ -1,4 +1,4 @@
-"""Wall time of the whole study against the same workflow with point jobs that only import what they need.
+"""Wall time of the points and their summaries against the same workflow with point jobs that only import.
 
 The baseline is a copy of the workflow with one line changed: instead of `bk simulate`, a point job imports NumPy and
 netCDF4 and links to the point file made by the first run of the study. Jobs, dependencies, scheduler and all other
@@ -25,6 +25,8 @@ from process import AS_TYPED, IMPORTS, ONE_THREAD
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 RATIO_LIMIT = 1.5
+#: All that the default study makes from its point files, but figures.
+TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
 POINT_RULE = "workflow/rules/simulate.smk"
 POINT_COMMAND = '"bk simulate {params.options} --out {output} 2> {log}"'
 FINISHED = re.compile(r"(\d+) of \1 steps \(100%\) done")
@@ -54,13 +56,10 @@ def children_cpu() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def run_study(
-    snakefile: Path, folder: Path, cores: int, config: Path | None, environment: dict[str, str]
-) -> tuple[float, float, int]:
+def run_study(snakefile: Path, folder: Path, cores: int, environment: dict[str, str]) -> tuple[float, float, int]:
     """Run a workflow in an empty folder; return its wall time and CPU time in seconds and its number of jobs."""
     command = [str(Path(sys.executable).parent / "snakemake"), f"-c{cores}", "-s", str(snakefile), "-d", str(folder)]
-    if config is not None:
-        command += ["--configfile", str(config.resolve())]
+    command += TARGETS
     folder.mkdir()
     cpu = -children_cpu()
     begin = time.perf_counter()
@@ -81,7 +80,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("--pairs", type=int, default=2, help="pairs of runs (default: %(default)s)")
     parser.add_argument("--cores", type=int, default=2, help="cores of Snakemake (default: %(default)s)")
-    parser.add_argument("--configfile", type=Path, help="config of the study (default: that of the Snakefile)")
     parser.add_argument("--one-thread", action="store_true", help="no threads of the linear-algebra library")
     options = parser.parse_args()
     environment = ONE_THREAD if options.one_thread else AS_TYPED
@@ -95,7 +93,7 @@ def main() -> None:
                 ("imports", baseline, baselines),
             ):
                 target = folder / f"{name}_{number}"
-                runs.append(run_study(snakefile, target, options.cores, options.configfile, environment))
+                runs.append(run_study(snakefile, target, options.cores, environment))
                 print(f"{name} {number + 1}: {runs[-1][0]:.1f} s, CPU {runs[-1][1]:.1f} s", file=sys.stderr)
             if studies[-1][2] != baselines[-1][2]:
                 sys.exit(f"not the same workflow: {studies[-1][2]} and {baselines[-1][2]} jobs")

@@ -122,3 +122,14 @@ def test_undetermined_pixels_and_single_basins_are_left_out():
     labels[:] = -1
     assert np.isnan(uncertain_fraction(labels)).all()
     assert np.isnan(uncertainty_exponent(np.eye(8, dtype=int))).all()
+
+
+def test_digests_say_what_the_data_say(known):
+    lines = attractors.digest(known).splitlines()
+    assert lines[0].startswith("linearized, synchronized: at 1 of 2 values of a, 0.08 to 0.08; <J> 0.0000 to 0.0000")
+    assert lines[-1].startswith("linearized: 0 of 50 sampled states are undetermined")
+    assert len(lines) == 1 + len({int(n) for n in np.unique(known["branch"]) if n >= 0})
+    line = basins.digest(whole(known, 1, 1)).strip()
+    assert line.startswith("linearized, a = 0.08: ")
+    shares = [float(part.split()[-2]) for part in line.split(": ")[1].split(";")[0].split(", ")]
+    assert sum(shares) == pytest.approx(100.0, abs=0.05)

@@ -163,7 +163,8 @@ def digest(dataset: xarray.Dataset) -> str:
             name = "synchronized" if number == 0 else f"branch {number}"
             note = f"; block {', '.join(never)} never sticks" if never else ""
             lines.append(
-                f"{law}, {name}: {len(where)} values of a, {where[0]:g} to {where[-1]:g}; <J> {mean.min():.4f} to "
+                f"{law}, {name}: at {len(where)} of {len(a)} values of a, {where[0]:g} to {where[-1]:g}; "
+                f"<J> {mean.min():.4f} to "
                 f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g}){note}"
             )
         undetermined = one["undetermined_count"].values
