@@ -10,7 +10,7 @@ UNDETERMINED_COLOR = "#FFFFFF"
 OTHER_COLOR = "#999999"
 
 # The synchronized attractor has the first; the others go to the branches that exist at the most values of a.
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#999933")
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
