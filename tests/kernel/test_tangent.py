@@ -1,4 +1,4 @@
-"""The tangent map against finite differences of the flow, SciPy, matrix exponentials, and what it must do by itself."""
+"""The tangent map against finite differences of the flow through every kind of event, and what it must do by itself."""
 
 from itertools import pairwise
 
@@ -6,47 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
-from scipy.linalg import block_diag, expm
+from scipy.linalg import block_diag
 
 from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.kernel.events import EventLog
-from burridge_knopoff.kernel.exponents import Exponents
-from burridge_knopoff.kernel.observe import Observer
-from burridge_knopoff.simulation import RUNNING, SERIES_ORDER, STEP_LIMIT, new_state
-from burridge_knopoff.stability.flow import NEVER, Instant, Model, begin, instant, new_solver
+from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
+from tests.kernel.flows import COMPLETED, HALTED, carry, directions, to_end
 
 LAWS = ("linearized", "nonlinear")
 CONTACTS = ("one_sided", "symmetric")
-COMPLETED, HALTED = 0, -2
 STEP = 1e-4
-
-
-def to_end(solver):
-    while (code := solver.run()) == RUNNING:
-        pass
-    return code
-
-
-def carry(model, start, end, perturbations=None):
-    """Return the solver at time `end` and the events on the way: a list of (time, block from 1, 0 stop | 1 start)."""
-    blocks = model.chain.blocks
-    log = EventLog(blocks, 0.0, True, 1000 * blocks)
-    solver = new_solver(model, log, perturbations)
-    solver.end = end
-    solver.begin(start.position, start.velocity, start.stuck)
-    assert to_end(solver) == COMPLETED
-    return solver, [
-        (time, int(row[0]), int(row[1])) for time, row in zip(log.events.times(), log.events.values(), strict=True)
-    ]
-
-
-def directions(start):
-    """Return all perturbations that the state allows as columns: a stuck block has no velocity to perturb."""
-    return np.diag(np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
 
 
 def tangent_map(model, start, end):
@@ -173,133 +143,6 @@ def test_mirror_blocks_that_stop_and_start_together(law, contact):
     stops = [time for time, block, kind in events if kind == 0 and block != 2]
     assert len(stops) >= 4
     assert stops[::2] == stops[1::2]
-
-
-def variational(model, start, end):
-    """Integrate motion and perturbations of an event-free piece with SciPy."""
-    blocks = model.chain.blocks
-    stiffness, a, v = model.chain.stiffness, model.friction.a, model.v
-    sliding = float(model.friction(v))
-    slips = ~start.stuck
-    sign = np.where(start.velocity < 0.0, -1.0, 1.0)
-
-    def slope(_, y):
-        position, velocity = y[:blocks], y[blocks : 2 * blocks]
-        matrix = y[2 * blocks :].reshape(2 * blocks, -1)
-        weakening = 1.0 / (1.0 + a * sign * velocity)
-        acceleration = slips * (sliding - stiffness @ position - sign * weakening)
-        change = slips[:, None] * (-stiffness @ matrix[:blocks] + (a * weakening**2)[:, None] * matrix[blocks:])
-        return np.concatenate([velocity - v, acceleration, np.vstack([matrix[blocks:], change]).ravel()])
-
-    begin_with = np.concatenate([start.vector(), directions(start).ravel()])
-    run = solve_ivp(slope, (0.0, end), begin_with, "DOP853", rtol=1e-13, atol=1e-18)
-    return run.y[2 * blocks :, -1].reshape(2 * blocks, -1)
-
-
-@pytest.mark.parametrize(
-    ("amplitude", "end"),
-    [
-        (0.05, 1e-3),
-        (0.05, 0.4),
-        (1e-3, 2.9),
-        (1e-3, 9.0),
-        (1e-6, 9.0),
-        (1e-10, 9.0),
-        (1e-14, 2.9),
-        (0.0, 2.9),
-        (0.0, 9.0),
-    ],
-)
-@pytest.mark.parametrize("blocks", [2, 3, 6])
-def test_nonlinear_pieces_against_scipy(blocks, amplitude, end):
-    """However small the motion: the perturbations obey equations whose terms are of order 1.
-
-    An absolute 1e-18 lets SciPy follow the smallest of these motions; its error is 1e-13 of the map per unit of time.
-    """
-    model = Model(Chain(blocks), Friction("nonlinear", 0.3))
-    wave = np.sin(1.0 + 2.0 * np.arange(2 * blocks))
-    start = Instant(amplitude * wave[:blocks], 0.1 + amplitude * wave[blocks:], np.zeros(blocks, dtype=bool))
-    solver, events = carry(model, start, end, directions(start))
-    assert events == []
-    expected = variational(model, start, end)
-    assert np.abs(solver.tangent.matrix() - expected).max() < 1e-11 * np.abs(expected).max()
-
-
-def test_a_nonlinear_piece_beside_stuck_blocks_and_backward_against_scipy():
-    model = Model(Chain(5), Friction("nonlinear", 0.9), contact="symmetric")
-    start = Instant(
-        np.array([0.1, 0.3, 0.0, 0.3, -0.1]),
-        np.array([0.8, 0.0, 0.9, 0.0, -0.7]),
-        np.array([False, True, False, True, False]),
-    )
-    solver, events = carry(model, start, 0.2, directions(start))
-    assert events == []
-    assert np.abs(solver.tangent.matrix() - variational(model, start, 0.2)).max() < 1e-12
-
-
-@pytest.mark.parametrize("solver_name", ["map", "series"])
-@pytest.mark.parametrize(
-    ("stuck", "end", "amplitude"),
-    [
-        ((), 25.0, 0.0),
-        ((), 25.0, 1e-7),
-        ((), 0.4, 0.05),
-        ((), 1e-9, 0.05),
-        ((1,), 0.4, 0.05),
-        ((0, 2), 0.4, 0.05),
-        ((2, 3), 1e-9, 0.05),
-        ((2, 3), 0.4, 0.05),
-    ],
-)
-def test_linearized_pieces_against_the_matrix_exponential(solver_name, stuck, end, amplitude):
-    blocks, a = 5, 0.3
-    model = Model(Chain(blocks), Friction("linearized", a))
-    wave = np.sin(1.0 + 2.0 * np.arange(2 * blocks))
-    held = np.isin(np.arange(blocks), stuck)
-    position = amplitude * wave[:blocks] + 0.3 * held
-    start = Instant(position, np.where(held, 0.0, 0.1 + amplitude * wave[blocks:]), held)
-    solver = closed_form_or_series(model, solver_name, directions(start))
-    solver.end = end
-    solver.begin(start.position, start.velocity, start.stuck)
-    assert to_end(solver) == COMPLETED
-    assert solver.log.count == 0
-    slips = np.diag(1.0 - held)
-    generator = np.block([[np.zeros((blocks, blocks)), slips], [-slips @ model.chain.stiffness, a * slips]])
-    expected = expm(generator * end) @ directions(start)
-    assert np.abs(solver.tangent.matrix() - expected).max() < 1e-12 * np.abs(expected).max()
-
-
-def closed_form_or_series(model, solver_name, perturbations):
-    """Return a solver for the linearized law that takes the motion from the normal modes or from the series."""
-    blocks = model.chain.blocks
-    exponents = Exponents(blocks, perturbations.shape[1], SERIES_ORDER, NEVER, [NEVER, NEVER])
-    exponents.carry(perturbations)
-    solver = EventDriven(
-        new_state(model.chain, model.friction, model.v, model.contact),
-        EventLog(blocks, 0.0, True, 1000 * blocks),
-        Observer(blocks, SERIES_ORDER, [NEVER, NEVER], [], []),
-        exponents,
-        SERIES_ORDER,
-        solver_name == "map",
-        STEP_LIMIT,
-    )
-    solver.observing = False
-    return solver
-
-
-@pytest.mark.parametrize("contact", CONTACTS)
-def test_map_and_series_carry_the_same_perturbations(contact):
-    model = Model(Chain(3), Friction("linearized", 0.12), contact=contact)
-    start = begin(model, PAPER_STATES["plus"])
-    matrices = []
-    for solver_name in ("map", "series"):
-        solver = closed_form_or_series(model, solver_name, directions(start))
-        solver.end = 60.0
-        solver.begin(start.position, start.velocity, start.stuck)
-        assert to_end(solver) == COMPLETED
-        assert solver.log.count > 40
-        matrices.append(solver.tangent.matrix())
-    assert np.allclose(*matrices, rtol=0.0, atol=1e-10 * np.abs(matrices[0]).max())
 
 
 @given(

@@ -15,7 +15,7 @@ from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, label
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.steady import lies_on, measure, visit
-from tests.summaries.test_agreement import MOTION
+from tests.sections import MOTION
 
 SETTINGS = {
     "transient": 2000.0,

@@ -7,8 +7,8 @@ from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.stability.uncertainty import uncertain_fraction, uncertainty_exponent
 from burridge_knopoff.summaries import attractors, basins
+from tests.sections import MOTION
 from tests.stability.test_attractors import SETTINGS
-from tests.summaries.test_agreement import MOTION
 
 CONFIG = {
     "v": 0.1,

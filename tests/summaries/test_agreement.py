@@ -9,19 +9,11 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.summaries import agreement, lyapunov, mean_distance
 from burridge_knopoff.summaries.points import Grid, PointError
-
-SETTINGS = {"relative_tolerance": 0.1, "standard_errors": 3.0}
-MOTION = {
-    "zero_exponent": 5e-4,
-    "chaotic_exponent": 1e-3,
-    "standard_errors": 3.0,
-    "period_tolerance": 1e-6,
-    "longest_period": 60,
-}
+from tests.sections import AGREEMENT, MOTION
 
 
 def compare(grid):
-    return agreement.summarize(grid, lyapunov.summarize(grid, 3, 1e-6, MOTION), 1e-6, SETTINGS)
+    return agreement.summarize(grid, lyapunov.summarize(grid, 3, 1e-6, MOTION), 1e-6, AGREEMENT)
 
 
 def grid_of(folder, change=lambda law, trajectory: trajectory):

@@ -8,16 +8,9 @@ from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.summaries import chains, two_blocks
+from tests.sections import AGREEMENT, MOTION
 
 SAMPLE = Sample(samples=5, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=1)
-AGREEMENT = {"relative_tolerance": 0.1, "standard_errors": 3.0}
-MOTION = {
-    "zero_exponent": 5e-4,
-    "chaotic_exponent": 1e-3,
-    "standard_errors": 3.0,
-    "period_tolerance": 1e-6,
-    "longest_period": 60,
-}
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ from burridge_knopoff.summaries.motion import (
     motion_kind,
     section_period,
 )
+from tests.sections import MOTION
 
 
 @pytest.mark.parametrize("period", [1, 2, 3, 7, 40])
@@ -36,9 +37,6 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
     assert section_period(np.tile(np.arange(70.0), 20), 1e-6, 60) == 0
     # A slow drift is no period.
     assert section_period(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
-
-
-MOTION = {"zero_exponent": 5e-4, "chaotic_exponent": 1e-3, "standard_errors": 3.0}
 
 
 @pytest.mark.parametrize(

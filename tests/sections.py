@@ -1,0 +1,10 @@
+"""Sections of a config that many tests use."""
+
+AGREEMENT = {"relative_tolerance": 0.1, "standard_errors": 3.0}
+MOTION = {
+    "zero_exponent": 5e-4,
+    "chaotic_exponent": 1e-3,
+    "standard_errors": 3.0,
+    "period_tolerance": 1e-6,
+    "longest_period": 60,
+}
