@@ -26,7 +26,7 @@ rule attractors_of_law:
         grid=list(STUDY.grid.values()),
         initial=STUDY.config["initial"],
         config={key: STUDY.config[key] for key in ATTRACTOR_KEYS},
-        sources=source_fingerprint(STABILITY_SOURCES),
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/attractors.py")),
     message:
         "attractors of the {wildcards.law} law along a"
     script:

@@ -1,6 +1,14 @@
 # Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
 
-BASIN_KEYS = (*ATTRACTOR_KEYS, "initial", "basins")
+# Neither the list of maps nor the number of threads changes a map.
+BASIN_CONFIG = {
+    **{key: STUDY.config[key] for key in (*ATTRACTOR_KEYS, "initial")},
+    "basins": {
+        key: value
+        for key, value in STUDY.config["basins"].items()
+        if key not in (*LAWS, "threads")
+    },
+}
 BASIN_MAPS = [(law, a) for law in LAWS for a in STUDY.config["basins"][law]]
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
@@ -23,8 +31,8 @@ rule basin_tile:
         runtime=240,
     params:
         a=lambda wildcards: STUDY.grid[wildcards.a],
-        config={key: STUDY.config[key] for key in BASIN_KEYS},
-        sources=source_fingerprint(STABILITY_SOURCES),
+        config=BASIN_CONFIG,
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/basins.py")),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
     script:
@@ -50,7 +58,7 @@ rule basins:
         runtime=10,
     params:
         maps=BASIN_MAPS,
-        config={key: STUDY.config[key] for key in BASIN_KEYS},
+        config=BASIN_CONFIG,
     message:
         "maps of basins of attraction"
     script:

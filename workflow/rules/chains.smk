@@ -34,7 +34,7 @@ rule watch_chain:
         },
         model=CHAIN_MODEL,
         threshold=STUDY.config["synchronization_threshold"],
-        sources=source_fingerprint(STABILITY_SOURCES),
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/chains.py")),
     message:
         "mirror synchrony of sampled states, {wildcards.blocks} blocks"
     script:
@@ -79,7 +79,7 @@ rule two_blocks:
         threshold=STUDY.config["synchronization_threshold"],
         motion=STUDY.config["motion"],
         agreement=STUDY.config["agreement"],
-        sources=source_fingerprint(STABILITY_SOURCES),
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/two_blocks.py")),
     message:
         "two blocks: linearized against nonlinear law"
     script:

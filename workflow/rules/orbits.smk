@@ -18,7 +18,7 @@ rule orbits:
             "contact": STUDY.config["contact"],
         },
         grid=list(STUDY.grid.values()),
-        sources=source_fingerprint(STABILITY_SOURCES),
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/orbits.py")),
     message:
         "the synchronized orbit and where it is lost"
     script:

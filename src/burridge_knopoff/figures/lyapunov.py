@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.style import PAGE, cells, label_panels, new_figure, styled
-from burridge_knopoff.summaries.motion import KINDS
+from burridge_knopoff.stability.motion import KINDS
 
 #: A colour for each kind of motion.
 KIND_COLORS = {-1: "#FFFFFF", 0: "#0072B2", 1: "#56B4E9", 2: "#E69F00", 3: "#D55E00"}

@@ -17,8 +17,8 @@ from burridge_knopoff.simulation import starts_stuck
 from burridge_knopoff.stability.attractors import FILLING, spread
 from burridge_knopoff.stability.flow import Instant, Model
 from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, new_proximity
+from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
 from burridge_knopoff.stability.steady import measure
-from burridge_knopoff.summaries.motion import PERIODIC, SYNCHRONIZED
 
 CLOSED = (SYNCHRONIZED, PERIODIC)
 

@@ -14,7 +14,7 @@ from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, run
 from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, new_solver
-from burridge_knopoff.summaries.motion import PERIODIC, QUASIPERIODIC, motion_kind, section_period
+from burridge_knopoff.stability.motion import PERIODIC, QUASIPERIODIC, motion_kind, section_period
 
 # Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
 SHARE = 0.95
@@ -71,7 +71,7 @@ class SteadyMotion:
 
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
     stop_rate : stops of each block in a unit of time, shape (blocks,)
-    kind, exponent : kind of motion (summaries.motion) and Lyapunov exponents, the largest first
+    kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
     """
 
     returns: np.ndarray

@@ -13,8 +13,8 @@ from scipy.stats import wasserstein_distance
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import LAWS
+from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _POINT = ("law", "initial", "a")

@@ -17,9 +17,9 @@ from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
+from burridge_knopoff.stability.motion import KINDS
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.steady import EXPONENTS
-from burridge_knopoff.summaries.motion import KINDS
 
 #: Difference of ⟨J⟩ up to which branches of two laws may be the same at one a.
 SAME_BRANCH = 0.01

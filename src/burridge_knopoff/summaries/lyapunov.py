@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.simulation import STATUS
-from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED, motion_kind, section_period, zero_exponents
+from burridge_knopoff.stability.motion import KINDS, UNDETERMINED, motion_kind, section_period, zero_exponents
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _AXES = ("law", "initial", "a")

@@ -18,10 +18,10 @@ from burridge_knopoff.friction import LAWS, Friction
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import Trajectory, run
+from burridge_knopoff.stability.motion import KINDS, UNDETERMINED, motion_kind, section_period
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.summaries.agreement import judge
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.motion import KINDS, UNDETERMINED, motion_kind, section_period
 
 BLOCKS = 2
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.summaries.motion import (
+from burridge_knopoff.stability.motion import (
     CHAOTIC,
     PERIODIC,
     QUASIPERIODIC,
