@@ -121,6 +121,7 @@ BAD = [
     ({"basins": {"nonlinear": [0.1, 0.1]}}, ["basins.nonlinear: [0.1, 0.1]"]),
     ({"basins": {"pixels": 0}}, ["basins.pixels: 0"]),
     ({"basins": {"pixels": 4, "tiles": 5}}, ["basins.tiles: 5", "4 rows"]),
+    ({"basins": {"pairs": -1}}, ["basins.pairs: -1"]),
     ({"basins": {"threads": 0}}, ["basins.threads: 0"]),
     ({"basins": {"initial": "middle"}}, ["basins.initial: 'middle'", "minus | plus"]),
     ({"basins": {"last_position": [0, 0]}}, ["basins.last_position: [0, 0]", "low < high"]),

@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import InitialState
+from burridge_knopoff.initial import PAPER_STATES, InitialState
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.continuation import branches, same_numbers
@@ -104,10 +104,36 @@ def test_pushes_from_within_the_radius_come_back(search):
 
 def test_a_motion_lies_on_its_own_attractor_only(search):
     for index, attractor in enumerate(search.attractors):
-        again = visit(search.model, attractor.motion.instant(), 500.0, 1000.0).returns
+        again = visit(search.model, attractor.motion.instant(), 500.0, 1000.0)
         others = [other.motion for k, other in enumerate(search.attractors) if k not in (index, attractor.partner)]
-        assert lies_on(again, attractor.motion, 1e-3)
-        assert not any(lies_on(again, other, 1e-3) for other in others)
+        assert lies_on(again, attractor.motion, 1e-3, 1e-6)
+        assert not any(lies_on(again, other, 1e-3, 1e-6) for other in others)
+
+
+def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
+    """Nonlinear law, a = 0.2075: `minus` ends on an orbit of period 11 returns, most neighbours in chaos around it."""
+    found = Search(model("nonlinear", 0.2075), {**SETTINGS, "transient": 3000.0, "window": 3000.0}, 1e-6, MOTION)
+    starts = [begin(found.model, state) for state in (*states(30), PAPER_STATES["minus"], PAPER_STATES["plus"])]
+    labels = found.labels(starts)
+    means = [attractor.motion.mean_distance for attractor in found.attractors]
+    for initial, index in (("minus", labels[-2]), ("plus", labels[-1])):
+        run = simulate("nonlinear", 0.2075, initial, transient=20000.0, window=4000.0, lyapunov_exponents=0)
+        expected = means[index]
+        assert run.mean_distance == pytest.approx(expected, abs=max(1e-3, 4 * run.mean_distance_error))
+    assert labels[-2] != labels[-1]
+
+
+@pytest.mark.parametrize("v", [0.001, 5.0])
+def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
+    """All positions and velocities are in proportion to v."""
+    reference = Search(model(a=0.05), SETTINGS, 1e-6, MOTION)
+    scaled = Search(Model(Chain(3), Friction("linearized", 0.05), v), SETTINGS, 1e-6 * v / 0.1, MOTION)
+    starts = [begin(reference.model, state) for state in states(25)]
+    factor = v / 0.1
+    others = [Instant(factor * start.position, factor * start.velocity, start.stuck) for start in starts]
+    first, second = reference.labels(starts), scaled.labels(others)
+    assert len(reference.attractors) == len(scaled.attractors) >= 2
+    assert (first == second).mean() > 0.95
 
 
 def test_nothing_is_reached_where_nothing_ever_stops():

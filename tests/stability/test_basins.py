@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.uncertainty import uncertain_fraction, uncertainty_exponent
+from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 from burridge_knopoff.summaries import attractors, basins
 from tests.sections import MOTION
 from tests.stability.test_attractors import SETTINGS
@@ -25,6 +25,7 @@ CONFIG = {
         "linearized": [0.08],
         "nonlinear": [],
         "pixels": 16,
+        "pairs": 300,
         "initial": "minus",
         "first_position": [-1.5, 1.5],
         "last_position": [-1.5, 1.5],
@@ -42,7 +43,8 @@ def known():
 def whole(known, tiles, threads):
     config = {**CONFIG, "basins": {**CONFIG["basins"], "tiles": tiles, "threads": threads}}
     parts = [basins.tile(known, "linearized", 0.08, number, config, threads) for number in range(tiles)]
-    return basins.merge([("linearized", 0.08, parts)], config)
+    near = basins.pairs(known, "linearized", 0.08, config, threads)
+    return basins.merge([("linearized", 0.08, parts, near)], config)
 
 
 def test_any_number_of_threads_and_tiles_gives_the_same_labels(known):
@@ -91,37 +93,45 @@ def test_runs_of_the_paper_end_on_the_branch_that_is_told(known):
                 assert run.mean_distance == pytest.approx(mean, abs=2e-4), (contact, start, initial)
 
 
+def exponent_of(label, count):
+    """Return the exponent of a map whose labels are a function of a point, from pairs in the unit square."""
+    points, partners = sample_pairs((0.0, 1.0), (0.0, 1.0), count, 4)
+    known = label(partners.reshape(-1, 2)).reshape(len(SEPARATIONS), -1)
+    return uncertainty_exponent(*uncertain_counts(label(points), known))
+
+
 def test_exponent_of_a_straight_boundary():
     """A smooth curve has α = 1."""
-    x, y = np.meshgrid(np.arange(256), np.arange(256))
-    alpha, error = uncertainty_exponent((x > 0.4 * y + 60.3).astype(int))
-    assert alpha == pytest.approx(1.0, abs=0.03)
-    assert error < 0.03
+    alpha, error = exponent_of(lambda x: (x[:, 0] > 0.4 * x[:, 1] + 0.23).astype(int), 400_000)
+    assert error < 0.05
+    assert alpha == pytest.approx(1.0, abs=3 * error)
 
 
 def test_exponent_of_a_cantor_boundary():
-    """Strips between the gaps of the middle-third Cantor set: D = 1 + log 2/log 3, α = 1 − log 2/log 3 = 0.369."""
-    x = (np.arange(729) + 0.5) / 729
-    level = np.zeros(729, dtype=int)
-    for k in range(1, 6):
-        digit = np.floor(x * 3**k).astype(int) % 3
-        level[(level == 0) & (digit == 1)] = k
-    # Each gap has the parity of its level, and what no gap has taken a label of its own.
-    labels = np.tile(np.where(level > 0, level % 2, 2), (729, 1))
-    alpha, _ = uncertainty_exponent(labels)
-    # Columns alone carry the boundary; pairs along them never differ and halve f at every separation alike.
-    assert alpha == pytest.approx(1.0 - np.log(2) / np.log(3), abs=0.1)
+    """Strips of the gaps of the middle-third Cantor set: D = 1 + log 2/log 3, α = 1 − log 2/log 3 = 0.369."""
+
+    def label(x):
+        level = np.zeros(len(x), dtype=int)
+        for k in range(1, 16):
+            middle = np.floor(x[:, 0] * 3.0**k).astype(int) % 3 == 1
+            level[(level == 0) & middle] = k
+        # Each gap has the parity of its level, and what no gap has taken a label of its own.
+        return np.where(level > 0, level % 2, 2)
+
+    alpha, error = exponent_of(label, 40_000)
+    assert error < 0.02
+    assert alpha == pytest.approx(1.0 - np.log(2) / np.log(3), abs=0.04)
 
 
-def test_undetermined_pixels_and_single_basins_are_left_out():
-    labels = np.zeros((128, 128), dtype=int)
-    assert np.isnan(uncertainty_exponent(labels)[0])
-    assert (uncertain_fraction(labels) == 0.0).all()
-    labels[:, 64:] = -1
-    assert (uncertain_fraction(labels) == 0.0).all()
-    labels[:] = -1
-    assert np.isnan(uncertain_fraction(labels)).all()
-    assert np.isnan(uncertainty_exponent(np.eye(8, dtype=int))).all()
+def test_no_exponent_where_there_is_none():
+    """One basin only; nothing but undetermined states; a boundary that no power of the separation describes."""
+    assert np.isnan(exponent_of(lambda x: np.zeros(len(x), dtype=int), 1000)).all()
+    assert np.isnan(exponent_of(lambda x: np.full(len(x), -1), 1000)).all()
+    known = np.full(len(SEPARATIONS), 10_000)
+    assert np.isnan(uncertainty_exponent(np.array([4000, 3900, 3000, 1000, 100]), known)).all()
+    different, count = uncertain_counts(np.array([0, 1, -1]), np.array([[0, 0, 0], [-1, 1, 1]]))
+    assert different.tolist() == [1, 0]
+    assert count.tolist() == [2, 1]
 
 
 def test_digests_say_what_the_data_say(known):

@@ -10,6 +10,7 @@ from burridge_knopoff.stability.motion import (
     SYNCHRONIZED,
     UNDETERMINED,
     motion_kind,
+    section_closed,
     section_period,
 )
 from tests.sections import MOTION
@@ -46,7 +47,10 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
         (0.1, 3, (1e-4, -1e-4), 1e-5, PERIODIC),
         (0.1, 0, (1e-4, -0.01), 1e-5, PERIODIC),
         (0.1, 0, (1e-4, -1e-4), 1e-5, QUASIPERIODIC),
-        (0.1, 0, (1e-4, -0.01), 1e-2, QUASIPERIODIC),
+        # With errors larger than the exponents of chaos only a repetition tells something.
+        (0.1, 0, (1e-4, -0.01), 1e-2, UNDETERMINED),
+        (0.1, 3, (1e-4, -0.01), 1e-2, PERIODIC),
+        (0.1, 0, (2.3e-2, -3e-3), 1e-2, UNDETERMINED),
         (0.1, 0, (0.02, 0.0), 1e-3, CHAOTIC),
         (1e-9, 0, (0.02, 0.0), 1e-3, CHAOTIC),
         # Above the threshold but not above its error, or the other way round: no chaos.
@@ -64,3 +68,14 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
 def test_kinds(mean_distance, period, exponents, error, kind):
     errors = np.full(len(exponents), error)
     assert motion_kind(mean_distance, 1e-6, period, np.array(exponents), errors, MOTION) == kind
+
+
+def test_sections_that_repeat_after_however_many_points():
+    random = np.random.default_rng(3)
+    orbit = random.random(150)
+    assert section_closed(np.tile(orbit, 8), 1e-6)
+    assert section_period(np.tile(orbit, 8), 1e-6, 60) == 0
+    golden = (np.sqrt(5) - 1) / 2
+    assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
+    assert not section_closed(random.random(2000), 1e-6)
+    assert not section_closed(np.ones(5), 1e-6)

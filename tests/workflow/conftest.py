@@ -19,7 +19,7 @@ transient: 100
 window: 200
 batches: 4
 attractors: {samples: 6, transient: 500, window: 500, time_limit: 5000, pushes: 4}
-basins: {pixels: 8}
+basins: {pixels: 8, pairs: 20}
 """
 
 

@@ -39,12 +39,39 @@ rule basin_tile:
         "../scripts/basin_tile.py"
 
 
+rule basin_pairs:
+    input:
+        rules.attractors.output.dataset,
+    output:
+        f"{RESULTS}/basins/{{law}}/a{{a}}/pairs.nc",
+    log:
+        f"{RESULTS}/logs/basins/{{law}}/a{{a}}/pairs.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/pairs.tsv"
+    threads: STUDY.config["basins"]["threads"]
+    resources:
+        mem_mb=400,
+        runtime=240,
+    params:
+        a=lambda wildcards: STUDY.grid[wildcards.a],
+        config=BASIN_CONFIG,
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/basins.py")),
+    message:
+        "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
+    script:
+        "../scripts/basin_pairs.py"
+
+
 rule basins:
     input:
-        [
+        tiles=[
             TILE.format(law=law, a=GRID_NAMES[a], tile=tile)
             for law, a in BASIN_MAPS
             for tile in range(STUDY.config["basins"]["tiles"])
+        ],
+        pairs=[
+            f"{RESULTS}/basins/{law}/a{GRID_NAMES[a]}/pairs.nc"
+            for law, a in BASIN_MAPS
         ],
     output:
         dataset=f"{SUMMARY}/basins.nc",

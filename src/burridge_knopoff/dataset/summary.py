@@ -12,7 +12,7 @@ import xarray
 from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
 from burridge_knopoff.files import write_whole
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import provenance
+from burridge_knopoff.provenance import POINT_SOURCES, provenance
 
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),
@@ -33,8 +33,12 @@ def summary(
     values: Mapping[str, np.ndarray],
     coordinates: Mapping[str, Any],
     attributes: Mapping[str, Any],
+    sources: tuple[str, ...] = POINT_SOURCES,
 ) -> xarray.Dataset:
-    """Return a Dataset of the described variables with the values under the same names."""
+    """Return a Dataset of the described variables with the values under the same names.
+
+    sources : files whose text decides the values
+    """
     data = {
         name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), _attributes(item))
         for name, item in variables.items()
@@ -44,7 +48,7 @@ def summary(
         "title": title,
         "history": "snakemake, from the point files",
         **attributes,
-        **provenance(),
+        **provenance(sources),
     }
     return xarray.Dataset(data, dict(coordinates), head)
 

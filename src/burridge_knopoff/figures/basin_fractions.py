@@ -16,7 +16,8 @@ from burridge_knopoff.stability.sampling import fraction_interval
 def draw(attractors: xarray.Dataset) -> Figure:
     """Draw, for each law, the fraction of sampled states that reach each branch, and ⟨J⟩ along sweeps up and down in a.
 
-    Both sides of a branch are counted together; bands are 95 % Wilson intervals.
+    Both sides of a branch are counted together, and so are all branches of short ranges; bands are 95 % Wilson
+    intervals.
     """
     laws = attractors["law"].values
     figure, panels = new_figure(PAGE, 5.2, rows=2, columns=len(laws))
@@ -41,16 +42,25 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
     a = attractors["a"].values
     samples = int(attractors.attrs["samples"])
     branch, count = attractors["branch"].values, attractors["basin_count"].values
-    for number, color in sorted(colors.items()):
-        there = (branch == number).any(axis=1)
-        if color == OTHER_COLOR or not there.any():
+    shown = [[number] for number, color in sorted(colors.items()) if color != OTHER_COLOR]
+    rest = [number for number, color in colors.items() if color == OTHER_COLOR]
+    for numbers in (*shown, rest):
+        members = np.isin(branch, numbers)
+        there = members.any(axis=1)
+        if not there.any():
             continue
-        hits = np.where(branch == number, count, 0).sum(axis=1)
+        color = colors[numbers[0]]
+        name = branch_name(numbers[0]) if color != OTHER_COLOR else "other branches"
+        hits = np.where(members, count, 0).sum(axis=1)
         interval = np.array([fraction_interval(int(hit), samples) for hit in hits])
         # Gaps where the branch does not exist.
         interval[~there] = np.nan
-        panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=branch_name(number))
+        panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=name)
         panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
+
+    undetermined = attractors["undetermined_count"].values / max(samples, 1)
+    undetermined = np.where(undetermined > 0.0, undetermined, np.nan)
+    panel.plot(a, undetermined, "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:

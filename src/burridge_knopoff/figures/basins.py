@@ -27,9 +27,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
     figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     colors = branch_colors(attractors)
-    first, last = (basins[name].values for name in ("first_position", "last_position"))
-    half = [0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5 for axis in (first, last)]
-    extent = (first[0] - half[0], first[-1] + half[0], last[0] - half[1], last[-1] + half[1])
+    extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
     titles = []
     shown: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
@@ -48,8 +46,11 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
             picture[(one["branch"].values == branch) & (one["side"].values == side)] = shade
             name = "undetermined" if branch < 0 else branch_name(branch) + {1: " (+)", -1: " (−)", 0: ""}[side]
             shown[branch, -side] = Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name)
-        panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="equal")
+        panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
+        panel.set_box_aspect(1.0)
         for name, (x, y) in marked.items():
+            if not (extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]):
+                continue
             panel.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=1.0)
             left = x > 0.5 * (extent[0] + extent[1])
             panel.annotate(

@@ -9,7 +9,7 @@ cdef class Proximity:
     cdef Py_ssize_t[::1] first
     cdef double[::1] radius
     cdef Py_ssize_t[::1] streak
-    cdef Py_ssize_t returns
+    cdef Py_ssize_t[::1] returns
 
     cdef int _follow(self, double[::1] position, double[::1] velocity, int[::1] stuck) noexcept nogil
     cdef int _visit(self) noexcept nogil

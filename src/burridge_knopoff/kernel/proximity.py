@@ -21,10 +21,10 @@ class Proximity:
     solver : EventDriven that halts at the stops of the first block and ends at the time limit
     clouds : for each attractor its returns, shape (n, 2 blocks): positions x_i, then velocities U_i'
     radius : for each attractor the distance (largest difference of a coordinate) that counts as close
-    returns : how many successive returns have to be close
+    returns : for each attractor how many successive returns have to be close
     """
 
-    def __init__(self, solver, clouds, radius, returns: int) -> None:
+    def __init__(self, solver, clouds, radius, returns) -> None:
         self.solver = solver
         self.attractors = len(clouds)
         width = 2 * solver.state.blocks
@@ -35,7 +35,7 @@ class Proximity:
         self.first = np.cumsum([0, *(len(cloud) for cloud in clouds)]).astype(np.intp)
         self.radius = np.array(radius, dtype=float)
         self.streak = np.zeros(len(clouds), dtype=np.intp)
-        self.returns = returns
+        self.returns = np.array(returns, dtype=np.intp)
 
     def label(self, position, velocity, stuck, label, time) -> None:
         """Fill `label` and `time`, shape (n,), for n initial states x_i, U_i' and stuck (int), shape (n, blocks).
@@ -79,7 +79,7 @@ class Proximity:
         for i in range(self.attractors):
             if self._near(i):
                 self.streak[i] += 1
-                if self.streak[i] >= self.returns:
+                if self.streak[i] >= self.returns[i]:
                     return i
             else:
                 self.streak[i] = 0

@@ -15,17 +15,22 @@ import numpy as np
 from burridge_knopoff.stability.flow import Instant, Model
 from burridge_knopoff.stability.labels import (
     ASYMMETRIC,
+    CLOSE_RETURNS,
+    PATIENT_RETURNS,
     SYMMETRIC,
     SYNCHRONIZED,
     UNDETERMINED,
     Attractor,
+    close_returns,
     label,
     pushed,
 )
+from burridge_knopoff.stability.motion import CHAOTIC
 from burridge_knopoff.stability.steady import (
     SPACINGS,
     Returns,
     SteadyMotion,
+    distance,
     instant_of,
     least_distance,
     lies_on,
@@ -42,6 +47,9 @@ LOOSE = 10.0
 # Window, in those of the config, for a motion that is not periodic.
 FILLING = 4
 
+# Mean distance, in resolutions, below which a motion is next to synchrony.
+SYNCHRONY = 10.0
+
 # Unstable motions that a trajectory may come close to before it is given up.
 TRIALS = 2
 
@@ -52,11 +60,20 @@ FRUITLESS = 3
 PUSHED = 12
 PUSHED_BY = 5.0
 
+LARGEST_RADIUS = 0.02
+
+# Transients through which chaos has to last, and states ascribed to it that are followed.
+LASTING = 33
+CHECKED = 6
+
 # States, the first of each sample, whose labels are verified.
 VERIFIED = 60
 
 # Rounds of labelling, each after something new was found, before the labels are left as they are.
 ROUNDS = 20
+
+# Trajectories that may be followed in vain at one a, over all rounds.
+IN_VAIN = 12
 
 # Time, in transients, in which most trajectories have decided.
 QUICK = 0.3
@@ -80,6 +97,7 @@ class Search:
 
     settings : the config's section `attractors`
     threshold, motion : the config's synchronization_threshold and section `motion`
+    attractors : those found so far; vain : trajectories followed without finding one
     """
 
     model: Model
@@ -87,6 +105,22 @@ class Search:
     threshold: float
     motion: Mapping[str, Any]
     attractors: list[Attractor] = field(default_factory=list)
+    vain: int = 0
+
+    @property
+    def scale(self) -> float:
+        """Motion is in proportion to v (for the linearized law exactly): factor on all distances, given for v = 0.1."""
+        return self.model.v / 0.1
+
+    @property
+    def resolution(self) -> float:
+        """Distance below which attractors are not told apart."""
+        return self.settings["resolution"] * self.scale
+
+    @property
+    def tolerance(self) -> float:
+        """Distance within which the returns of a closed orbit repeat."""
+        return self.motion["period_tolerance"] * min(1.0, self.scale)
 
     def labels(self, starts: Sequence[Instant]) -> np.ndarray:
         """Return the index of the attractor that each state reaches, adding attractors that were not known yet.
@@ -106,9 +140,19 @@ class Search:
         for _ in range(ROUNDS):
             labels = self.known_labels(starts)
             more = self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
-            if not more and self._verified(starts[:VERIFIED], labels[:VERIFIED]):
+            if not more and self._verified(starts[:VERIFIED], labels[:VERIFIED]) and self._single(starts, labels):
                 break
         return labels
+
+    def _single(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
+        """Tell whether states that are ascribed to sets other than closed orbits come there: a few are followed."""
+        known = len(self.attractors)
+        for index, attractor in enumerate(self.attractors):
+            if attractor.slow or attractor.motion.spacing <= self.tolerance:
+                continue
+            for k in np.flatnonzero(labels == index)[:CHECKED]:
+                self.reach(starts[k])
+        return len(self.attractors) == known
 
     def _verified(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
         """Follow labelled states on until they are much closer to their attractors, and tell whether they come there.
@@ -137,9 +181,12 @@ class Search:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
         known = len(self.attractors)
         for start in starts[:FRUITLESS]:
+            if self.vain >= IN_VAIN:
+                break
             self.reach(start)
             if len(self.attractors) > known:
                 return True
+            self.vain += 1
         return False
 
     def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:
@@ -150,13 +197,18 @@ class Search:
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
         generator = np.random.default_rng(self.settings["seed"])
-        resolution = self.settings["resolution"]
+        resolution = self.resolution
         for _ in range(TRIALS):
             found = self._settle(start)
             if found is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if lies_on(found.returns, attractor.motion, resolution):
+                if attractor.slow or not lies_on(found, attractor.motion, resolution, self.tolerance):
+                    continue
+                return index
+            # Closed orbits on a slow set are part of it.
+            for index, attractor in enumerate(self.attractors):
+                if attractor.slow and distance(found.returns, attractor.motion.returns) <= resolution:
                     return index
             index = len(self.attractors)
             if self._add(found):
@@ -168,11 +220,16 @@ class Search:
     def _add(self, found: Returns) -> bool:
         """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
         settings = self.settings
-        closed = found.closed(self.motion["period_tolerance"])
+        closed = found.closed(self.tolerance)
         window = settings["window"] * (1 if closed else FILLING)
         motion = measure(self.model, found.instant(), settings["transient"], window, self.threshold, self.motion)
         if motion is None:
             return False
+        if motion.kind == CHAOTIC and not closed:
+            # Chaos may be a transient of any length: one trajectory has to last.
+            lasting = visit(self.model, found.instant(), LASTING * settings["transient"], settings["window"])
+            if lasting is None or lasting.closed(self.tolerance):
+                return lasting is not None and self._add(lasting)
         index = len(self.attractors)
         if motion.mean_distance < self.threshold:
             new = [Attractor(motion, SYNCHRONIZED, index)]
@@ -180,20 +237,23 @@ class Search:
             new = [Attractor(motion.symmetrized(), SYMMETRIC, index)]
         else:
             new = [Attractor(motion, ASYMMETRIC, index + 1), Attractor(motion.mirrored(), ASYMMETRIC, index)]
+        new = [replace(item, close_returns=close_returns(found, self.tolerance)) for item in new]
         if self._accept(new, SMALLEST_RADIUS):
             return True
-        # A symmetric orbit that does not attract is unstable; a mirror pair may lie on one set that does as a whole.
-        if len(new) == 1:
+        # Synchrony that does not attract is unstable. Other motion may lie on one set that does as a whole.
+        if motion.mean_distance < SYNCHRONY * self.resolution:
             return False
         slow = Attractor(spread(self.model, motion, settings), SYMMETRIC, index, slow=True)
-        return self._accept([slow], SMALLEST_RADIUS) or self._accept(new, TINY_RADIUS)
+        return self._accept([slow], SMALLEST_RADIUS) or (closed and self._accept(new, TINY_RADIUS))
 
     def _accept(self, new: Sequence[Attractor], least: float) -> bool:
         """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
         before = list(self.attractors)
         self.attractors = [*before, *new]
         self._bound_radii()
-        radius = self._captured(len(before), least)
+        # A slow set in which an attractor is known already is none of its own.
+        overlapping = new[0].slow and self._midst(len(before))
+        radius = 0.0 if overlapping else self._captured(len(before), least)
         if radius == 0.0:
             self.attractors = before
             return False
@@ -205,7 +265,7 @@ class Search:
         """Return where a state returns to when it has settled, or None if it does not settle."""
         found = None
         transient, window = self.settings["transient"], self.settings["window"]
-        tolerance, resolution = self.motion["period_tolerance"], self.settings["resolution"]
+        tolerance, resolution = self.tolerance, self.resolution
         longest = PATIENCE * window
         while transient <= PATIENCE * self.settings["transient"]:
             found = visit(self.model, start, transient, window)
@@ -227,15 +287,35 @@ class Search:
 
     def _symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image."""
-        return least_distance(found.returns, found.mirror_returns) < self.settings["resolution"]
+        return least_distance(found.returns, found.mirror_returns) < self.resolution
 
     def _bound_radii(self) -> None:
-        """Bound all radii by the distances between the attractors."""
-        clouds = [attractor.motion.returns for attractor in self.attractors]
+        """Bound all radii by the distances between the attractors.
+
+        A set with a closed orbit in its midst keeps its radius but asks for patience: who comes to the orbit is told
+        first.
+        """
         for index, attractor in enumerate(self.attractors):
-            apart = [least_distance(clouds[index], other) for k, other in enumerate(clouds) if k != index]
-            radius = min([attractor.radius, *(0.4 * value for value in apart)])
-            self.attractors[index] = replace(attractor, radius=radius)
+            radius = min(attractor.radius, LARGEST_RADIUS * self.scale)
+            midst = self._midst(index)
+            for k, other in enumerate(self.attractors):
+                if k != index and k not in midst and index not in self._midst(k):
+                    radius = min(radius, 0.4 * least_distance(attractor.motion.returns, other.motion.returns))
+            returns = PATIENT_RETURNS if midst else attractor.close_returns
+            self.attractors[index] = replace(attractor, radius=radius, close_returns=returns)
+
+    def _midst(self, index: int) -> list[int]:
+        """Return the closed orbits that lie in the midst of a set that is none."""
+        motion = self.attractors[index].motion
+        if motion.spacing <= self.tolerance:
+            return []
+        return [
+            k
+            for k, other in enumerate(self.attractors)
+            if k != index
+            and other.motion.spacing <= self.tolerance
+            and least_distance(motion.returns, other.motion.returns) <= SPACINGS * motion.spacing
+        ]
 
     def _captured(self, index: int, least: float) -> float:
         """Return a radius from which all of a number of random pushes come back, at most the present one.
@@ -244,16 +324,19 @@ class Search:
         """
         motion = self.attractors[index].motion
         radius = self.attractors[index].radius
+        midst = self._midst(index)
         generator = np.random.default_rng(self.settings["seed"])
-        while radius >= least:
+        while radius >= least * self.scale:
             close = self._recovered(motion, radius)
             narrow = [replace(item, radius=min(item.radius, close)) for item in self.attractors]
+            if midst:
+                narrow[index] = replace(narrow[index], close_returns=CLOSE_RETURNS)
             left = self.settings["pushes"]
             while left > 0:
                 chosen = generator.integers(len(motion.returns), size=min(GROUP, left))
                 starts = [pushed(instant_of(motion.returns[k]), radius, generator) for k in chosen]
                 reached, _ = label(self.model, narrow, starts, self.settings["time_limit"])
-                if (reached != index).any():
+                if not np.isin(reached, [index, *midst]).all():
                     break
                 left -= len(chosen)
             else:
@@ -271,7 +354,8 @@ def spread(model: Model, motion: SteadyMotion, settings: Mapping[str, Any]) -> S
     generator = np.random.default_rng(settings["seed"])
     clouds = [motion.returns, motion.mirror_returns]
     for k in generator.integers(len(motion.returns), size=PUSHED):
-        start = pushed(instant_of(motion.returns[k]), PUSHED_BY * settings["resolution"], generator)
+        size = PUSHED_BY * settings["resolution"] * model.v / 0.1
+        start = pushed(instant_of(motion.returns[k]), size, generator)
         found = visit(model, start, QUICK * settings["transient"], settings["window"])
         if found is not None:
             clouds += [found.returns, found.mirror_returns]

@@ -22,6 +22,9 @@ from burridge_knopoff.stability.steady import measure
 
 CLOSED = (SYNCHRONIZED, PERIODIC)
 
+# Difference of ⟨J⟩ beyond its errors that an attractor may show when it is followed once more.
+SAME_MEAN = 1e-3
+
 
 @dataclass(frozen=True, eq=False)
 class KnownAttractors:
@@ -53,12 +56,20 @@ def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mappin
         steady = measure(model, start, settings["transient"], window, threshold, motion)
         if steady is None:
             raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
+        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + SAME_MEAN * model.v / 0.1
+        if abs(steady.mean_distance - one["mean_distance"].item()) > error:
+            raise ValueError(
+                f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "
+                f"{steady.mean_distance:.5f} now and {one['mean_distance'].item():.5f} in the file: motion that does "
+                "not last is no attractor to map basins of; leave this a out of basins"
+            )
         slow = bool(one["slow"].item())
         if slow:
             steady = spread(model, steady, settings)
         elif one["symmetry"].item() == SYMMETRIC:
             steady = steady.symmetrized()
-        attractors.append(Attractor(steady, one["symmetry"].item(), int(slot), one["radius"].item(), slow))
+        fixed = (one["symmetry"].item(), int(slot), one["radius"].item(), slow, one["close_returns"].item())
+        attractors.append(Attractor(steady, *fixed))
     return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
 
 

@@ -63,7 +63,7 @@ def continue_attractors(
     starts = [samples(model) for model in models]
 
     def seeds(search: Search) -> list[Instant]:
-        size = PUSH * settings["resolution"]
+        size = PUSH * search.resolution
         return [pushed(attractor.motion.instant(), size, generator) for attractor in search.attractors]
 
     labels = []

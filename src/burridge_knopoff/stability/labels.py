@@ -9,17 +9,29 @@ import numpy as np
 
 from burridge_knopoff.kernel.proximity import Proximity
 from burridge_knopoff.stability.flow import Instant, Model, new_solver
-from burridge_knopoff.stability.steady import SteadyMotion
+from burridge_knopoff.stability.steady import Returns, SteadyMotion, orbit_length
 
 UNDETERMINED = -1
-
-LARGEST_RADIUS = 0.02
 
 # Successive returns near an attractor after which a trajectory counts as captured.
 CLOSE_RETURNS = 8
 
+# The same near a set that another attractor lies in: long enough for most trajectories to come to that one first.
+PATIENT_RETURNS = 2000
+
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = 0, 1, 2
 SYMMETRIES = {SYNCHRONIZED: "synchronized", SYMMETRIC: "symmetric", ASYMMETRIC: "asymmetric"}
+
+
+# Longest orbit, in returns, that has to be gone round.
+LONGEST_ORBIT = 100
+
+
+def close_returns(found: Returns, tolerance: float) -> int:
+    """Return how many successive returns have to be close to a motion: twice round it if it is a closed orbit."""
+    if not found.closed(tolerance):
+        return CLOSE_RETURNS
+    return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,13 +42,15 @@ class Attractor:
     partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set
     radius : distance from its returns within which trajectories are captured
     slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
+    close_returns : successive returns within the radius after which a trajectory counts as captured
     """
 
     motion: SteadyMotion
     symmetry: int
     partner: int
-    radius: float = LARGEST_RADIUS
+    radius: float = np.inf
     slow: bool = False
+    close_returns: int = CLOSE_RETURNS
 
 
 def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:
@@ -75,4 +89,5 @@ def new_proximity(model: Model, attractors: Sequence[Attractor], time_limit: flo
     solver.halting_block = 0
     solver.end = time_limit
     clouds = [attractor.motion.returns for attractor in attractors]
-    return Proximity(solver, clouds, [attractor.radius for attractor in attractors], CLOSE_RETURNS)
+    radius, returns = zip(*((attractor.radius, attractor.close_returns) for attractor in attractors), strict=True)
+    return Proximity(solver, clouds, radius, returns)

@@ -11,6 +11,9 @@ import numpy as np
 KINDS = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
 UNDETERMINED, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = KINDS
 
+# Error, in units of the least exponent of chaos, up to which exponents tell a kind.
+LARGEST_ERROR = 3.0
+
 # A sequence has a period if it is seen this many times at least.
 REPETITIONS = 3
 
@@ -27,6 +30,19 @@ def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
         if np.ptp(turns, axis=0).max() <= tolerance:
             return period
     return 0
+
+
+def section_closed(section: np.ndarray, tolerance: float) -> bool:
+    """Tell whether section points W' repeat after however many: almost each has another one within the tolerance.
+
+    section : shape (n,); its second half is judged
+    """
+    settled = np.sort(section[len(section) // 2 :])
+    if len(settled) < 4 * REPETITIONS:
+        return False
+    gap = np.diff(settled)
+    nearest = np.minimum(np.concatenate([[np.inf], gap]), np.concatenate([gap, [np.inf]]))
+    return bool(np.quantile(nearest, 0.95) <= tolerance)
 
 
 def zero_exponents(exponent: np.ndarray, error: np.ndarray, motion: Mapping[str, Any]) -> np.ndarray:
@@ -54,7 +70,7 @@ def motion_kind(
 
     Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
     that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
-    quasiperiodic if that one is 0 as well. Everything else is undetermined.
+    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined.
     """
     known = np.flatnonzero(~np.isnan(exponent))
     if len(known) and exponent[0] > max(motion["chaotic_exponent"], motion["standard_errors"] * error[0]):
@@ -62,6 +78,12 @@ def motion_kind(
     zero = zero_exponents(exponent, error, motion)
     if len(known) and not zero[0]:
         return UNDETERMINED
-    if period or (len(known) > 1 and not zero[1]):
-        return SYNCHRONIZED if mean_distance < threshold else PERIODIC
+    closed = SYNCHRONIZED if mean_distance < threshold else PERIODIC
+    if period:
+        return closed
+    # An error beyond the threshold of chaos tells nothing from nothing, as where chaos ends within the window.
+    if len(known) and motion["standard_errors"] * np.nanmax(error[:2]) > LARGEST_ERROR * motion["chaotic_exponent"]:
+        return UNDETERMINED
+    if len(known) > 1 and not zero[1]:
+        return closed
     return QUASIPERIODIC if len(known) > 1 else UNDETERMINED

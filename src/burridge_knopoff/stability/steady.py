@@ -14,7 +14,7 @@ from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, run
 from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, new_solver
-from burridge_knopoff.stability.motion import PERIODIC, QUASIPERIODIC, motion_kind, section_period
+from burridge_knopoff.stability.motion import PERIODIC, QUASIPERIODIC, UNDETERMINED, motion_kind, section_period
 
 # Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
 SHARE = 0.95
@@ -176,7 +176,7 @@ def measure(
     period = section_period(upward, motion["period_tolerance"], motion["longest_period"])
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     kind = motion_kind(trajectory.mean_distance, threshold, period, exponent, error, motion)
-    if kind == QUASIPERIODIC and found.closed(motion["period_tolerance"]):
+    if kind in (QUASIPERIODIC, UNDETERMINED) and found.closed(motion["period_tolerance"]):
         # A weakly attracting orbit of a long period: its exponent cannot be told from 0, but its returns repeat.
         kind = PERIODIC
     return SteadyMotion(
@@ -204,15 +204,29 @@ def _spacing(returns: np.ndarray) -> float:
     return float(np.quantile(nearest[:, 1], SHARE))
 
 
+def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
+    """Return after how many returns a closed orbit repeats within the tolerance; `longest` if it takes more."""
+    settled = returns[len(returns) // 3 :]
+    for length in range(1, min(longest, len(settled) // 2)):
+        if np.abs(settled[length:] - settled[:-length]).max() <= tolerance:
+            return length
+    return longest
+
+
 def least_distance(first: np.ndarray, second: np.ndarray) -> float:
     """Return the distance between the two nearest returns of two sets."""
     nearest, _ = cKDTree(second).query(first, p=np.inf)
     return float(nearest.min())
 
 
-def lies_on(returns: np.ndarray, attractor: SteadyMotion, resolution: float) -> bool:
-    """Tell whether the returns of a settled motion lie on an attractor, as far as that is resolved.
+def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
+    """Tell whether a settled motion lies on an attractor, as far as that is resolved.
+
+    A closed orbit may lie in the midst of a chaotic attractor or a torus, but not on it.
 
     resolution : distance below which attractors are not told apart
+    tolerance : distance within which the returns of closed orbits repeat
     """
-    return distance(returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)
+    if found.closed(tolerance) and attractor.spacing > resolution / DRIFT:
+        return False
+    return distance(found.returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)

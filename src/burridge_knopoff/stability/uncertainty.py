@@ -1,7 +1,7 @@
 """The uncertainty exponent of a basin boundary: how little it helps to know the initial state better.
 
-Two states a distance ε apart end on different attractors with a probability f(ε) ∝ ε^α. For a smooth curve in a plane
-α = 1; a fractal boundary of dimension D has α = 2 − D.
+Two states a distance ε apart end on different attractors with a probability f(ε) ∝ ε^α as ε → 0. For a smooth curve in
+a plane α = 1; a fractal boundary of dimension D has α = 2 − D.
 
 Reference: S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (1985) 125-153.
 """
@@ -9,49 +9,62 @@ Reference: S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (198
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import linregress
+from scipy.stats import chi2
 
-#: Separations ε in pixels.
-SEPARATIONS = (1, 2, 4, 8, 16)
+#: Separations ε of the pairs, as parts of the width of the map; where f saturates it has no exponent yet.
+SEPARATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
 
-# Bands of the map that are left out in turn for the error.
-BANDS = 8
+# Pairs that must differ at a separation for it to count.
+FEWEST = 8
+
+# Probability of a scatter about the line below which there is no single exponent.
+SIGNIFICANCE = 1e-3
 
 
-def uncertain_fraction(labels: np.ndarray) -> np.ndarray:
-    """Return the share of pairs of pixels, along rows and columns, with different labels, for each of SEPARATIONS.
+def sample_pairs(
+    first: tuple[float, float], last: tuple[float, float], count: int, seed: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return points of a plane, shape (count, 2), and their partners, shape (separations, count, 2).
 
-    labels : shape (rows, columns); pairs with an undetermined pixel (below 0) are left out; NaN where there is no pair
+    first, last : ranges (low, high) of both coordinates
+    The partners of a point lie in one direction, drawn at random, at each of SEPARATIONS times the width of the first
+    range.
     """
-    fractions = []
-    for gap in SEPARATIONS:
-        pairs = [(labels[gap:], labels[:-gap]), (labels[:, gap:], labels[:, :-gap])]
-        known = [(one >= 0) & (other >= 0) for one, other in pairs]
-        count = sum(int(mask.sum()) for mask in known)
-        different = sum(int(((one != other) & mask).sum()) for (one, other), mask in zip(pairs, known, strict=True))
-        fractions.append(different / count if count else np.nan)
-    return np.array(fractions)
+    generator = np.random.default_rng(seed)
+    low, high = np.array([first, last], dtype=float).T
+    points = low + (high - low) * generator.random((count, 2))
+    angle = 2.0 * np.pi * generator.random(count)
+    direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return points, points + (first[1] - first[0]) * np.array(SEPARATIONS)[:, None, None] * direction
 
 
-def uncertainty_exponent(labels: np.ndarray) -> tuple[float, float]:
-    """Return α and its standard error, from a straight line through log f against log ε and a jackknife over bands.
+def uncertain_counts(labels: np.ndarray, partners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many pairs differ, and how many pairs are known, at each separation.
 
-    NaN where the map shows one basin only, or is smaller than four of the largest separation.
+    labels : of the points, shape (count,); partners : shape (separations, count); below 0 where undetermined
     """
-    if min(labels.shape) < 4 * SEPARATIONS[-1]:
+    known = (labels >= 0) & (partners >= 0)
+    return ((labels != partners) & known).sum(axis=1), known.sum(axis=1)
+
+
+def uncertainty_exponent(different: np.ndarray, known: np.ndarray) -> tuple[float, float]:
+    """Return α and its standard error, from a straight line through log f against log ε.
+
+    different, known : pairs that differ, and all, at each of SEPARATIONS
+    Weights and error follow from the binomial counts. NaN with fewer than three separations at which enough pairs
+    differ, or if no straight line goes through them.
+    """
+    enough = (different >= FEWEST) & (different < known)
+    if enough.sum() < 3:
         return np.nan, np.nan
-    whole = _slope(uncertain_fraction(labels))
-    bands = np.array_split(np.arange(len(labels)), BANDS)
-    left_out = []
-    for band in bands:
-        rest = labels.copy()
-        rest[band] = -1
-        left_out.append(_slope(uncertain_fraction(rest)))
-    spread = np.array(left_out) - np.mean(left_out)
-    return whole, float(np.sqrt((BANDS - 1) / BANDS * np.sum(spread**2)))
-
-
-def _slope(fractions: np.ndarray) -> float:
-    if not np.all(fractions > 0.0):
-        return np.nan
-    return float(linregress(np.log(SEPARATIONS), np.log(fractions)).slope)
+    x = np.log(np.array(SEPARATIONS)[enough])
+    share = different[enough] / known[enough]
+    y = np.log(share)
+    weight = different[enough] / (1.0 - share)
+    # The pairs of all separations share their first points: the binomial weights neglect that.
+    (slope, intercept), covariance = np.polyfit(x, y, 1, w=np.sqrt(weight), cov="unscaled")
+    scatter = float(np.sum(weight * (y - slope * x - intercept) ** 2))
+    if chi2.sf(scatter, enough.sum() - 2) < SIGNIFICANCE:
+        return np.nan, np.nan
+    # LAPACK's last bits depend on where in memory its arguments lie.
+    return round(float(slope), 10), round(float(np.sqrt(covariance[0, 0])), 10)

@@ -14,6 +14,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
+from burridge_knopoff.provenance import STABILITY_SOURCES
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
@@ -41,6 +42,7 @@ VARIABLES = {
     "stop_rate": _V((*_SLOT, "block"), "f8", "stops of a block in a unit of time"),
     "lyapunov_exponent": _V((*_SLOT, "exponent"), "f8", "Lyapunov exponents, the largest first"),
     "radius": _V(_SLOT, "f8", "distance from its returns within which trajectories are captured"),
+    "close_returns": _V(_SLOT, "i4", "successive returns within the radius after which a trajectory is captured"),
     "slow": _V(
         _SLOT,
         "i1",
@@ -112,7 +114,7 @@ def one_law(
             for key in ("samples", "seed", "transient", "window", "time_limit", "resolution", "pushes")
         },
     }
-    return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes)
+    return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
@@ -139,7 +141,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     law = axes([], [])["law"]
     coordinates["law"] = (law[0], np.array([part.attrs["law"] for part in parts], dtype=object), law[2])
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
-    return summary("Attractors of both friction laws", variables, values, coordinates, attributes)
+    return summary("Attractors of both friction laws", variables, values, coordinates, attributes, STABILITY_SOURCES)
 
 
 _HEAD = ("Conventions", "title", "law", "software", "source_fingerprint", "git_commit")
@@ -159,7 +161,7 @@ def digest(dataset: xarray.Dataset) -> str:
             kinds = ", ".join(KINDS[int(kind)] for kind in np.unique(one["kind"].values[slots]))
             sticks = (one["stop_rate"].values[slots] > 0.0).any(axis=0)
             never = [str(block) for block, sticking in zip(one["block"].values, sticks, strict=True) if not sticking]
-            share = np.where(slots, one["basin_fraction"].values, 0.0).sum(axis=1)
+            share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)
             name = "synchronized" if number == 0 else f"branch {number}"
             note = f"; block {', '.join(never)} never sticks" if never else ""
             lines.append(
@@ -168,10 +170,10 @@ def digest(dataset: xarray.Dataset) -> str:
                 f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g}){note}"
             )
         undetermined = one["undetermined_count"].values
-        total = int(undetermined[branch.max(axis=1) >= 0].sum())
         empty = a[branch.max(axis=1) < 0]
+        total = int(dataset.attrs["samples"]) * len(a)
         lines.append(
-            f"{law}: {total} of {int(dataset.attrs['samples']) * (len(a) - len(empty))} sampled states are undetermined"
+            f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
             + (f"; no attractor at a = {', '.join(f'{value:g}' for value in empty)}" if len(empty) else "")
         )
     return "\n".join(lines) + "\n"
@@ -226,7 +228,7 @@ def _features(models: Sequence[Model], found: Continuation, samples: int) -> dic
             motion = here[i].motion
             values["branch"][at], values["side"][at] = found.branch[k][i], found.side[k][i]
             values["symmetry"][at], values["radius"][at] = here[i].symmetry, here[i].radius
-            values["slow"][at] = here[i].slow
+            values["slow"][at], values["close_returns"][at] = here[i].slow, here[i].close_returns
             for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "stop_rate"):
                 values[name][at] = getattr(motion, name)
             values["lyapunov_exponent"][at][: len(motion.exponent)] = motion.exponent

@@ -11,9 +11,10 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.friction import LAWS
+from burridge_knopoff.provenance import STABILITY_SOURCES
 from burridge_knopoff.stability.basins import known_attractors, label_states, pixel_centres, plane
 from burridge_knopoff.stability.labels import UNDETERMINED
-from burridge_knopoff.stability.uncertainty import SEPARATIONS, uncertain_fraction, uncertainty_exponent
+from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 
 _PLANE = ("last_position", "first_position")
 _V = Variable
@@ -25,9 +26,13 @@ TILE_VARIABLES = {
 MAP_VARIABLES = {
     **{name: _V(("map", *_PLANE), item.dtype, item.long_name) for name, item in TILE_VARIABLES.items()},
     "undetermined_count": _V(("map",), "i4", "states that reach no attractor by the time limit"),
-    "uncertain_fraction": _V(("map", "separation"), "f8", "share of pairs of states that reach different attractors"),
-    "uncertainty_exponent": _V(("map",), "f8", "uncertainty exponent alpha of the basin boundary"),
-    "uncertainty_exponent_error": _V(("map",), "f8", "standard error of alpha, a jackknife over bands of the map"),
+    "uncertain_count": _V(("map", "separation"), "i4", "pairs of states that reach different attractors"),
+    "pair_count": _V(("map", "separation"), "i4", "pairs of states that both reach an attractor"),
+    "uncertainty_exponent": _V(("map",), "f8", "uncertainty exponent alpha of the basin boundary, NaN if it has none"),
+    "uncertainty_exponent_error": _V(("map",), "f8", "standard error of alpha, from the numbers of pairs"),
+}
+PAIR_VARIABLES = {
+    name: _V(("separation",), "i4", MAP_VARIABLES[name].long_name) for name in ("uncertain_count", "pair_count")
 }
 COORDINATES = {
     "first_position": "initial position U_1(0) of the first block",
@@ -56,35 +61,60 @@ def tile(
         name: np.where(labels == UNDETERMINED, missing, table[labels] if len(table) else missing).reshape(shape)
         for name, table, missing in (("branch", known.branch, UNDETERMINED), ("side", known.side, 0))
     }
-    values["decision_time"] = times.reshape(shape)
+    values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
     attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
-    return summary("Tile of a map of basins", TILE_VARIABLES, values, _coordinates(first, last), attributes)
+    coordinates = _coordinates(first, last)
+    return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
 
 
-def merge(maps: Sequence[tuple[str, float, Sequence[xarray.Dataset]]], config: Mapping[str, Any]) -> xarray.Dataset:
-    """Put the maps together, each (law, a, its tiles in order), with the uncertainty exponents of their boundaries."""
-    wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, _, tiles in maps]
+def pairs(attractors: xarray.Dataset, law: str, a: float, config: Mapping[str, Any], threads: int) -> xarray.Dataset:
+    """Label pairs of near states of the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
+    basins = config["basins"]
+    known = known_attractors(attractors, law, a, config)
+    ranges = basins["first_position"], basins["last_position"]
+    points, partners = sample_pairs(*ranges, basins["pairs"], config["attractors"]["seed"])
+    ends = np.concatenate([points, partners.reshape(-1, 2)])
+    state = config["initial"][basins["initial"]]
+    position = np.tile(np.array(state["position"], dtype=float), (len(ends), 1))
+    position[:, 0], position[:, -1] = ends.T
+    velocity = np.tile(np.array(state["velocity"], dtype=float), (len(ends), 1))
+    time_limit = config["attractors"]["time_limit"]
+    labels, _ = label_states(known, position, velocity, config["start"], time_limit, threads)
+    counts = uncertain_counts(labels[: len(points)], labels[len(points) :].reshape(len(SEPARATIONS), -1))
+    values = dict(zip(PAIR_VARIABLES, counts, strict=True))
+    attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
+    coordinates = {"separation": _separation(basins)}
+    return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
+
+
+def _separation(basins: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str, str]]:
+    width = basins["first_position"][1] - basins["first_position"][0]
+    text = "distance between the two states of a pair in the plane"
+    return "separation", np.array(SEPARATIONS) * width, {"long_name": text, "units": "1"}
+
+
+def merge(
+    maps: Sequence[tuple[str, float, Sequence[xarray.Dataset], xarray.Dataset]], config: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Put the maps together, each (law, a, its tiles in order, its pairs), with the exponents of their boundaries."""
+    wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
-    # The two sides of a branch are two attractors.
-    labels = [
-        np.where(whole["branch"] < 0, -1, 3 * whole["branch"] + whole["side"] + 1).astype(int) for whole in wholes
-    ]
-    values["undetermined_count"] = [np.count_nonzero(label < 0) for label in labels]
-    values["uncertain_fraction"] = [uncertain_fraction(label) for label in labels]
-    exponents = [uncertainty_exponent(label) for label in labels]
+    values["undetermined_count"] = [np.count_nonzero(whole["branch"] == UNDETERMINED) for whole in wholes]
+    for name in PAIR_VARIABLES:
+        values[name] = np.stack([near[name].values for _, _, _, near in maps])
+    exponents = [uncertainty_exponent(near["uncertain_count"].values, near["pair_count"].values) for *_, near in maps]
     values["uncertainty_exponent"], values["uncertainty_exponent_error"] = np.array(exponents).T
     basins = config["basins"]
     coordinates = _coordinates(wholes[0]["first_position"].values, wholes[0]["last_position"].values)
-    width = (basins["first_position"][1] - basins["first_position"][0]) / basins["pixels"]
-    coordinates["separation"] = ("separation", np.array(SEPARATIONS) * width, {"long_name": "separation", "units": "1"})
+    coordinates["separation"] = _separation(basins)
     law = {
         "long_name": "friction law",
         "flag_values": np.arange(len(LAWS), dtype="i1"),
         "flag_meanings": " ".join(LAWS),
     }
-    coordinates["law"] = ("map", np.array([LAWS.index(name) for name, _, _ in maps], dtype="i1"), law)
+    coordinates["law"] = ("map", np.array([LAWS.index(name) for name, *_ in maps], dtype="i1"), law)
     a = {"long_name": "friction parameter a", "units": "1"}
-    coordinates["a"] = ("map", np.array([value for _, value, _ in maps]), a)
+    coordinates["a"] = ("map", np.array([value for _, value, *_ in maps]), a)
     state = config["initial"][basins["initial"]]
     attributes = {
         "history": "snakemake, from attractors.nc",
@@ -93,9 +123,11 @@ def merge(maps: Sequence[tuple[str, float, Sequence[xarray.Dataset]]], config: M
         "start": config["start"],
         "plane_position": np.array(state["position"], dtype=float),
         "plane_velocity": np.array(state["velocity"], dtype=float),
+        "first_range": np.array(basins["first_position"], dtype=float),
+        "last_range": np.array(basins["last_position"], dtype=float),
         "time_limit": config["attractors"]["time_limit"],
     }
-    return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes)
+    return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
 
 
 def digest(dataset: xarray.Dataset) -> str:
@@ -112,10 +144,11 @@ def digest(dataset: xarray.Dataset) -> str:
             name += {1: " (+)", -1: " (-)", 0: ""}[int(side)]
             shares.append(f"{name} {100.0 * count / one['branch'].size:.2f} %")
         alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
+        times = one["decision_time"].values
+        decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
         lines.append(
             f"{LAWS[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; "
-            f"uncertainty exponent {alpha:.3f} +- {error:.3f}; "
-            f"decided at tau = {one['decision_time'].values.mean():.0f} in the mean"
+            f"uncertainty exponent {alpha:.3f} +- {error:.3f}{decided}"
         )
     return "\n".join(lines) + "\n"
 

@@ -11,7 +11,16 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.simulation import STATUS
-from burridge_knopoff.stability.motion import KINDS, UNDETERMINED, motion_kind, section_period, zero_exponents
+from burridge_knopoff.stability.motion import (
+    KINDS,
+    PERIODIC,
+    QUASIPERIODIC,
+    UNDETERMINED,
+    motion_kind,
+    section_closed,
+    section_period,
+    zero_exponents,
+)
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _AXES = ("law", "initial", "a")
@@ -56,6 +65,9 @@ def summarize(
         if STATUS[int(read["status"])] == "completed":
             mean = float(read["mean_distance"])
             kind = motion_kind(mean, synchronization_threshold, period, exponent, error, motion)
+            if kind == QUASIPERIODIC and section_closed(upward, motion["period_tolerance"]):
+                # A weakly attracting orbit of a long period.
+                kind = PERIODIC
         values["kind"][index] = kind
         values["section_period"][index] = period
         values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, motion))
