@@ -24,6 +24,7 @@ from burridge_knopoff.stability.labels import (
     close_returns,
     label,
     pushed,
+    spread,
 )
 from burridge_knopoff.stability.motion import CHAOTIC
 from burridge_knopoff.stability.steady import (
@@ -55,10 +56,6 @@ TRIALS = 2
 
 # Trajectories that are followed without finding anything new before the others are left to what is known.
 FRUITLESS = 3
-
-# States that show a slow set, and how far they are pushed, in resolutions.
-PUSHED = 12
-PUSHED_BY = 5.0
 
 LARGEST_RADIUS = 0.02
 
@@ -343,20 +340,3 @@ class Search:
                 return radius
             radius /= 2
         return 0.0
-
-
-def spread(model: Model, motion: SteadyMotion, settings: Mapping[str, Any]) -> SteadyMotion:
-    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
-
-    Near a resonance the motion on a torus is locked, or nearly so, to orbits that attract next to nothing. The torus
-    itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
-    """
-    generator = np.random.default_rng(settings["seed"])
-    clouds = [motion.returns, motion.mirror_returns]
-    for k in generator.integers(len(motion.returns), size=PUSHED):
-        size = PUSHED_BY * settings["resolution"] * model.v / 0.1
-        start = pushed(instant_of(motion.returns[k]), size, generator)
-        found = visit(model, start, QUICK * settings["transient"], settings["window"])
-        if found is not None:
-            clouds += [found.returns, found.mirror_returns]
-    return motion.with_returns(np.concatenate(clouds))

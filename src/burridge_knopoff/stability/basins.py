@@ -14,9 +14,9 @@ import xarray
 from burridge_knopoff.chain import Chain
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.simulation import starts_stuck
-from burridge_knopoff.stability.attractors import FILLING, spread
+from burridge_knopoff.stability.attractors import FILLING
 from burridge_knopoff.stability.flow import Instant, Model
-from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, new_proximity
+from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, new_proximity, spread
 from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
 from burridge_knopoff.stability.steady import measure
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from burridge_knopoff.kernel.proximity import Proximity
 from burridge_knopoff.stability.flow import Instant, Model, new_solver
-from burridge_knopoff.stability.steady import Returns, SteadyMotion, orbit_length
+from burridge_knopoff.stability.steady import Returns, SteadyMotion, instant_of, orbit_length, visit
 
 UNDETERMINED = -1
 
@@ -22,6 +23,12 @@ PATIENT_RETURNS = 2000
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = 0, 1, 2
 SYMMETRIES = {SYNCHRONIZED: "synchronized", SYMMETRIC: "symmetric", ASYMMETRIC: "asymmetric"}
 
+
+# States that show a slow set, and how far they are pushed, in resolutions, and how long
+# they are left to fall back, in transients.
+PUSHED = 12
+PUSHED_BY = 5.0
+PUSHED_FOR = 0.3
 
 # Longest orbit, in returns, that has to be gone round.
 LONGEST_ORBIT = 100
@@ -59,6 +66,23 @@ def pushed(start: Instant, size: float, generator: np.random.Generator) -> Insta
     change = generator.uniform(-size, size, 2 * blocks)
     velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
     return Instant(start.position + change[:blocks], velocity, start.stuck)
+
+
+def spread(model: Model, motion: SteadyMotion, settings: Mapping[str, Any]) -> SteadyMotion:
+    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
+
+    Near a resonance the motion on a torus is locked, or nearly so, to orbits that attract next to nothing. The torus
+    itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
+    """
+    generator = np.random.default_rng(settings["seed"])
+    clouds = [motion.returns, motion.mirror_returns]
+    for k in generator.integers(len(motion.returns), size=PUSHED):
+        size = PUSHED_BY * settings["resolution"] * model.v / 0.1
+        start = pushed(instant_of(motion.returns[k]), size, generator)
+        found = visit(model, start, PUSHED_FOR * settings["transient"], settings["window"])
+        if found is not None:
+            clouds += [found.returns, found.mirror_returns]
+    return motion.with_returns(np.concatenate(clouds))
 
 
 def label(
