@@ -71,9 +71,9 @@ def continue_attractors(
         before = seeds(searches[k - 1]) if k else []
         labels.append((search.labels([*before, *starts[k]])[len(before) :], list(search.attractors)))
     for k in range(len(searches) - 2, -1, -1):
-        searches[k].labels(seeds(searches[k + 1]))
+        searches[k].labels(seeds(searches[k + 1]), check=False)
     for k in range(1, len(searches)):
-        searches[k].labels(seeds(searches[k - 1]))
+        searches[k].labels(seeds(searches[k - 1]), check=False)
     # The sets of attractors are complete now: what follows only reads them.
     upward, downward = [], []
     for k, search in enumerate(searches):
