@@ -145,10 +145,10 @@ class Search:
         return labels
 
     def _single(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
-        """Tell whether states that are ascribed to sets other than closed orbits come there: a few are followed."""
+        """Tell whether states that are ascribed to chaotic sets come there: a few are followed."""
         known = len(self.attractors)
         for index, attractor in enumerate(self.attractors):
-            if attractor.slow or attractor.motion.spacing <= self.tolerance:
+            if attractor.slow or attractor.motion.kind != CHAOTIC:
                 continue
             for k in np.flatnonzero(labels == index)[:CHECKED]:
                 self.reach(starts[k])
@@ -292,7 +292,7 @@ class Search:
     def _bound_radii(self) -> None:
         """Bound all radii by the distances between the attractors.
 
-        A set with a closed orbit in its midst keeps its radius but asks for patience: who comes to the orbit is told
+        Chaos with a closed orbit in its midst keeps its radius but asks for patience: who comes to the orbit is told
         first.
         """
         for index, attractor in enumerate(self.attractors):
@@ -305,9 +305,9 @@ class Search:
             self.attractors[index] = replace(attractor, radius=radius, close_returns=returns)
 
     def _midst(self, index: int) -> list[int]:
-        """Return the closed orbits that lie in the midst of a set that is none."""
+        """Return the closed orbits that lie in the midst of chaos, or of a slow set."""
         motion = self.attractors[index].motion
-        if motion.spacing <= self.tolerance:
+        if motion.kind != CHAOTIC and not self.attractors[index].slow:
             return []
         return [
             k

@@ -14,7 +14,14 @@ from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, run
 from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, new_solver
-from burridge_knopoff.stability.motion import PERIODIC, QUASIPERIODIC, UNDETERMINED, motion_kind, section_period
+from burridge_knopoff.stability.motion import (
+    CHAOTIC,
+    PERIODIC,
+    QUASIPERIODIC,
+    UNDETERMINED,
+    motion_kind,
+    section_period,
+)
 
 # Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
 SHARE = 0.95
@@ -222,11 +229,11 @@ def least_distance(first: np.ndarray, second: np.ndarray) -> float:
 def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
     """Tell whether a settled motion lies on an attractor, as far as that is resolved.
 
-    A closed orbit may lie in the midst of a chaotic attractor or a torus, but not on it.
+    A closed orbit may lie in the midst of a chaotic attractor, but not on it.
 
     resolution : distance below which attractors are not told apart
     tolerance : distance within which the returns of closed orbits repeat
     """
-    if found.closed(tolerance) and attractor.spacing > resolution / DRIFT:
+    if found.closed(tolerance) and attractor.kind == CHAOTIC:
         return False
     return distance(found.returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)
