@@ -6,7 +6,6 @@ import numpy as np
 import xarray
 from matplotlib.colors import to_rgb
 
-UNDETERMINED_COLOR = "#FFFFFF"
 OTHER_COLOR = "#999999"
 
 # The synchronized attractor has the first; the others go to the branches that exist at the most values of a.

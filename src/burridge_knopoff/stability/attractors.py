@@ -105,19 +105,14 @@ class Search:
     vain: int = 0
 
     @property
-    def scale(self) -> float:
-        """Motion is in proportion to v (for the linearized law exactly): factor on all distances, given for v = 0.1."""
-        return self.model.v / 0.1
-
-    @property
     def resolution(self) -> float:
         """Distance below which attractors are not told apart."""
-        return self.settings["resolution"] * self.scale
+        return self.settings["resolution"] * self.model.scale
 
     @property
     def tolerance(self) -> float:
         """Distance within which the returns of a closed orbit repeat."""
-        return self.motion["period_tolerance"] * min(1.0, self.scale)
+        return self.motion["period_tolerance"] * min(1.0, self.model.scale)
 
     def labels(self, starts: Sequence[Instant], check: bool = True) -> np.ndarray:
         """Return the index of the attractor that each state reaches, adding attractors that were not known yet.
@@ -296,7 +291,7 @@ class Search:
         first.
         """
         for index, attractor in enumerate(self.attractors):
-            radius = min(attractor.radius, LARGEST_RADIUS * self.scale)
+            radius = min(attractor.radius, LARGEST_RADIUS * self.model.scale)
             midst = self._midst(index)
             for k, other in enumerate(self.attractors):
                 if k != index and k not in midst and index not in self._midst(k):
@@ -326,7 +321,7 @@ class Search:
         radius = self.attractors[index].radius
         midst = self._midst(index)
         generator = np.random.default_rng(self.settings["seed"])
-        while radius >= least * self.scale:
+        while radius >= least * self.model.scale:
             close = self._recovered(motion, radius)
             narrow = [replace(item, radius=min(item.radius, close)) for item in self.attractors]
             if midst:

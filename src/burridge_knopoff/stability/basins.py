@@ -56,7 +56,7 @@ def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mappin
         steady = measure(model, start, settings["transient"], window, threshold, motion)
         if steady is None:
             raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
-        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + SAME_MEAN * model.v / 0.1
+        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + SAME_MEAN * model.scale
         if abs(steady.mean_distance - one["mean_distance"].item()) > error:
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "

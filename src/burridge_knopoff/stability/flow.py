@@ -31,6 +31,11 @@ class Model:
     contact: str = "one_sided"
 
     @property
+    def scale(self) -> float:
+        """Motion is in proportion to v (for the linearized law exactly): factor on distances, given for v = 0.1."""
+        return self.v / 0.1
+
+    @property
     def sliding_offset(self) -> np.ndarray:
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
         return self.chain.sliding_offset(float(self.friction(self.v)))

@@ -77,7 +77,7 @@ def spread(model: Model, motion: SteadyMotion, settings: Mapping[str, Any]) -> S
     generator = np.random.default_rng(settings["seed"])
     clouds = [motion.returns, motion.mirror_returns]
     for k in generator.integers(len(motion.returns), size=PUSHED):
-        size = PUSHED_BY * settings["resolution"] * model.v / 0.1
+        size = PUSHED_BY * settings["resolution"] * model.scale
         start = pushed(instant_of(motion.returns[k]), size, generator)
         found = visit(model, start, PUSHED_FOR * settings["transient"], settings["window"])
         if found is not None:
