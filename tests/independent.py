@@ -14,7 +14,10 @@ GRID = 400
 
 
 def events(law, a, position, velocity, *, v=0.1, contact="one_sided", start="moving", end=20.0):
-    """Return (times, blocks from 1, kinds 0 stop | 1 start) of all events up to `end`, and the final (U, U')."""
+    """Return (times, blocks from 1, kinds 0 stop | 1 start) of all events up to `end`, and the final (U, U').
+
+    law : linearized, nonlinear, or a function Φ of aU'
+    """
     n = len(position)
     driving = np.full(n, 2.0)
     driving[0] = driving[-1] = 1.0
@@ -26,6 +29,8 @@ def events(law, a, position, velocity, *, v=0.1, contact="one_sided", start="mov
         return pull
 
     def friction(speed):
+        if callable(law):
+            return law(a * speed)
         return 1.0 - a * speed if law == "linearized" else 1.0 / (1.0 + a * speed)
 
     u, w = np.array(position, float), np.array(velocity, float)

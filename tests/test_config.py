@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff.config import ConfigError, all_points, check_file, load_study, read_schema
+from burridge_knopoff.config.checks import LAW_SOLVERS
 
 NAN = float("nan")
 INFINITE = float("inf")
@@ -141,6 +142,11 @@ BAD = [
     ({"chains": {"time_limit": 100}}, ["chains.time_limit: 100", "≥ 200"]),
     ({"chains": {"synchronization_distance": 0}}, ["chains.synchronization_distance: 0", "≥ 1e-14"]),
     ({"chains": {"two_blocks": {"a": [{"from": 0.1, "to": 0.2, "step": 0.03}]}}}, ["chains.two_blocks.a[0].step"]),
+    ({"solvers": {"a": [0.0801]}}, ["solvers.a: 0.0801", "grid"]),
+    ({"solvers": {"a": []}}, ["solvers.a: []", "at least 1"]),
+    ({"solvers": {"a": [0.1, 0.1]}}, ["solvers.a: [0.1, 0.1]", "each value once"]),
+    ({"solvers": {"step": 0}}, ["solvers.step: 0", "≥ 1e-09"]),
+    ({"solvers": {"steps": 0.1}}, ["solvers.steps: unknown key", "step"]),
 ]
 
 
@@ -225,6 +231,41 @@ def test_options_of_a_point(schema):
     assert "--position=-0.989,-0.993,-0.991" in study.options("nonlinear", "minus", "0.0800")
     with pytest.raises(ConfigError, match=re.escape("a0.0801.nc")):
         study.options("linearized", "plus", "0.0801")
+
+
+def test_options_of_another_solver(schema):
+    study = load(schema, solvers={"step": 0.02}, step=0.01, solver={"nonlinear": "rk4"}, window=500)
+    assert study.other_solvers("linearized") == ["series", "rk4"]
+    assert study.other_solvers("nonlinear") == ["series"]
+    own = study.options("linearized", "plus", "0.0800").split()
+    series = study.options("linearized", "plus", "0.0800", "series").split()
+    assert [(one, other) for one, other in zip(own, series, strict=True) if one != other] == [("map", "series")]
+    rk4 = study.options("linearized", "plus", "0.0800", "rk4")
+    assert "--solver rk4 --step 0.02 " in rk4
+    assert "--lyapunov-exponents 0" in rk4
+    assert "--window 500" in rk4
+    for law, solver in (("linearized", "map"), ("nonlinear", "rk4"), ("nonlinear", "map")):
+        with pytest.raises(ConfigError, match=f"{law}/{solver}: not a comparison of study test"):
+            study.options(law, "plus", "0.0800", solver)
+
+
+def test_every_solver_of_a_law_is_compared(schema):
+    for law, solvers in LAW_SOLVERS.items():
+        assert list(solvers) == schema["properties"]["solver"]["properties"][law]["enum"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({}, [0.02, 0.05, 0.08, 0.2]),
+        ({"a": [0.05, 0.1, 0.2]}, [0.05, 0.2]),
+        ({"a": [0.01, 0.1, 0.3]}, [0.1]),  # the value nearest to 0.08, which the figures show
+        ({"a": [0.01, 0.1, 0.3], "figures": {"a": 0.3}}, [0.3]),
+        ({"a": [0.01, 0.1, 0.3], "solvers": {"a": [0.3, 0.01]}}, [0.01, 0.3]),
+    ],
+)
+def test_where_solvers_are_compared(schema, changes, expected):
+    assert load(schema, **changes).config["solvers"]["a"] == expected
 
 
 @given(st.integers(0, 1000), st.integers(1, 50), st.sampled_from(["0.001", "0.0025", "0.0001", "0.0005"]))

@@ -29,6 +29,16 @@ STABILITY_SOURCES = (
     *(f"stability/{path.name}" for path in sorted((PACKAGE / "stability").glob("*.py"))),
 )
 
+#: The files whose text decides the verdicts on the claims, given the summaries.
+CLAIM_SOURCES = tuple(f"claims/{path.name}" for path in sorted((PACKAGE / "claims").glob("*.py")))
+
+#: The files whose text decides what the report of a study looks like, besides its figures and summaries.
+REPORT_SOURCES = tuple(
+    path.relative_to(PACKAGE).as_posix()
+    for path in sorted((PACKAGE / "report").rglob("*"))
+    if path.suffix in (".py", ".jinja", ".css", ".js")
+)
+
 
 @cache
 def source_fingerprint(names: tuple[str, ...] = POINT_SOURCES) -> str:

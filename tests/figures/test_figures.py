@@ -6,10 +6,12 @@ import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
 
-from burridge_knopoff.figures import distance, friction_laws, mean_distance, motion, orbits
+from burridge_knopoff.figures import distance, friction_laws, mean_distance, motion, orbits, stick_slip
+from burridge_knopoff.figures import equilibrium as equilibrium_figure
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.style import write_figure
 from burridge_knopoff.simulation import simulate
+from burridge_knopoff.summaries import equilibrium
 from burridge_knopoff.summaries.orbits import summarize
 
 
@@ -87,7 +89,16 @@ def test_orbits_says_that_there_are_none():
 
 
 def test_friction_laws_are_the_models():
-    lines = {line.get_label(): line for line in friction_laws.draw([0.3]).axes[0].get_lines()}
+    least = np.array([[[1.0, 0.7]], [[1.0, np.nan]]])
+    runs = xr.Dataset(
+        {"least_friction": (("law", "initial", "a"), least)},
+        {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.3]},
+    )
+    laws, seen = friction_laws.draw([0.3], runs).axes
+    lines = {line.get_label(): line for line in seen.get_lines()}
+    assert np.array_equal(lines["plus, linearized"].get_ydata(), least[0, 0])
+    assert np.array_equal(lines["plus, nonlinear"].get_ydata(), least[1, 0], equal_nan=True)
+    lines = {line.get_label(): line for line in laws.get_lines()}
     speed, linearized = lines["$a=0.3$, linearized"].get_data()
     assert np.allclose(linearized, 1.0 - 0.3 * speed)
     assert np.allclose(lines["$a=0.3$, nonlinear"].get_ydata(), 1.0 / (1.0 + 0.3 * speed))
@@ -105,3 +116,54 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, point, suffix):
         write_figure(motion.draw(point), tmp_path / f"{name}.{suffix}")
     assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
     assert len(list(tmp_path.iterdir())) == 2
+
+
+def cycles(blocks, initial=("minus",)):
+    """A summary of stick-slip cycles with other numbers for every block, and a gap for one that never stops."""
+    a = np.array([0.0, 0.1, 0.2])
+    names = ("law", "initial", "a", "block")
+    shape = (2, len(initial), 3, blocks)
+    block = np.arange(1.0, blocks + 1)
+    values = {
+        name: (names, np.broadcast_to(block * (1.0 + a[:, None]), shape).copy())
+        for name in ("stop_rate", "cycle_time", "cycle_time_error", "stick_fraction", "velocity_frequency")
+    }
+    values["velocity_frequency_error"] = (names, np.full(shape, 0.01))
+    values["cycle_time"][1][:, :, 0, 0] = np.nan
+    values["stop_rate"][1][:, :, 0] = 0.0
+    values["velocity_correlation"] = (names[:3], np.full(shape[:3], -0.5))
+    labels = {"law": ["linearized", "nonlinear"], "initial": list(initial), "a": a, "block": np.arange(1, blocks + 1)}
+    return xr.Dataset(values, labels)
+
+
+@pytest.mark.parametrize(("blocks", "shown"), [(2, [1, 2]), (3, [1, 2, 3]), (6, [1, 3, 6])])
+def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, blocks, shown):
+    dataset = cycles(blocks)
+    figure = stick_slip.draw(dataset, "nonlinear")
+    panels = figure.axes
+    assert len(panels) == 4
+    drawn = [line.get_ydata(orig=False) for line in panels[0].get_lines() if len(line.get_ydata()) == 3]
+    expected = dataset["cycle_time"].sel(law="nonlinear", initial="minus")
+    for values, block in zip(drawn, shown, strict=True):
+        assert np.array_equal(values, expected.sel(block=block), equal_nan=True)
+    middle = (blocks + 1) // 2
+    ratios = [line.get_ydata() for line in panels[1].get_lines() if len(line.get_ydata()) == 3]
+    ends = [block for block in shown if block != middle]
+    for number, block in enumerate(ends):
+        assert ratios[2 * number] == pytest.approx([block / middle] * 3)
+        # Where the middle block never stops there is no ratio of stops.
+        assert ratios[2 * number + 1] == pytest.approx([np.nan, block / middle, block / middle], nan_ok=True)
+    assert len(ratios) == 2 * len(ends)
+    assert panels[1].get_ylabel() == f"ratio to block {middle}"
+    write_figure(figure, tmp_path / "figure.png")
+
+
+def test_equilibrium_draws_eigenvalues_and_simulated_rates():
+    dataset = equilibrium.summarize(3, [0.0, 0.1, 0.2], 0.1)
+    plane, growth = equilibrium_figure.draw(dataset).axes
+    lines = {line.get_label(): line.get_ydata() for line in growth.get_lines()}
+    assert lines["$a/2$"].tolist() == [0.0, 0.05, 0.1]
+    assert lines["nonlinear law, simulated"].tolist() == dataset["growth_rate"].sel(law="nonlinear").values.tolist()
+    real = dataset["eigenvalue"].sel(part="real", law="nonlinear").max("mode")
+    assert lines["nonlinear law"].tolist() == real.values.tolist()
+    assert len([line for line in plane.get_lines() if len(line.get_xdata()) == 3]) == 12

@@ -7,9 +7,17 @@ from typing import Any
 
 from burridge_knopoff.config.grid import values_of
 from burridge_knopoff.config.message import ConfigError
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.settings import SOLVERS
 
 #: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss.
 BASIN_A = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
+
+#: Solvers that know a friction law.
+LAW_SOLVERS = {law: SOLVERS if law == "linearized" else SOLVERS[1:] for law in LAWS}
+
+#: Where the solvers are compared if a study does not say: two synchronized values, the paper's figures, and chaos.
+SOLVER_A = (0.02, 0.05, 0.08, 0.2)
 
 #: Config keys that are options of `bk simulate` under the same name.
 RUN_KEYS = (
@@ -68,6 +76,17 @@ def fill_basins(config: Mapping[str, Any], grid: set[float], file: str) -> None:
         raise ConfigError(
             f"{file}: basins.tiles: {basins['tiles']} is not allowed: at most the {basins['pixels']} rows of a map"
         )
+
+
+def fill_solvers(config: Mapping[str, Any], grid: set[float], shown: float, file: str) -> None:
+    """Check where the solvers are compared against the grid, and fill it in; `shown` if no usual value is there."""
+    solvers = config["solvers"]
+    if "a" not in solvers:
+        solvers["a"] = [a for a in SOLVER_A if a in grid] or [shown]
+    for a in solvers["a"]:
+        if a not in grid:
+            raise ConfigError(f"{file}: solvers.a: {a!r} is not allowed: a value of the grid")
+    solvers["a"] = sorted(float(a) for a in solvers["a"])
 
 
 def check_states(config: Mapping[str, Any], file: str) -> None:

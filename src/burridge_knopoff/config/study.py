@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.config.checks import (
+    LAW_SOLVERS,
     RUN_KEYS,
     check_boxes,
     check_chains,
     check_runs,
     check_states,
     fill_basins,
+    fill_solvers,
 )
 from burridge_knopoff.config.grid import grid_of
 from burridge_knopoff.config.message import ConfigError
@@ -46,6 +48,11 @@ class Study:
         return tuple(self.config["initial"])
 
     @property
+    def blocks(self) -> int:
+        """Number of blocks of the chain."""
+        return len(next(iter(self.config["initial"].values()))["position"])
+
+    @property
     def figure_point(self) -> str:
         """Name of the value of a that the figures of single runs show."""
         shown = self.config["figures"].get("a", PAPER_A)
@@ -62,14 +69,26 @@ class Study:
             if state["position"][1:-1] == plane["position"][1:-1] and state["velocity"] == plane["velocity"]
         }
 
-    def options(self, law: str, initial: str, a: str) -> str:
+    def other_solvers(self, law: str) -> list[str]:
+        """Return the solvers that know a law, without the one that makes the points of the study."""
+        return [solver for solver in LAW_SOLVERS[law] if solver != self.config["solver"][law]]
+
+    def options(self, law: str, initial: str, a: str, solver: str | None = None) -> str:
         """Return the options of `bk simulate` for one grid point, named by its wildcards.
 
-        Raises ConfigError if a is not a value of the grid.
+        solver : another one than that of the study's points
+        Raises ConfigError if a is not a value of the grid, or the solver not another one that knows the law.
         """
         if a not in self.grid:
             raise ConfigError(f"a{a}.nc: not a point of study {self.name}: a is not in its grid")
-        config = self.config
+        config = dict(self.config)
+        if solver is not None:
+            if solver not in self.other_solvers(law):
+                allowed = " | ".join(self.other_solvers(law))
+                raise ConfigError(f"{law}/{solver}: not a comparison of study {self.name}: {allowed} for this law")
+            config.update(solver={law: solver}, step=config["solvers"]["step"])
+            if solver == "rk4":
+                config["lyapunov_exponents"] = 0
         state = config["initial"][initial]
         options = [("law", law), ("a", repr(self.grid[a])), ("initial", initial)]
         options += [(key, ",".join(repr(float(value)) for value in state[key])) for key in ("position", "velocity")]
@@ -88,7 +107,7 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     """
     _check_names(config, file)
     filled = _with_defaults(copy.deepcopy(dict(config)), schema)
-    _check_schema(filled, schema, file)
+    check_schema(filled, schema, file)
     grid = grid_of(filled, file)
     check_states(filled, file)
     check_runs(filled, file)
@@ -98,7 +117,9 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     shown = filled["figures"].get("a")
     if shown is not None and shown not in grid.values():
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
-    return Study(filled, grid)
+    study = Study(filled, grid)
+    fill_solvers(filled, set(grid.values()), grid[study.figure_point], file)
+    return study
 
 
 def check_file(path: str | Path) -> None:
@@ -155,7 +176,8 @@ def _validator_class() -> Any:
     return jsonschema.validators.extend(base, type_checker=checker)
 
 
-def _check_schema(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> None:
+def check_schema(config: Any, schema: Mapping[str, Any], file: str) -> None:
+    """Raise ConfigError, one line, for the first place at which the content of a file breaks its schema."""
     errors = sorted(_validator_class()(schema).iter_errors(config), key=lambda error: [str(key) for key in error.path])
     if not errors:
         return

@@ -21,9 +21,9 @@ AXES: dict[str, Variable] = {
 }
 
 
-def axes(initial: Sequence[str], a: Sequence[float]) -> dict[str, Any]:
+def axes(initial: Sequence[str], a: Sequence[float], laws: Sequence[str] = LAWS) -> dict[str, Any]:
     """Return the coordinates of a summary over (law, initial, a)."""
-    values = {"law": np.array(LAWS, dtype=object), "initial": np.array(initial, dtype=object), "a": np.asarray(a)}
+    values = {"law": np.array(laws, dtype=object), "initial": np.array(initial, dtype=object), "a": np.asarray(a)}
     return {name: (name, values[name], _attributes(item)) for name, item in AXES.items()}
 
 

@@ -7,7 +7,7 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import PAGE, cells, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import cells, color, label_panels, new_figure, page_width, styled
 
 ROUNDING = 1e-17
 
@@ -19,7 +19,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
     Shaded: the laws disagree, in ⟨J⟩ (by more than both tolerances) or in the kind of motion.
     """
     states = agreement["initial"].values
-    figure, panels = new_figure(PAGE, 5.6, rows=3, columns=len(states))
+    figure, panels = new_figure(page_width(len(states)), 5.6, rows=3, columns=len(states))
     a = agreement["a"].values
     edges = cells(a)
     for column, initial in enumerate(states):

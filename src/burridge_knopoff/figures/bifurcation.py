@@ -6,7 +6,7 @@ import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.dataset.variables import DIRECTION
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
 from burridge_knopoff.summaries.bifurcation import section_points
 
 _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"].split(), strict=True))
@@ -16,7 +16,7 @@ _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"]
 def draw(bifurcation: xarray.Dataset, laws: list[str]) -> Figure:
     """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
     initial = bifurcation["initial"].attrs["flag_meanings"].split()
-    figure, panels = new_figure(PAGE, 0.5 + 2.6 * len(laws), rows=len(laws), columns=len(initial))
+    figure, panels = new_figure(page_width(len(initial)), 0.5 + 2.6 * len(laws), rows=len(laws), columns=len(initial))
     titles = []
     for number, panel in enumerate(panels):
         law, state = laws[number // len(initial)], initial[number % len(initial)]

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, styled
+from burridge_knopoff.figures.two_blocks import draw_panel
 from burridge_knopoff.stability.chains import STANDARD_ERRORS
 
 COLUMNS = 3
@@ -51,7 +52,7 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
         [handles[k] for k in order], [labels[k] for k in order], loc="center right", handletextpad=0.3, fontsize=7.0
     )
     wide = lower.subplots()
-    _draw_two_blocks(wide, two_blocks)
+    draw_panel(wide, two_blocks)
     titles = [f"$N={count}$" for count in blocks]
     label_panels(
         [*panels[: len(blocks)], wide], [*titles, r"$N=2$, both laws: $\langle J\rangle$ of each initial state"]
@@ -85,20 +86,3 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         )  # fmt: skip
     panel.set_ylim(-0.05, 1.2)
     panel.set_yticks([0.0, 0.5, 1.0])
-
-
-def _draw_two_blocks(panel: Axes, two_blocks: xarray.Dataset) -> None:
-    a = two_blocks["a"].values
-    half = 0.5 * (np.diff(a).min() if len(a) > 1 else 0.0)
-    for value in a[(two_blocks["agrees"] == 0).any("state").values]:
-        panel.axvspan(value - half, value + half, color="0.9", linewidth=0, zorder=0)
-    for index, law in enumerate(two_blocks["law"].values):
-        mean = two_blocks["mean_distance"].sel(law=law).values
-        for number, state in enumerate(mean):
-            panel.plot(
-                a, state, "ox"[index % 2], markersize=(3.4, 2.4)[index % 2], markeredgewidth=0.6, fillstyle="none",
-                color=color(index), label=law if number == 0 else None,
-            )  # fmt: skip
-    panel.set_xlabel("$a$")
-    panel.set_ylabel(r"$\langle J\rangle$")
-    panel.legend(loc="center right", title="shaded: the laws disagree")

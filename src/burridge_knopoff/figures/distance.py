@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
 
 # Below this J is rounding; on a logarithmic axis it would take all the room.
 FLOOR = 1e-16
@@ -21,7 +21,7 @@ def draw(points: Mapping[str, xarray.Dataset]) -> Figure:
     The linear panels leave out the first relaxation, which is up to a hundred times what follows; a run that ended
     early leaves the rest of its panel empty.
     """
-    figure, panels = new_figure(PAGE, 4.0, rows=2, columns=len(points), share_rows=False)
+    figure, panels = new_figure(page_width(len(points)), 4.0, rows=2, columns=len(points), share_rows=False)
     titles = []
     for column, (initial, point) in enumerate(points.items()):
         for row in range(2):

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from burridge_knopoff.figures.style import PAGE, cells, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import cells, label_panels, new_figure, page_width, styled
 from burridge_knopoff.stability.motion import KINDS
 
 #: A colour for each kind of motion.
@@ -22,7 +22,7 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     A panel for each law and initial state; exponents below the panel, among them those that are −∞, are not shown.
     """
     laws, states = lyapunov["law"].values, lyapunov["initial"].values
-    figure, panels = new_figure(PAGE, 0.8 + 2.1 * len(laws), rows=len(laws), columns=len(states))
+    figure, panels = new_figure(page_width(len(states)), 0.8 + 2.1 * len(laws), rows=len(laws), columns=len(states))
     a = lyapunov["a"].values
     edges = cells(a)
     titles = []

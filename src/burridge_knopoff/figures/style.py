@@ -69,6 +69,14 @@ def new_figure(
     return figure, list(axes.flat)
 
 
+def page_width(columns: int) -> float:
+    """Return the width, in inches, of a figure with so many columns of panels: a page for two, in proportion for more.
+
+    Panels with titles of their own would overlap if more than two shared a page.
+    """
+    return PAGE * max(1.0, columns / 2)
+
+
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
     """Write (a), (b), … and what each panel shows above it."""
     for number, (panel, title) in enumerate(zip(axes, titles, strict=True)):

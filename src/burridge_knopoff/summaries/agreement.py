@@ -12,13 +12,15 @@ from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _POINT = ("law", "initial", "a")
 _PAIR = ("initial", "a")
+#: The laws that are compared: the paper's.
+COMPARED = ("linearized", "nonlinear")
+
 _VERDICT = {-1: "undetermined", 0: "no", 1: "yes"}
 _YES_NO = flag("i1", _VERDICT)
 VARIABLES = {
@@ -54,11 +56,11 @@ def summarize(
     """
     values = {}
     for name, item in VARIABLES.items():
-        shape = {_POINT: grid.shape, _PAIR: grid.shape[1:]}.get(item.dimensions, grid.shape[1:2])
+        shape = {_POINT: (len(COMPARED), *grid.shape[1:]), _PAIR: grid.shape[1:]}.get(item.dimensions, grid.shape[1:2])
         values[name] = np.zeros(shape, dtype=item.dtype)
     for j, initial in enumerate(grid.initial):
         for k, a in enumerate(grid.a):
-            pair = [read_point(grid, law, initial, a, _READ) for law in LAWS]
+            pair = [read_point(grid, law, initial, a, _READ) for law in COMPARED]
             upward = [point["crossing_velocity"][point["crossing_direction"] > 0] for point in pair]
             for i, point in enumerate(pair):
                 values["mean_distance"][i, j, k] = point["mean_distance"]
@@ -67,13 +69,13 @@ def summarize(
             count, until = common_order(*(_sequence(point) for point in pair))
             values["event_order_count"][j, k] = count
             values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
-    values["kind"][...] = lyapunov["kind"].values
+    values["kind"][...] = lyapunov["kind"].sel(law=list(COMPARED)).values
     judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
     return summary(
         "Agreement of the linearized and the nonlinear friction law",
         VARIABLES,
         values,
-        axes(grid.initial, list(grid.a.values())),
+        axes(grid.initial, list(grid.a.values()), COMPARED),
         {"synchronization_threshold": synchronization_threshold, **agreement},
     )
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray
 
@@ -9,6 +11,10 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.simulation import STATUS
 from burridge_knopoff.summaries.points import Grid, read_point
+
+#: Levels of J below which a run has to stay to have settled: the eye's, that of a figure, and synchrony.
+LEVELS = (1.0e-2, 1.0e-3, 1.0e-6)
+LEVEL = Variable(("level",), "f8", "level of J", coordinate=True)
 
 _AXES = ("law", "initial", "a")
 VARIABLES = {
@@ -24,22 +30,43 @@ VARIABLES = {
     "window_least_spring_force": Variable(_AXES, "f8", "least spring force s on a stuck block in the window"),
     "event_count": Variable(_AXES, "i8", "number of stops and starts in the whole run"),
     "status": Variable(_AXES, "i1", "how the run ended", flag("i1", dict(enumerate(STATUS)))),
+    "settling_time": Variable(
+        (*_AXES, "level"), "f8", "least sampled time tau from which on all samples of J are below the level"
+    ),
 }
-_READ = [name for name in VARIABLES if name != "synchronized"]
+_READ = [name for name in VARIABLES if name not in ("synchronized", "settling_time")]
 
 
 def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
-    """Return ⟨J⟩, its error and which points are synchronized; a run that did not complete has NaN and is not."""
+    """Return ⟨J⟩, its error, when J settles and which points are synchronized.
+
+    A run that did not complete has NaN and is not synchronized.
+    """
     values = {name: np.zeros(grid.shape, dtype=item.dtype) for name, item in VARIABLES.items()}
+    values["settling_time"] = np.full((*grid.shape, len(LEVELS)), np.nan)
     for index, point in grid:
-        read = read_point(grid, *point, _READ)
+        read = read_point(grid, *point, [*_READ, "time", "distance"])
         for name in _READ:
             values[name][index] = read[name]
+        if STATUS[int(read["status"])] == "completed":
+            values["settling_time"][index] = settling_time(read["time"], read["distance"], LEVELS)
     values["synchronized"] = values["mean_distance"] < synchronization_threshold
     return summary(
         "Mean distance <J> between the end blocks",
         VARIABLES,
         values,
-        axes(grid.initial, list(grid.a.values())),
+        {
+            **axes(grid.initial, list(grid.a.values())),
+            "level": ("level", np.array(LEVELS), LEVEL.all_attributes()),
+        },
         {"synchronization_threshold": synchronization_threshold},
     )
+
+
+def settling_time(time: np.ndarray, distance: np.ndarray, levels: Sequence[float]) -> list[float]:
+    """Return, for each level, the least time from which on all samples are below it, NaN if the last one is not."""
+    settled = []
+    for level in levels:
+        first = len(distance) - int(np.argmin(np.append((distance < level)[::-1], False)))
+        settled.append(float(time[first]) if first < len(distance) else np.nan)
+    return settled

@@ -206,12 +206,12 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
 
 def _compare(values: dict[str, Any], families: Sequence[Family | None], grid: Sequence[float], v: float) -> None:
     """Fill in how the nonlinear law at a differs from the linearized one at a / (1 + a v)²."""
+    linearized_row, nonlinear_row = LAWS.index("linearized"), LAWS.index("nonlinear")
     values["effective_a"] = effective_a(np.asarray(grid, dtype=float), v)
     for name in ("critical_a", "grazing_a"):
-        linearized, nonlinear = values[name]
+        linearized, nonlinear = values[name][[linearized_row, nonlinear_row]]
         values[f"effective_{name}_difference"] = effective_a(nonlinear, v) - linearized
-    linearized_family = families[LAWS.index("linearized")]
-    nonlinear_row = LAWS.index("nonlinear")
+    linearized_family = families[linearized_row]
     for k, a in enumerate(values["effective_a"]):
         if linearized_family is None or values["status"][nonlinear_row, k] != FOUND:
             continue

@@ -49,17 +49,31 @@ def read_point(grid: Grid, law: str, initial: str, a: str, names: Sequence[str])
 
     Raises PointError if the file is missing, damaged, or of another law, initial state or value of a.
     """
-    path = grid.path(law, initial, a)
+    return read_run(grid.path(law, initial, a), law, initial, grid.a[a], names)
+
+
+def read_run(
+    path: Path, law: str, initial: str, a: float, names: Sequence[str], solver: str | None = None
+) -> dict[str, np.ndarray]:
+    """Return the named variables of the point file at a path.
+
+    Raises PointError if the file is missing, damaged, or of another law, initial state, value of a, or solver if given.
+    """
     try:
         with netCDF4.Dataset(path) as dataset:
             dataset.set_auto_mask(False)
             found = (dataset.law, dataset.initial, float(dataset["a"][...]))
+            found_solver = dataset.solver
             values = {name: dataset[name][...] for name in names}
     except (OSError, RuntimeError, AttributeError, IndexError, KeyError) as error:
         raise PointError(f"{path}: not a readable point file ({error}); delete it and run snakemake again") from error
-    if found != (law, initial, grid.a[a]):
+    if found != (law, initial, a):
         raise PointError(
             f"{path}: holds law {found[0]}, initial {found[1]}, a {found[2]!r} instead of "
-            f"{law}, {initial}, {grid.a[a]!r}; delete it and run snakemake again"
+            f"{law}, {initial}, {a!r}; delete it and run snakemake again"
+        )
+    if solver is not None and found_solver != solver:
+        raise PointError(
+            f"{path}: was made by solver {found_solver} instead of {solver}; delete it and run snakemake again"
         )
     return values

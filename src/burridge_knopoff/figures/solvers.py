@@ -1,0 +1,77 @@
+"""Independent solvers: ⟨J⟩ that each gives, and how many steps each takes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+
+#: Steps in a unit of time of the paper's own numerical solution.
+PAPER_STEPS = 1e6
+
+MARKERS = ("o", "s", "^")
+
+# Width, in places of a, over which the points at one a are spread.
+SPREAD = 0.6
+
+
+# Differences below this are rounding; 0 is drawn here.
+FLOOR = 1e-17
+
+
+@styled
+def draw(solvers: xarray.Dataset) -> Figure:
+    """Draw ⟨J⟩, how far it is from that of the study's solver, and the steps per unit time, of every solver at each a.
+
+    A column for each law. The points at one a are set apart: first by initial state, then by solver. Short lines in the
+    middle row are the standard errors of the differences, as of independent runs.
+    """
+    laws, states = solvers["law"].values, solvers["initial"].values
+    figure, panels = new_figure(PAGE, 6.2, rows=3, columns=len(laws))
+    names = solvers["solver"].values.tolist()
+    place = np.arange(solvers.sizes["a"])
+    for column, law in enumerate(laws):
+        means, differences, steps = panels[column :: len(laws)]
+        own = solvers.attrs[f"solver_{law}"]
+        there = [name for name in names if (solvers["status"].sel(law=law, solver=name) >= 0).any()]
+        slots = len(states) * len(there)
+        for j, initial in enumerate(states):
+            for n, name in enumerate(there):
+                run = solvers.sel(law=law, solver=name, initial=initial)
+                x = place + SPREAD * ((j * len(there) + n + 0.5) / slots - 0.5)
+                look = _look(names.index(name), j)
+                means.errorbar(x, run["mean_distance"], run["mean_distance_error"], **look)
+                steps.plot(x, run["step_count"] / run["end_time"], **look)
+                if name != own:
+                    differences.plot(x, np.maximum(abs(run["difference"]), FLOOR), **look)
+                    error = np.maximum(run["difference_error"], FLOOR)
+                    differences.plot(x, error, "_", color=look["color"], markersize=6, markeredgewidth=0.7)
+        steps.axhline(PAPER_STEPS, color="0.4", linestyle=":", linewidth=0.9)
+        steps.set_xticks(place, [f"{value:g}" for value in solvers["a"].values])
+        steps.set(xlabel="$a$", xlim=(-0.5, len(place) - 0.5))
+    panels[0].set_ylabel(r"$\langle J\rangle$")
+    panels[len(laws)].set(ylabel=r"$|\Delta\langle J\rangle|$", yscale="log", ylim=(0.2 * FLOOR, 1.0))
+    panels[2 * len(laws)].set(ylabel="steps per unit time", yscale="log")
+    panels[2 * len(laws)].set_ylim(top=4.0 * PAPER_STEPS)
+    handles = [Line2D([], [], **_look(n, 0), label=name) for n, name in enumerate(names)]
+    handles += [Line2D([], [], **_look(0, j, "0.3"), label=f"from {initial}") for j, initial in enumerate(states)]
+    handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's steps"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(7, len(handles)))
+    titles = [[r"$\langle J\rangle$" for _ in laws]]
+    titles.append([f"difference to {solvers.attrs[f'solver_{law}']}" for law in laws])
+    titles.append(["steps" for _ in laws])
+    label_panels(panels, [f"{law} law: {what}" for row in titles for law, what in zip(laws, row, strict=True)])
+    return figure
+
+
+def _look(solver: int, initial: int, hue: str | None = None) -> dict[str, Any]:
+    """Return the look of a point: colour and shape tell the solver, the filling the initial state."""
+    hue = color(solver) if hue is None else hue
+    face = (hue, "white", "0.75")[initial % 3]
+    look = {"color": hue, "marker": MARKERS[solver], "markersize": 4.0, "markeredgewidth": 0.8}
+    return {**look, "markerfacecolor": face, "linestyle": ""}

@@ -1,0 +1,98 @@
+"""Stick-slip cycles against a: how long they last, how often the blocks move, whether the end blocks move in step."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+
+#: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
+#: half the frequency of the middle one.
+PAPER_CYCLE = (2.0, 3.0)
+PAPER_RATIO = 0.5
+
+# The end blocks often coincide: the later one is drawn smaller, inside the marker of the earlier one.
+SIZES = (3.6, 2.4, 1.5)
+MARKERS = ("o", "s", "^")
+
+
+@styled
+def draw(stick_slip: xarray.Dataset, law: str) -> Figure:
+    """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
+
+    A column for each initial state. Of the blocks the first, the middle and the last one are shown; ratios are those of
+    the end blocks to the middle one, shaded as far as the spectrum resolves them. Gaps are blocks that do not stop, and
+    runs that did not complete.
+    """
+    states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
+    middle = (count + 1) // 2
+    shown = sorted({1, middle, count})
+    figure, panels = new_figure(PAGE, 7.4, rows=4, columns=len(states))
+    for column, initial in enumerate(states):
+        run = stick_slip.sel(law=law, initial=initial)
+        cycles, ratios, together, sticks = panels[column :: len(states)]
+        for n, block in enumerate(shown):
+            one = run.sel(block=block)
+            _points(cycles, n, one["cycle_time"], one["cycle_time_error"])
+            _points(sticks, n, one["stick_fraction"])
+            if block != middle:
+                _ratios(ratios, n, one, run.sel(block=middle))
+        cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
+        ratios.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
+        together.plot(run["a"], run["velocity_correlation"], "o", color="black", markersize=2.0)
+        together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
+        sticks.set_xlabel("$a$")
+    labels = ("time between stops", f"ratio to block {middle}", "correlation", "share of the window")
+    for row, label in enumerate(labels):
+        panels[row * len(states)].set_ylabel(label)
+    panels[0].set_ylim(bottom=0.0)
+    panels[len(states)].set_ylim(bottom=0.0)
+    panels[2 * len(states)].set_ylim(-1.1, 1.1)
+    panels[3 * len(states)].set_ylim(bottom=-0.01)
+    figure.legend(handles=_legend(shown), loc="outside lower center", ncols=4)
+    titles = (
+        "cycle time",
+        "frequency of the end blocks",
+        f"$U_1'$ with $U_{{{count}}}'$",
+        "stick fraction",
+    )
+    label_panels(panels, [f"{initial}, {law} law: {title}" for title in titles for initial in states])
+    return figure
+
+
+def _look(n: int) -> dict[str, Any]:
+    return {"color": color(n), "marker": MARKERS[n], "markersize": SIZES[n], "markeredgewidth": 0.5, "linestyle": ""}
+
+
+def _points(panel: Axes, n: int, values: xarray.DataArray, errors: xarray.DataArray | None = None) -> None:
+    panel.errorbar(values["a"], values, errors, elinewidth=0.6, **_look(n))
+
+
+def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
+    """Draw the frequency of the velocity of an end block over that of the middle one, and the same of their stops."""
+    # Both are within the resolution of the spectrum.
+    ratio = end["velocity_frequency"] / middle["velocity_frequency"]
+    shares = [(one["velocity_frequency_error"] / one["velocity_frequency"]).values for one in (end, middle)]
+    error = ratio * np.hypot(shares[0], shares[1])
+    panel.fill_between(end["a"], ratio - error, ratio + error, step="mid", color=color(n), alpha=0.12, linewidth=0)
+    panel.plot(end["a"], ratio, **_look(n))
+    stops = end["stop_rate"] / middle["stop_rate"].where(middle["stop_rate"] > 0.0)
+    panel.plot(end["a"], stops, markerfacecolor="none", **_look(n))
+
+
+def _legend(shown: list[int]) -> list[Line2D | Patch]:
+    gray: dict[str, Any] = {**_look(0), "color": "0.3"}
+    return [
+        *(Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)),
+        Line2D([], [], **gray, label="of the velocity"),
+        Line2D([], [], **gray, markerfacecolor="none", label="of the stops"),
+        Patch(facecolor="0.88", label="the paper's 2 to 3"),
+        Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's 1/2"),
+    ]

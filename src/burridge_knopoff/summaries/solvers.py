@@ -1,0 +1,93 @@
+"""Do independent solvers of the same equations agree? ⟨J⟩, cost and order of events of every solver of each law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.settings import SOLVERS
+from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.summaries.event_order import common_order
+from burridge_knopoff.summaries.points import Grid, read_run
+
+NO_RUN = -1
+
+_AXES = ("law", "solver", "initial", "a")
+_NO_RUN = {NO_RUN: "no_such_solver"}
+VARIABLES = {
+    "mean_distance": Variable(
+        _AXES,
+        "f8",
+        "time average <J> of the phase-space distance between the end blocks",
+        {"ancillary_variables": "mean_distance_error status"},
+    ),
+    "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
+    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", {**_NO_RUN, **dict(enumerate(STATUS))})),
+    "step_count": Variable(_AXES, "i8", "number of solver steps in the whole run, -1 if there is no run"),
+    "end_time": Variable(_AXES, "f8", "time tau at which the run ended"),
+    "difference": Variable(_AXES, "f8", "<J> minus <J> of the solver of the study's points"),
+    "difference_error": Variable(
+        _AXES, "f8", "standard error of the difference of <J>, as of two independent runs; 0 for the solver itself"
+    ),
+    "event_order_time": Variable(
+        _AXES, "f8", "time tau until which the order of events is that of the solver of the study's points"
+    ),
+    "event_order_count": Variable(
+        _AXES,
+        "i8",
+        "number of events that come in the order of the solver of the study's points, -1 if there is no run",
+    ),
+}
+SOLVER = Variable(("solver",), "O", "solver", coordinate=True)
+_COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_time")
+_EVENT = ("time", "block", "kind")
+_READ = [*_COPIED, *(f"{part}event_{name}" for part in ("earlier_", "") for name in _EVENT)]
+
+
+def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], step: float) -> xarray.Dataset:
+    """Compare the solvers of each law at every point of a grid.
+
+    grid : the study's points at the values of a that are compared
+    folder : holds the runs of the other solvers, <law>/<solver>/<initial>/a<value>.nc
+    solvers : {law: its solvers}, that of the study's points first
+    step : of rk4 in these runs, unless it makes the points
+    """
+    shape = (len(LAWS), len(SOLVERS), *grid.shape[1:])
+    values = {name: np.full(shape, NO_RUN if item.dtype[0] == "i" else np.nan) for name, item in VARIABLES.items()}
+    for (i, j, k), (law, initial, a) in grid:
+        reference: dict[str, np.ndarray] = {}
+        for solver in solvers[law]:
+            path = folder / law / solver / initial / f"a{a}.nc" if reference else grid.path(law, initial, a)
+            run = read_run(path, law, initial, grid.a[a], _READ, solver)
+            reference = reference or run
+            index = (i, SOLVERS.index(solver), j, k)
+            for name in _COPIED:
+                values[name][index] = run[name]
+            values["difference"][index] = run["mean_distance"] - reference["mean_distance"]
+            error = np.hypot(run["mean_distance_error"], reference["mean_distance_error"])
+            values["difference_error"][index] = error if run is not reference else 0.0 * error
+            count, until = common_order(_sequence(run), _sequence(reference))
+            values["event_order_count"][index] = count
+            values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
+    shared = axes(grid.initial, list(grid.a.values()))
+    attributes = SOLVER.all_attributes()
+    del attributes["units"]
+    return summary(
+        "Independent solvers of the same equations",
+        VARIABLES,
+        values,
+        {"law": shared["law"], "solver": ("solver", np.array(SOLVERS, dtype=object), attributes), **shared},
+        {**{f"solver_{law}": solvers[law][0] for law in LAWS}, "step": step},
+    )
+
+
+def _sequence(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, block and kind of all events of a run."""
+    time, block, kind = (np.concatenate([run[f"earlier_event_{name}"], run[f"event_{name}"]]) for name in _EVENT)
+    return time, block, kind

@@ -1,0 +1,156 @@
+"""Stick-slip cycles over (law, initial, a): how often and how long each block sticks, and how velocities relate."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray
+from scipy.signal import find_peaks, periodogram
+
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.summaries.points import Grid, read_point
+
+STOP, START = 0, 1
+
+# The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
+PADDING = 8
+
+# A velocity that varies by no more than this share of its modulus is constant: the rest is rounding.
+ROUNDING = 1e-10
+
+_POINT = ("law", "initial", "a")
+_BLOCK = (*_POINT, "block")
+VARIABLES = {
+    "stop_rate": Variable(_BLOCK, "f8", "stops in a unit of time, in the window"),
+    "cycle_time": Variable(
+        _BLOCK,
+        "f8",
+        "mean time from one stop of a block to its next, in the window",
+        {"ancillary_variables": "cycle_time_error"},
+    ),
+    "cycle_time_error": Variable(_BLOCK, "f8", "standard error of the mean time between stops, from batches of cycles"),
+    "stick_fraction": Variable(_BLOCK, "f8", "share of the window in which a block sticks"),
+    "velocity_frequency": Variable(
+        _BLOCK,
+        "f8",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the kept trajectory",
+        {"ancillary_variables": "velocity_frequency_error"},
+    ),
+    "velocity_frequency_error": Variable(
+        _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a kept trajectory of length T"
+    ),
+    "velocity_correlation": Variable(
+        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the kept trajectory"
+    ),
+    "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
+}
+BLOCK = Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True)
+_EVENT = ("time", "block", "kind")
+_READ = [
+    *("status", "velocity", "trajectory_time"),
+    *(f"earlier_event_{name}" for name in _EVENT),
+    *(f"event_{name}" for name in _EVENT),
+]
+
+
+def summarize(grid: Grid, blocks: int, transient: float, window: float, batches: int) -> xarray.Dataset:
+    """Return rates, durations and velocities of the stick-slip motion; a run that did not complete has NaN.
+
+    transient, window, batches : of the runs; stops are counted from transient to transient + window
+    """
+    sizes = dict(zip(_POINT, grid.shape, strict=True), block=blocks)
+    values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
+    for index, point in grid:
+        read = read_point(grid, *point, _READ)
+        if STATUS[int(read["status"])] != "completed":
+            continue
+        time, block, kind = (np.concatenate([read[f"earlier_event_{name}"], read[f"event_{name}"]]) for name in _EVENT)
+        velocity, duration = read["velocity"], np.ptp(read["trajectory_time"])
+        for n in range(blocks):
+            own = block == n + 1
+            stops = time[own & (kind == STOP) & (time >= transient)]
+            values["stop_rate"][index][n] = len(stops) / window
+            values["cycle_time"][index][n], values["cycle_time_error"][index][n] = cycle_time(stops, batches)
+            ends_stuck = bool(velocity[-1, n] == 0.0)
+            values["stick_fraction"][index][n] = stick_fraction(
+                time[own], kind[own], transient, transient + window, ends_stuck
+            )
+            frequency = leading_frequency(velocity[:, n], duration)
+            values["velocity_frequency"][index][n] = frequency
+            values["velocity_frequency_error"][index][n] = 0.5 / duration if math.isfinite(frequency) else np.nan
+        values["velocity_correlation"][index] = correlation(velocity[:, 0], velocity[:, -1])
+        values["least_velocity"][index] = velocity.min(axis=0)
+    return summary(
+        "Stick-slip cycles of each block, and how the velocities of the blocks go together",
+        VARIABLES,
+        values,
+        {
+            **axes(grid.initial, list(grid.a.values())),
+            "block": ("block", np.arange(1, blocks + 1, dtype=BLOCK.dtype), BLOCK.all_attributes()),
+        },
+        {"transient": transient, "window": window, "batches": batches},
+    )
+
+
+def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:
+    """Return the mean time between successive stops and its standard error, NaN for fewer than two stops.
+
+    Successive cycles depend on each other. The error is that of the means of `batches` runs of successive cycles, as
+    for ⟨J⟩; of single cycles if there are fewer.
+    """
+    cycles = np.diff(stops)
+    if not len(cycles):
+        return math.nan, math.nan
+    means = np.array([part.mean() for part in np.array_split(cycles, min(batches, len(cycles)))])
+    error = float(means.std(ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.nan
+    return float(stops[-1] - stops[0]) / len(cycles), error
+
+
+def stick_fraction(time: np.ndarray, kind: np.ndarray, begin: float, end: float, ends_stuck: bool) -> float:
+    """Return the share of [begin, end] in which a block sticks.
+
+    time, kind : all its stops and starts from τ = 0 on, in order
+    ends_stuck : whether it sticks at the end, which decides if it has neither stopped nor started
+    """
+    before = kind[0] == START if len(kind) else ends_stuck
+    edge = np.clip(np.concatenate([[begin], time, [end]]), begin, end)
+    stuck = np.concatenate([[before], kind == STOP])
+    return float(np.diff(edge)[stuck].sum()) / (end - begin)
+
+
+def leading_frequency(values: np.ndarray, duration: float) -> float:
+    """Return the frequency of the highest peak of the spectrum of equidistant samples that last for `duration`.
+
+    The mean is taken off, a Hann window put on, and the peak's place is that of the parabola through the logarithms of
+    the power around it. NaN if the values are constant, or no peak has a full cycle within the duration.
+    """
+    if is_constant(values) or len(values) < 4:
+        return math.nan
+    interval = duration / (len(values) - 1)
+    length = PADDING * len(values)
+    frequency, power = periodogram(values, 1.0 / interval, window="hann", nfft=length, detrend="constant")
+    peaks = find_peaks(power)[0]
+    peaks = peaks[frequency[peaks] * duration >= 1.0]
+    if not len(peaks):
+        return math.nan
+    top = peaks[np.argmax(power[peaks])]
+    left, middle, right = (math.log(power[k]) for k in (top - 1, top, top + 1))
+    return float(frequency[top] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
+
+
+def correlation(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the Pearson correlation of two series of equal length, NaN if one of them is constant."""
+    if is_constant(one) or is_constant(other):
+        return math.nan
+    one, other = one - one.mean(), other - other.mean()
+    # Sums, not products of matrices: the last bit of those depends on where in memory the values lie.
+    product = (one * other).sum() / math.sqrt((one * one).sum() * (other * other).sum())
+    return float(min(max(product, -1.0), 1.0))
+
+
+def is_constant(values: np.ndarray) -> bool:
+    """Return whether values differ by rounding only."""
+    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())

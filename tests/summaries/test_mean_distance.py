@@ -1,0 +1,48 @@
+"""When J settles: hand-made samples."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
+from burridge_knopoff.summaries.points import Grid
+
+TIME = np.array([0.0, 5.0, 10.0, 15.0])
+
+
+@pytest.mark.parametrize(
+    ("distance", "expected"),
+    [
+        ([1.0, 0.5, 0.05, 0.005], 15.0),
+        ([1.0, 0.005, 0.05, 0.005], 15.0),  # comes back once
+        ([1.0, 0.005, 0.001, 0.0], 5.0),
+        ([0.001, 0.001, 0.001, 0.001], 0.0),
+        ([0.001, 0.001, 0.001, 0.01], np.nan),  # at the level is not below it
+        ([0.001, 0.001, 0.001, np.nan], np.nan),
+        ([0.001, np.nan, 0.001, 0.001], 10.0),
+    ],
+)
+def test_settling_time(distance, expected):
+    assert settling_time(TIME, np.array(distance), [0.01]) == pytest.approx([expected], nan_ok=True)
+
+
+def test_settling_times_of_runs(tmp_path):
+    grid = Grid(tmp_path, ("minus",), {"0.0800": 0.08})
+    runs = {}
+    for _, (law, initial, a) in grid:
+        runs[law] = simulate(law, 0.08, initial, transient=1500.0, window=100.0, batches=2)
+        if law == "nonlinear":
+            runs[law] = dataclasses.replace(runs[law], status="step_limit")
+        write_point(runs[law], grid.path(law, initial, a))
+    found = summarize(grid, 1e-6)["settling_time"]
+    assert found.sel(law="linearized").values.ravel().tolist() == settling_time(
+        runs["linearized"].time, runs["linearized"].distance, LEVELS
+    )
+    # J at synchrony dies out like the transverse multiplier to the power of the number of periods.
+    settled = found.sel(law="linearized", initial="minus", a=0.08)
+    assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
+    assert settled.sel(level=1e-2) <= settled.sel(level=1e-3) < settled.sel(level=1e-6)
+    assert np.isnan(found.sel(law="nonlinear")).all()

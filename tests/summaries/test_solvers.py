@@ -1,0 +1,89 @@
+"""Solvers against each other: differences and orders of events are those of the runs; other files are refused."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.figures import solvers as figure
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.summaries.points import Grid, PointError
+from burridge_knopoff.summaries.solvers import summarize
+
+SOLVERS = {"linearized": ["map", "series", "rk4"], "nonlinear": ["series", "rk4"]}
+A = {"0.0800": 0.08, "0.2000": 0.2}
+
+
+def settings(solver):
+    exponents = {"lyapunov_exponents": 0, "step": 0.01} if solver == "rk4" else {}
+    return {"solver": solver, "transient": 200.0, "window": 300.0, "batches": 3, **exponents}
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return {
+        (law, solver, name): simulate(law, a, "plus", **settings(solver))
+        for law in SOLVERS
+        for solver in SOLVERS[law]
+        for name, a in A.items()
+    }
+
+
+@pytest.fixture
+def files(tmp_path, runs):
+    for (law, solver, name), run in runs.items():
+        own = solver == SOLVERS[law][0]
+        folder = tmp_path / "points" / law if own else tmp_path / "solvers" / law / solver
+        write_point(run, folder / "plus" / f"a{name}.nc")
+    return Grid(tmp_path / "points", ("plus",), A), tmp_path / "solvers"
+
+
+def test_the_runs_are_compared(files, runs):
+    dataset = summarize(*files, SOLVERS, 0.01)
+    assert dict(dataset.sizes) == {"law": 2, "solver": 3, "initial": 1, "a": 2}
+    assert dataset.attrs["solver_linearized"] == "map"
+    for (law, solver, name), run in runs.items():
+        own = runs[law, SOLVERS[law][0], name]
+        point = dataset.sel(law=law, solver=solver, initial="plus", a=A[name])
+        assert point["mean_distance"].item() == run.mean_distance
+        assert point["difference"].item() == run.mean_distance - own.mean_distance
+        assert point["step_count"].item() == run.step_count
+        assert point["status"].item() == 0
+        expected = 0.0 if run is own else np.hypot(run.mean_distance_error, own.mean_distance_error)
+        assert point["difference_error"].item() == expected
+        if run is own:
+            assert point["event_order_count"].item() == run.event_count
+            assert point["event_order_time"].item() == run.end_time == 500.0
+    torus = dataset.sel(law="linearized", initial="plus", a=0.08)
+    assert abs(torus["difference"].sel(solver="series")) < 1e-11
+    assert torus["event_order_time"].sel(solver="series") == 500.0
+    assert 1e-9 < abs(torus["difference"].sel(solver="rk4")) < 1e-3
+    # Chaos: a time-stepping solution has another order of events before long.
+    assert 20.0 < dataset["event_order_time"].sel(law="linearized", solver="rk4", initial="plus", a=0.2) < 500.0
+
+
+def test_a_solver_that_does_not_know_a_law_has_no_numbers(files):
+    none = summarize(*files, SOLVERS, 0.01).sel(law="nonlinear", solver="map")
+    assert (none["status"] == -1).all()
+    assert (none["step_count"] == -1).all()
+    assert (none["event_order_count"] == -1).all()
+    for name in ("mean_distance", "mean_distance_error", "end_time", "difference", "event_order_time"):
+        assert np.isnan(none[name]).all()
+
+
+def test_a_file_of_another_solver_is_refused(files):
+    grid, folder = files
+    (folder / "linearized" / "series" / "plus" / "a0.0800.nc").write_bytes(
+        (folder / "linearized" / "rk4" / "plus" / "a0.0800.nc").read_bytes()
+    )
+    with pytest.raises(PointError, match=r"series/plus/a0\.0800\.nc: was made by solver rk4 instead of series"):
+        summarize(grid, folder, SOLVERS, 0.01)
+
+
+def test_the_figure_draws_every_solver(files):
+    dataset = summarize(*files, SOLVERS, 0.01)
+    panels = figure.draw(dataset).axes
+    shown = [line.get_ydata().tolist() for line in panels[0].get_lines() if len(line.get_ydata()) == 2]
+    for solver in SOLVERS["linearized"]:
+        assert dataset["mean_distance"].sel(law="linearized", solver=solver, initial="plus").values.tolist() in shown
+    assert len(panels[1].containers) == 2
+    assert panels[3].get_title(loc="left") == "(d) nonlinear law: difference to series"

@@ -1,0 +1,160 @@
+"""Stick-slip cycles: hand-made event lists and spectra, and the synchronized orbit, whose times are known."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.simulation import simulate
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.flow import Model
+from burridge_knopoff.summaries.points import Grid
+from burridge_knopoff.summaries.stick_slip import (
+    correlation,
+    cycle_time,
+    leading_frequency,
+    stick_fraction,
+    summarize,
+)
+
+STOP, START = 0, 1
+
+
+def test_cycle_time_of_a_hand_made_list():
+    mean, error = cycle_time(np.array([1.0, 3.0, 7.0, 9.0, 13.0]), 2)
+    assert mean == 3.0
+    # Two batches of two cycles: means 3 and 3.
+    assert error == 0.0
+    mean, error = cycle_time(np.array([0.0, 1.0, 2.0, 5.0, 8.0]), 2)
+    # Batch means 1 and 3: standard deviation sqrt(2), over sqrt(2).
+    assert (mean, error) == (2.0, pytest.approx(1.0))
+    # Fewer cycles than batches: single cycles 1 and 3.
+    assert cycle_time(np.array([0.0, 1.0, 4.0]), 7) == (2.0, pytest.approx(1.0))
+
+
+@pytest.mark.parametrize(("stops", "mean"), [([], np.nan), ([5.0], np.nan), ([5.0, 7.5], 2.5)])
+def test_too_few_stops_have_no_cycle_time_or_no_error(stops, mean):
+    found = cycle_time(np.array(stops), 4)
+    assert found[0] == pytest.approx(mean, nan_ok=True)
+    assert np.isnan(found[1])
+
+
+@pytest.mark.parametrize(
+    ("time", "kind", "ends_stuck", "expected"),
+    [
+        # The window is [10, 20].
+        ([12.0, 13.0, 15.0, 17.0], [STOP, START, STOP, START], False, 0.3),
+        ([8.0, 11.0], [STOP, START], False, 0.1),  # begins stuck
+        ([18.0], [STOP], True, 0.2),  # ends stuck
+        ([11.0, 19.0], [START, STOP], True, 0.2),  # stuck from τ = 0 on
+        ([2.0], [STOP], True, 1.0),  # its last event lies before the window
+        ([2.0, 5.0], [STOP, START], False, 0.0),
+        ([], [], True, 1.0),  # never an event
+        ([], [], False, 0.0),
+        ([12.0, 12.0], [STOP, START], False, 0.0),  # turns round at once
+    ],
+)
+def test_stick_fraction_of_hand_made_lists(time, kind, ends_stuck, expected):
+    found = stick_fraction(np.array(time), np.array(kind, dtype=int), 10.0, 20.0, ends_stuck)
+    assert found == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize("frequency", [0.1, 0.1763, 0.35, 1.234])
+def test_the_frequency_of_a_sine_is_found_far_below_the_resolution(frequency):
+    time = np.linspace(0.0, 30.0, 601)
+    values = 0.1 + 0.05 * np.sin(2 * np.pi * frequency * time + 1.0) + 0.01 * np.sin(2 * np.pi * 2.9 * time)
+    assert leading_frequency(values, 30.0) == pytest.approx(
+        frequency, abs=0.05 * 0.5 / 30.0 / (30.0 * frequency) ** 0.5
+    )
+
+
+def test_no_frequency_without_a_cycle():
+    time = np.linspace(0.0, 30.0, 601)
+    assert np.isnan(leading_frequency(np.zeros(601), 30.0))
+    assert np.isnan(leading_frequency(np.full(601, 0.1) + 1e-17 * np.cos(time), 30.0))
+    assert np.isnan(leading_frequency(np.array([0.1]), 0.0))
+    # A trend alone has no cycle; beside one it does not hide it.
+    assert leading_frequency(np.exp(-time / 40.0) + 0.5 * np.sin(time), 30.0) == pytest.approx(0.5 / np.pi, abs=3e-3)
+
+
+def test_correlation():
+    one = np.sin(np.arange(500) * 0.1)
+    assert correlation(one, one) == 1.0
+    assert correlation(one, 0.3 - 2.0 * one) == pytest.approx(-1.0, abs=1e-14)
+    assert correlation(one, np.cos(np.arange(500) * 0.1)) == pytest.approx(
+        np.corrcoef(one, np.cos(np.arange(500) * 0.1))[0, 1], abs=1e-14
+    )
+    assert np.isnan(correlation(one, np.zeros(500)))
+    assert np.isnan(correlation(np.full(500, 0.1), one))
+
+
+SETTINGS = {"transient": 1500.0, "window": 400.0, "batches": 4}
+
+
+def points(folder, initial, a, change=lambda law, trajectory: trajectory, **settings):
+    """Write the points of one initial state at one a, altered if asked, and return their grid."""
+    name = initial if isinstance(initial, str) else initial.name
+    grid = Grid(folder, (name,), {f"{a:.4f}": a})
+    for _, (law, _, number) in grid:
+        trajectory = simulate(law, a, initial, **{**SETTINGS, **settings})
+        write_point(change(law, trajectory), grid.path(law, name, number))
+    return grid
+
+
+def test_the_synchronized_orbit(tmp_path):
+    """Its period and slip time come from Newton's method, without an event list or a window."""
+    dataset = summarize(points(tmp_path, "minus", 0.05), 3, **SETTINGS)
+    for law in ("linearized", "nonlinear"):
+        orbit = Family(Model(Chain(3), Friction(law, 0.0))).at(0.05)
+        run = dataset.sel(law=law, initial="minus", a=0.05)
+        assert run["cycle_time"].values == pytest.approx([orbit.period] * 3, rel=1e-9)
+        assert (run["cycle_time_error"] < 1e-9).all()
+        # Whole periods, but for the ends of the window.
+        share = np.array([1.0 - orbit.lateral_slip_time / orbit.period, orbit.center_stick_time / orbit.period] * 2)[:3]
+        assert run["stick_fraction"].values == pytest.approx(share, abs=orbit.period / 400.0)
+        assert run["stop_rate"].values == pytest.approx([1.0 / orbit.period] * 3, abs=1.01 / 400.0)
+        assert run["velocity_frequency"].values == pytest.approx([1.0 / orbit.period] * 3, abs=1e-3)
+        assert run["velocity_frequency_error"].values == pytest.approx(1.0 / 60.0)
+        assert run["velocity_correlation"].item() == pytest.approx(1.0, abs=1e-12)
+        assert run["least_velocity"].values.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_events_before_those_with_states_count_as_well(tmp_path):
+    """However the events are kept, the same stops are counted."""
+    kept = [
+        summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), 3, **SETTINGS)
+        for events, width in (("window", 50.0), ("window", 400.0), ("all", 1.0))
+    ]
+    assert kept[0].identical(kept[1])
+    assert kept[0].identical(kept[2])
+    # Blocks 1 and 3 slip in turns, while block 2 stops more than twice as often.
+    run = kept[0].sel(law="linearized", initial="plus", a=0.08)
+    assert run["velocity_correlation"] < -0.5
+    assert run["stop_rate"].values[1] > 2.0 * run["stop_rate"].values[0]
+
+
+def test_a_block_that_never_moves_and_one_that_never_stops(tmp_path):
+    """The first block is pulled back and sticks; the second one slips for half a period of its own, π/√2."""
+    held = InitialState("held", (3.0, -1.0), (0.0, 0.1))
+    grid = points(tmp_path, held, 0.05, transient=0.5, window=1.0, start="tested", trajectory=1.0)
+    run = summarize(grid, 2, 0.5, 1.0, 2).sel(law="linearized", a=0.05, initial="held")
+    assert run["stick_fraction"].values.tolist() == [1.0, 0.0]
+    assert run["stop_rate"].values.tolist() == [0.0, 0.0]
+    assert run["least_velocity"].values[0] == 0.0 < run["least_velocity"].values[1]
+    assert np.isnan(run["velocity_correlation"])
+    assert np.isnan(run["velocity_frequency"].values[0])
+    assert np.isnan(run["cycle_time"]).all()
+
+
+def test_a_run_that_did_not_complete_has_nothing(tmp_path):
+    def change(law, trajectory):
+        return dataclasses.replace(trajectory, status="diverged") if law == "nonlinear" else trajectory
+
+    dataset = summarize(points(tmp_path, "minus", 0.05, change), 3, **SETTINGS)
+    for variable in dataset.data_vars.values():
+        assert np.isnan(variable.sel(law="nonlinear")).all()
+        assert np.isfinite(variable.sel(law="linearized")).all()
