@@ -1,0 +1,71 @@
+"""A claim under each convention of contact and start.
+
+Under the study's own it is judged by the runs, under the others by the attractors that the initial states reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, Measured, Verdict, by_share, shares_text, worst
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def under_conventions(
+    evidence: Evidence,
+    own: str,
+    reason: str,
+    measured: Sequence[Measured],
+    exceptions: Sequence[str],
+    judge: Callable[[xarray.Dataset], tuple[str, str]],
+) -> Verdict:
+    """Return the verdict of a claim that the conventions may decide.
+
+    own : verdict of the study's own runs
+    exceptions : where the claim does not hold under the study's own convention
+    judge : takes the attractors with what the initial states reach under one convention; returns verdict and figures,
+        or "" for the verdict if nothing is known
+
+    A claim depends on convention if it holds, at least loosely, under one and fails under another.
+    """
+    verdicts, others = {evidence.own_convention: own}, []
+    if "attractors" in evidence.summaries:
+        for name, attractors in evidence.conventions():
+            if name == evidence.own_convention:
+                continue
+            found, figures = judge(attractors)
+            if found:
+                verdicts[name] = found
+            if found and found != own:
+                others.append(f"{name}: {found} ({figures})")
+    fails = [verdict == FAILS for verdict in verdicts.values()]
+    verdict = CONVENTION if any(fails) and not all(fails) else own
+    return Verdict(verdict, reason, measured, "; ".join([*exceptions, *others]), dict(sorted(verdicts.items())))
+
+
+def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return (known, values) of a variable on the attractors that an initial state reaches.
+
+    attractors : with a, under one convention
+    known : shape (a,); False where no attractor is known to be reached, and the values are those of any
+    values : shape (a, …)
+    """
+    found = attractors.sel(law=law)
+    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
+        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
+    )
+    slots &= found["branch"].values >= 0
+    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]
+
+
+def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:
+    """Return (the worst verdict by shares, the shares as text); ("", "") if there is none."""
+    if not shares:
+        return "", ""
+    return worst(by_share(share, loose) for share in shares.values()), shares_text(shares)

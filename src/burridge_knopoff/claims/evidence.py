@@ -1,0 +1,106 @@
+"""The summaries and the setting of a study, as the judges of claims ask for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from burridge_knopoff.claims.verdict import NotTestableError, Range
+from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.simulation import STATUS
+
+if TYPE_CHECKING:
+    import xarray
+
+#: The paper's friction laws; a study may know more.
+PAPER_LAWS = ("linearized", "nonlinear")
+
+#: The paper's velocity of the driver.
+PAPER_V = 0.1
+
+_COMPLETED = STATUS.index("completed")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a study has found.
+
+    summaries : Datasets by name: mean_distance, lyapunov, …; those that the study does not make are left out
+    config : the study's config: v, contact, start, initial, and the sections `motion` and `agreement`
+    """
+
+    summaries: Mapping[str, xarray.Dataset]
+    config: Mapping[str, Any]
+
+    def check_setting(self) -> None:
+        """Raise NotTestableError if the driver is not as fast as the paper's."""
+        if self.config["v"] != PAPER_V:
+            raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
+
+    def check_blocks(self) -> None:
+        """Raise NotTestableError if the chain is not the paper's."""
+        blocks = len(next(iter(self.config["initial"].values()))["position"])
+        if blocks != 3:
+            raise NotTestableError(f"the paper's chain has 3 blocks, that of the study {blocks}")
+
+    def summary(self, name: str) -> xarray.Dataset:
+        """Return a summary; raises NotTestableError if the study has none of that name."""
+        if name not in self.summaries:
+            raise NotTestableError(f"the study has no summary {name}.nc")
+        return self.summaries[name]
+
+    def of_state(self, name: str, initial: str) -> xarray.Dataset:
+        """Return a summary over law and a for one of the paper's initial states, completed runs only.
+
+        Raises NotTestableError if the study has no such state, or another under its name.
+        """
+        self.check_state(initial)
+        dataset = self.summary(name).sel(initial=initial)
+        if "status" in dataset:
+            dataset = dataset.where(dataset["status"] == _COMPLETED)
+        return dataset
+
+    def check_state(self, initial: str) -> None:
+        """Raise NotTestableError if the study has no initial state of that name, or not the paper's."""
+        states = self.config["initial"]
+        if initial not in states:
+            raise NotTestableError(f"the study has no initial state {initial}")
+        paper = PAPER_STATES[initial]
+        own = states[initial]
+        if list(own["position"]) != list(paper.position) or list(own["velocity"]) != list(paper.velocity):
+            raise NotTestableError(f"the study's initial state {initial} is not the paper's")
+
+    def choose(self, dataset: xarray.Dataset, a: Range) -> xarray.Dataset:
+        """Return the part of a summary in a range of a; raises NotTestableError if the grid has no value there."""
+        chosen = a.choose(dataset["a"].values)
+        if not chosen.any():
+            raise NotTestableError(f"the grid has no value {a}")
+        return dataset.isel(a=chosen)
+
+    def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:
+        """Return a summary at one value of a; raises NotTestableError if it is not in the grid."""
+        if a not in dataset["a"].values:
+            raise NotTestableError(f"a = {a:g} is not in the grid")
+        return dataset.sel(a=a)
+
+    @property
+    def own_convention(self) -> str:
+        """The study's convention of contact and start, as a table names it."""
+        return f"{self.config['contact']}, {self.config['start']}"
+
+    def conventions(self) -> Iterator[tuple[str, xarray.Dataset]]:
+        """Yield («contact, start», the attractors with what initial states reach) for each convention."""
+        self.check_blocks()
+        attractors = self.summary("attractors")
+        for contact in attractors["contact"].values:
+            for start in attractors["start"].values:
+                yield f"{contact}, {start}", attractors.sel(contact=contact, start=start)
+
+
+def finite(values: Any) -> np.ndarray:
+    """Return the finite values of an array, shape (n,)."""
+    array = np.asarray(values, dtype=float).ravel()
+    return array[np.isfinite(array)]

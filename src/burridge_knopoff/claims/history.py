@@ -1,0 +1,139 @@
+"""Claims on what decides between motions that coexist: the initial state, the first block, the end blocks' phases."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
+from burridge_knopoff.claims.verdict import (
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    by_share,
+    spans,
+)
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def coexistence(evidence: Evidence, a: Range, loose: float) -> Verdict:
+    """Judge whether more than one attractor exists at each a of a range, so that history can decide, under both laws.
+
+    An attractor counts if sampled initial states reach it; mirror images count once.
+    """
+    evidence.check_blocks()
+    attractors = evidence.choose(evidence.summary("attractors"), a)
+    shares, measured, single = {}, [], []
+    for law in PAPER_LAWS:
+        found = attractors.sel(law=law)
+        reached = np.where(found["basin_count"].values > 0, found["branch"].values, -1)
+        count = np.array([len(set(row[row >= 0])) for row in reached])
+        shares[law] = float((count > 1).mean())
+        measured.append(Measured(f"share of a with more than one attractor, {law}", shares[law]))
+        measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
+        fraction = found["basin_fraction"].values[reached == 0]
+        if len(fraction):
+            measured.append(Measured(f"least basin fraction of synchrony, {law}", float(fraction.min())))
+            measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
+        if not (count > 1).all():
+            single.append(f"at most one attractor at a = {spans(found['a'].values, count <= 1)} ({law})")
+    verdict, text = judge_shares(shares, loose)
+    reason = f"More than one attractor is reached at {text} of the values of a with {a}."
+    return Verdict(verdict, reason, measured, "; ".join(single))
+
+
+def first_block_decides(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+    """Judge whether one of two initial states leads to synchrony and the other does not, for all a and both laws."""
+    first, second = (evidence.choose(evidence.of_state("mean_distance", name), a) for name in initial)
+    shares, same = {}, []
+    for law in PAPER_LAWS:
+        one, other = (runs["synchronized"].sel(law=law).values for runs in (first, second))
+        known = np.isfinite(one) & np.isfinite(other)
+        if not known.any():
+            raise NotTestableError(f"no runs under the {law} law completed at {a}")
+        shares[law] = float((one != other)[known].mean())
+        if shares[law] < 1.0:
+            same.append(f"no difference at a = {spans(first['a'].values, known & (one == other))} ({law})")
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        branch = evidence.choose(attractors, a)["initial_branch"]
+        pairs = {law: (branch.sel(law=law, initial=state) for state in initial) for law in PAPER_LAWS}
+        differ = {law: _outcomes_differ(*pair) for law, pair in pairs.items()}
+        return judge_shares({law: share for law, share in differ.items() if share is not None}, loose)
+
+    own, text = judge_shares(shares, loose)
+    reason = (
+        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {text} of the values with {a}."
+    )
+    measured = [Measured(f"share of a at which the outcome differs, {law}", share) for law, share in shares.items()]
+    return under_conventions(evidence, own, reason, measured, same, labels)
+
+
+def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+    """Judge whether both laws lead from each initial state to the same outcome, synchrony or none, for all a."""
+    shares, differing = {}, []
+    for name in initial:
+        runs = evidence.choose(evidence.of_state("mean_distance", name), a)
+        one, other = (runs["synchronized"].sel(law=law).values for law in PAPER_LAWS)
+        known = np.isfinite(one) & np.isfinite(other)
+        if not known.any():
+            raise NotTestableError(f"no runs from {name} completed at {a}")
+        shares[name] = float((one == other)[known].mean())
+        if shares[name] < 1.0:
+            differing.append(
+                f"the outcomes from {name} differ at a = {spans(runs['a'].values, known & (one != other))}"
+            )
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        branch = evidence.choose(attractors, a)["initial_branch"]
+        pairs = {state: (branch.sel(law=law, initial=state) for law in PAPER_LAWS) for state in initial}
+        differ = {state: _outcomes_differ(*pair) for state, pair in pairs.items()}
+        return judge_shares({state: 1.0 - share for state, share in differ.items() if share is not None}, loose)
+
+    own, text = judge_shares(shares, loose)
+    reason = f"Both laws have the same outcome, synchrony or none, at {text} of the values of a with {a}."
+    measured = [Measured(f"share of a with the same outcome, {name}", share) for name, share in shares.items()]
+    return under_conventions(evidence, own, reason, measured, differing, labels)
+
+
+def _outcomes_differ(one: xarray.DataArray, other: xarray.DataArray) -> float | None:
+    """Return at which share of a one branch is synchrony and the other not; None if both are known nowhere."""
+    known = ((one >= 0) & (other >= 0)).values
+    return float(((one == 0) != (other == 0)).values[known].mean()) if known.any() else None
+
+
+def phases_decide(evidence: Evidence, near: float, far: float, a: Range, share: float, loose: float) -> Verdict:
+    """Judge whether states whose end blocks begin close to each other synchronize and those that begin apart do not.
+
+    near, far : largest |U_1(0) − U_3(0)| of close states, and least of those apart, on the maps of basins
+    share, loose : the claim holds if this share of either group behaves so on every map, loosely if that one does
+    """
+    evidence.check_blocks()
+    maps = evidence.summary("basins")
+    chosen = np.flatnonzero(a.choose(maps["a"].values))
+    if not len(chosen):
+        raise NotTestableError(f"the study has no map of basins with {a}")
+    gap = np.abs(maps["first_position"].values[None, :] - maps["last_position"].values[:, None])
+    laws = maps["law"].attrs["flag_meanings"].split()
+    measured, texts = [], []
+    for index in chosen:
+        branch = maps["branch"].values[index]
+        close, apart = (branch[(branch >= 0) & group] for group in (gap <= near, gap >= far))
+        if not len(close) or not len(apart):
+            raise NotTestableError("a map of basins does not hold states close together and states apart")
+        place = f"{laws[int(maps['law'].values[index])]}, a = {maps['a'].values[index]:g}"
+        measured.append(Measured(f"share of close states that synchronize, {place}", float((close == 0).mean())))
+        measured.append(Measured(f"share of states apart that do not, {place}", float((apart != 0).mean())))
+        texts.append(f"{100 * measured[-2].value:.0f} % and {100 * measured[-1].value:.0f} % ({place})")
+    least = min(item.value for item in measured)
+    reason = (
+        f"Share of the states with |U₁ − U₃| ≤ {near:g} that synchronize, and of those with |U₁ − U₃| ≥ {far:g} that "
+        f"do not: {'; '.join(texts)}."
+    )
+    return Verdict(by_share(1.0 if least >= share else least, loose), reason, measured)

@@ -1,0 +1,151 @@
+"""Claims on the two friction laws and the ways to solve them: whether they agree, and what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from burridge_knopoff.claims.conventions import judge_shares
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    by_share,
+    spans,
+)
+
+
+def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+    """Judge whether both laws lead to the same kind of motion and ⟨J⟩ at all a of a range, by the study's criterion."""
+    shares, measured, apart = {}, [], []
+    for state in initial:
+        whole = evidence.of_state("agreement", state)
+        found = evidence.choose(whole, a)
+        agrees = found["agrees"].values
+        known = agrees >= 0
+        if not known.any():
+            raise NotTestableError(f"the laws could not be compared from {state} with {a}")
+        shares[state] = float((agrees == 1)[known].mean())
+        measured.append(Measured(f"share of a at which the laws agree, {state}", shares[state]))
+        parting = whole["parting_a"].item()
+        if np.isfinite(parting):
+            measured.append(Measured(f"least a at which they disagree, {state}", parting))
+        difference = np.abs(found["difference"].values)
+        if np.isfinite(difference[agrees == 1]).any():
+            measured.append(
+                Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference[agrees == 1])))
+            )
+        if shares[state] < 1.0:
+            apart.append(f"they disagree at a = {spans(found['a'].values, agrees == 0)} ({state})")
+    verdict, text = judge_shares(shares, loose)
+    reason = f"The laws agree in ⟨J⟩ and kind of motion at {text} of the values of a with {a}."
+    return Verdict(verdict, reason, measured, "; ".join(apart))
+
+
+def two_blocks_agree(evidence: Evidence, a: Range, loose: float) -> Verdict:
+    """Judge whether two blocks move alike under both laws, from all sampled states, at all a of a range."""
+    found = evidence.choose(evidence.summary("two_blocks"), a)
+    agrees = found["agrees"].transpose("state", "a").values
+    # One state that parts them is enough; that none does takes all states.
+    known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
+    if not known.any():
+        raise NotTestableError(f"the laws could not be compared for two blocks with {a}")
+    right = (agrees == 1).all(axis=0)
+    share = float(right[known].mean())
+    grid = found["a"].values
+    measured = [Measured("share of a at which the laws agree from all states", share)]
+    measured.append(Measured("share of states and a at which they agree", float((agrees == 1)[agrees >= 0].mean())))
+    wrong = grid[known & ~right]
+    if len(wrong):
+        measured += [
+            Measured("least a at which they disagree", wrong[0]),
+            Measured("largest a at which they disagree", wrong[-1]),
+        ]
+    states = found.sizes["state"]
+    reason = f"From all {states} sampled states the laws agree at {100 * share:.1f} % of the values of a with {a}."
+    changes = f"they disagree at a = {spans(grid, known & ~right)}" if len(wrong) else ""
+    return Verdict(by_share(share, loose), reason, measured, changes)
+
+
+def solutions_agree(evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose: float) -> Verdict:
+    """Judge whether the map, the numerical solution of the linearized law, and that of the nonlinear law agree on ⟨J⟩.
+
+    relative : they agree at a point if each solver's ⟨J⟩ under its law is within this share of that of the study's own
+    solver, or three standard errors, and the laws agree there; points at which synchrony is reached agree below the
+    threshold of synchronization
+    loose : share of points from which on the claim holds loosely
+    """
+    solved, compared, measured, apart = [], [], [], []
+    for state in initial:
+        evidence.check_state(state)
+        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a)
+        agreement = evidence.of_state("agreement", state)
+        threshold = agreement.attrs["synchronization_threshold"]
+        for value in solvers["a"].values:
+            found = solvers.sel(a=value)
+            mean, difference, error = (
+                found[name].values for name in ("mean_distance", "difference", "difference_error")
+            )
+            there = np.isfinite(difference)
+            allowed = np.maximum.reduce(
+                [relative * np.abs(mean), 3.0 * np.nan_to_num(error), np.full_like(mean, threshold)]
+            )
+            within = bool((np.abs(difference) <= allowed)[there].all()) and bool(there.any())
+            laws = evidence.at(agreement, value)["agrees"].item() == 1
+            solved.append(within)
+            compared.append(laws)
+            if there.any():
+                measured.append(
+                    Measured(
+                        f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}",
+                        float(np.abs(difference[there]).max()),
+                    )
+                )
+            if not (within and laws):
+                what = "the laws" if within else "the solvers" if laws else "solvers and laws"
+                apart.append(f"{what} differ at a = {value:g} ({state})")
+    share = float(np.mean(np.logical_and(solved, compared)))
+    reason = (
+        f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (states and a), and the laws "
+        f"at {sum(compared)} of them."
+    )
+    return Verdict(by_share(share, loose), reason, measured, "; ".join(apart))
+
+
+def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
+    """Judge whether the map needs far fewer steps in a unit of time than stepping at a fixed step.
+
+    steps : the paper's time steps in a unit of time
+    much, loose : the claim holds if they are this many times the steps of the map, loosely if that many
+    A step of the map is a solution between two events or part of one; it costs some tens of Runge-Kutta steps.
+    """
+    found = evidence.summary("solvers").sel(law="linearized")
+    if "map" not in found["solver"].values:
+        raise NotTestableError("the study has no run with the solver map")
+    rate = (found["step_count"] / found["end_time"]).where(found["step_count"] >= 0)
+    own = rate.sel(solver="map").values
+    own = own[np.isfinite(own)]
+    if not len(own):
+        raise NotTestableError("no run with the solver map completed")
+    ratio = steps / float(own.max())
+    measured = [
+        Measured("steps of the map in a unit of time, most", float(own.max())),
+        Measured("times fewer than the paper's steps", ratio),
+    ]
+    stepping = rate.sel(solver="rk4").values if "rk4" in found["solver"].values else np.array([])
+    if np.isfinite(stepping).any():
+        measured.append(Measured("steps of rk4 in a unit of time, here", float(np.nanmax(stepping))))
+        error = np.abs(found["difference"].sel(solver="rk4").values)
+        measured.append(Measured("largest |Δ⟨J⟩| of rk4 at that step", float(np.nanmax(error))))
+    verdict = HOLDS if ratio >= much else LOOSELY if ratio >= loose else FAILS
+    reason = (
+        f"The map takes at most {own.max():.2f} steps in a unit of time, the paper's stepping {steps:g}: {ratio:.3g} "
+        f"times as many."
+    )
+    return Verdict(verdict, reason, measured)

@@ -1,0 +1,133 @@
+"""Claims on the model itself: the equilibrium and its stability, the sign of friction, the shape of the solution."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence, finite
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    spans,
+    worst,
+)
+from burridge_knopoff.initial import PAPER_STATES
+
+
+def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:
+    """Judge the formula U_i − vτ = −c_i (1 − av) of the unstable equilibrium, the coefficients c_i given, at all a."""
+    evidence.check_blocks()
+    equilibrium = evidence.summary("equilibrium").sel(law=law)
+    v = evidence.config["v"]
+    formula = -np.outer(1.0 - equilibrium["a"].values * v, coefficients)
+    difference = float(np.abs(equilibrium["equilibrium_position"].values - formula).max())
+    drift = float(equilibrium["equilibrium_drift"].max())
+    measured = [
+        Measured("largest difference from the formula", difference),
+        Measured("largest distance to which a simulation begun there has gone", drift),
+    ]
+    verdict = HOLDS if difference <= tolerance and drift <= tolerance else FAILS
+    reason = (
+        f"The equilibrium differs from the formula by at most {difference:.1e}, and a simulation begun there stays "
+        f"within {drift:.1e}."
+    )
+    return Verdict(verdict, reason, measured)
+
+
+def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
+    """Judge whether the Jacobian at uniform sliding has eigenvalues with a positive real part, under both laws."""
+    evidence.check_blocks()
+    equilibrium = evidence.choose(evidence.summary("equilibrium"), a)
+    verdicts, measured = [], []
+    for law in PAPER_LAWS:
+        found = equilibrium.sel(law=law)
+        growth = found["eigenvalue"].sel(part="real").max(dim="mode").values
+        seen = found["growth_rate"].values
+        verdicts.append(HOLDS if (growth > 0.0).all() else FAILS)
+        measured.append(Measured(f"least of the largest real parts, {law}", float(growth.min())))
+        measured.append(
+            Measured(
+                f"largest difference from the growth seen in simulations, {law}", float(np.abs(growth - seen).max())
+            )
+        )
+    reason = f"With {a} the largest real part is at least {min(m.value for m in measured[::2]):.3g}."
+    whole = evidence.summary("equilibrium")
+    stable = (whole["eigenvalue"].sel(part="real").max(dim="mode") <= 0.0).any(dim="law").values
+    changes = f"no growth at a = {spans(whole['a'].values, stable)}" if stable.any() else ""
+    return Verdict(worst(verdicts), reason, measured, changes)
+
+
+def near_equilibrium(
+    evidence: Evidence, initial: Sequence[str], law: str, at: float, near: float, loose: float
+) -> Verdict:
+    """Judge whether the first block of one state begins close to the equilibrium, measured by where another begins.
+
+    initial : the state that is close, the state that is not
+    near, loose : it holds if the distance is at most this share of the other state's, loosely if at most that
+    """
+    for name in initial:
+        evidence.check_state(name)
+    position = evidence.at(evidence.summary("equilibrium").sel(law=law), at)["equilibrium_position"].values
+    distances = [abs(PAPER_STATES[name].position[0] - position[0]) for name in initial]
+    share = distances[0] / distances[1]
+    verdict = HOLDS if share <= near else LOOSELY if share <= loose else FAILS
+    measured = [
+        Measured(f"|U₁(0) − U₁ᵉ|, {name}", float(value)) for name, value in zip(initial, distances, strict=True)
+    ]
+    reason = (
+        f"At a = {at:g} ({law}) the first block begins {distances[0]:.3f} from its equilibrium in {initial[0]} and "
+        f"{distances[1]:.3f} in {initial[1]}."
+    )
+    return Verdict(verdict, reason, measured)
+
+
+def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a: Range) -> Verdict:
+    """Judge whether the friction on a slipping block stays positive in every run; loosely if in those with a < 0.1."""
+    least, where = np.inf, ""
+    negative = []
+    for state in initial:
+        runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
+        friction = runs["least_friction"].values
+        if not len(finite(friction)):
+            raise NotTestableError(f"no run from {state} completed with {a}")
+        lowest = int(np.nanargmin(friction))
+        if friction[lowest] < least:
+            least, where = float(friction[lowest]), f"{state}, a = {runs['a'].values[lowest]:g}"
+        if (friction <= 0.0).any():
+            negative.append(f"not positive at a = {spans(runs['a'].values, friction <= 0.0)} ({state})")
+    reason = f"The least friction on a slipping block with {a} ({law}) is {least:.3f}, in the run {where}."
+    return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("least Φ(aU')", least)], "; ".join(negative))
+
+
+def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdict:
+    """Judge the number of exponentials in the solution while all blocks slip: it holds loosely of complex pairs."""
+    evidence.check_blocks()
+    found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)["eigenvalue"]
+    real, imaginary = (found.sel(part=part).values for part in ("real", "imaginary"))
+    counts = [
+        len({(round(x, 12), round(y, 12)) for x, y in zip(*pair, strict=True)})
+        for pair in zip(real, imaginary, strict=True)
+    ]
+    pairs = [
+        len({(round(x, 12), round(abs(y), 12)) for x, y in zip(*pair, strict=True)})
+        for pair in zip(real, imaginary, strict=True)
+    ]
+    measured = [
+        Measured("exponentials, least", float(min(counts))),
+        Measured("exponentials, most", float(max(counts))),
+        Measured("complex pairs, most", float(max(pairs))),
+    ]
+    right = {*counts} == {claimed}
+    verdict = HOLDS if right else LOOSELY if {*pairs} == {claimed} else FAILS
+    reason = (
+        f"With {a} a position has {min(counts)} to {max(counts)} exponentials, {max(pairs)} complex pairs at most, "
+        f"against {claimed}."
+    )
+    return Verdict(verdict, reason, measured)

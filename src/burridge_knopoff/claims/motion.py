@@ -1,0 +1,185 @@
+"""Claims on how the blocks stick and slip: whether they stop, how often, and how the end blocks move together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
+from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence, finite
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    by_share,
+    by_value,
+    shares_text,
+    spans,
+    with_error,
+    worst,
+)
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def every_block_stops(evidence: Evidence, initial: Sequence[str], at: float) -> Verdict:
+    """Judge whether each block stops again and again at one a, from each state and under both laws."""
+    verdicts, measured, never = [], [], []
+    for state in initial:
+        runs = evidence.of_state("stick_slip", state)
+        for law in PAPER_LAWS:
+            rate = evidence.at(runs, at)["stop_rate"].sel(law=law).values
+            if not np.isfinite(rate).all():
+                raise NotTestableError(f"the run from {state} at a = {at:g} under the {law} law did not complete")
+            verdicts.append(HOLDS if (rate > 0.0).all() else FAILS)
+            measured += [
+                Measured(f"stops in a unit of time, block {n}, {law}, {state}", value)
+                for n, value in enumerate(rate, 1)
+            ]
+            everywhere = runs["stop_rate"].sel(law=law).values
+            known = np.isfinite(everywhere).all(axis=-1)
+            some = known & ~(everywhere > 0.0).all(axis=-1)
+            if some.any():
+                never.append(f"a block never stops at a = {spans(runs['a'].values, some)} ({law}, {state})")
+    right = sum(verdict == HOLDS for verdict in verdicts)
+    reason = f"At a = {at:g} all three blocks stop again and again in {right} of {len(verdicts)} runs."
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {}
+        for state in initial:
+            for law in PAPER_LAWS:
+                known, rate = reached(attractors.sel(a=[at]), state, law, "stop_rate")
+                if known[0]:
+                    found[f"{law}, {state}"] = float((rate[0] > 0.0).all())
+        return judge_shares(found, 1.0)
+
+    return under_conventions(evidence, worst(verdicts), reason, measured, never, labels)
+
+
+def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
+    """Judge whether in every motion that attracts some block stops again and again; loosely if so in nine of ten."""
+    evidence.check_blocks()
+    attractors = evidence.choose(evidence.summary("attractors"), a)
+    shares, measured, all_stop = {}, [], {}
+    for law in PAPER_LAWS:
+        found = attractors.sel(law=law)
+        there = found["branch"].values >= 0
+        rate = found["stop_rate"].values[there]
+        if not len(rate):
+            raise NotTestableError(f"no attractor is known under the {law} law with {a}")
+        shares[law] = float((rate > 0.0).any(axis=-1).mean())
+        all_stop[law] = float((rate > 0.0).all(axis=-1).mean())
+        measured.append(Measured(f"share of attractors in which some block stops, {law}", shares[law]))
+        measured.append(Measured(f"share of attractors in which every block stops, {law}", all_stop[law]))
+    reason = (
+        f"Some block stops again and again in {shares_text(shares)} of the attractors with {a}; every block in "
+        f"{shares_text(all_stop)}."
+    )
+    changes = "" if min(all_stop.values()) == 1.0 else "of every single block it does not hold"
+    return Verdict(worst(by_share(share, 0.9) for share in shares.values()), reason, measured, changes)
+
+
+def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation: float) -> Verdict:
+    """Judge whether the velocities of the end blocks are in antiphase: their correlation is at most that given.
+
+    It holds loosely if the correlation is negative at all.
+    """
+    runs = evidence.of_state("stick_slip", initial).sel(law=law)
+    value = evidence.at(runs, at)["velocity_correlation"].item()
+    if not np.isfinite(value):
+        raise NotTestableError(f"the correlation of the end blocks from {initial} at a = {at:g} is not known")
+    verdict = HOLDS if value <= correlation else LOOSELY if value < 0.0 else FAILS
+    everywhere = runs["velocity_correlation"].values
+    negative = np.isfinite(everywhere) & (everywhere < 0.0)
+    reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {value:.2f}."
+    exceptions = [f"negative at a = {spans(runs['a'].values, negative)}, not elsewhere"] if negative.any() else []
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        # Only of synchrony is the correlation known: 1.
+        known, branch = reached(attractors.sel(a=[at]), initial, law, "branch")
+        return (FAILS, "synchrony") if known[0] and branch[0] == 0 else ("", "")
+
+    measured = [Measured("correlation of U₁' and U₃'", value)]
+    return under_conventions(evidence, verdict, reason, measured, exceptions, labels)
+
+
+def half_frequency(
+    evidence: Evidence, initial: str, law: str, at: float, claimed: float, tolerance: float, loose: float
+) -> Verdict:
+    """Judge the frequency of the end blocks over that of the middle block, by spectra of the velocities and by stops.
+
+    Both ratios have to be what is claimed.
+    """
+    run = evidence.at(evidence.of_state("stick_slip", initial).sel(law=law), at)
+    frequency, error, stops = (
+        run[name].values for name in ("velocity_frequency", "velocity_frequency_error", "stop_rate")
+    )
+    if not np.isfinite(frequency).all() or not frequency[1] or not stops[1]:
+        raise NotTestableError(
+            f"the frequencies from {initial} at a = {at:g} are not known, or the middle block never stops"
+        )
+    ratios, verdicts = [], []
+    for end, name in ((0, "block 1"), (-1, "block 3")):
+        ratio = frequency[end] / frequency[1]
+        spread = ratio * np.hypot(error[end] / frequency[end], error[1] / frequency[1])
+        ratios.append(
+            Measured(f"frequency of the velocity of {name} over that of block 2", float(ratio), float(spread))
+        )
+        ratios.append(Measured(f"stops of {name} over stops of block 2", float(stops[end] / stops[1])))
+    verdicts = [by_value(item.value, claimed, tolerance, loose) for item in ratios]
+    reason = (
+        f"From {initial} at a = {at:g} ({law}) the end blocks have {with_error(ratios[0].value, ratios[0].error)} of "
+        f"the frequency of the middle one by the peaks of their spectra, {ratios[1].value:.3f} by stops, against "
+        f"{claimed:g}."
+    )
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        # Of the attractors only the stops are known.
+        known, rate = reached(attractors.sel(a=[at]), initial, law, "stop_rate")
+        if not known[0]:
+            return "", ""
+        if not rate[0, 1] > 0.0:
+            return FAILS, "the middle block never stops"
+        ratio = rate[0, 0] / rate[0, 1]
+        return by_value(ratio, claimed, tolerance, loose), f"{ratio:.3f} by stops"
+
+    return under_conventions(evidence, worst(verdicts), reason, ratios, [], labels)
+
+
+def cycle_time(
+    evidence: Evidence, initial: Sequence[str], a: Range, low: float, high: float, share: float, loose: float
+) -> Verdict:
+    """Judge whether the time from stop to stop of a block lies between two values, in runs of both laws.
+
+    share : the claim holds if this share of all blocks and runs lies between, loosely if the share `loose` does
+    """
+    times, within = {}, []
+    for state in initial:
+        runs = evidence.choose(evidence.of_state("stick_slip", state), a)
+        for block in runs["block"].values:
+            time = runs["cycle_time"].sel(block=block)
+            times[f"block {block}, {state}"] = finite(time)
+            right = ((time >= low) & (time <= high)).any(dim="law").values
+            if right.any():
+                within.append(f"within for block {block} from {state} at a = {spans(runs['a'].values, right)}")
+    every = np.concatenate(list(times.values()))
+    if not len(every):
+        raise NotTestableError(f"no block stops twice in a run with {a}")
+    inside = float(((every >= low) & (every <= high)).mean())
+    measured = [Measured(f"share of blocks and runs with {low:g} to {high:g}", inside)]
+    medians = [(name, np.median(part)) for name, part in times.items() if len(part)]
+    measured += [Measured(f"median time from stop to stop, {name}", float(value)) for name, value in medians]
+    shortest, longest = (f(medians, key=lambda item: item[1]) for f in (min, max))
+    reason = (
+        f"The time from stop to stop lies between {low:g} and {high:g} in {100 * inside:.0f} % of the blocks and runs "
+        f"with {a}; its median is {shortest[1]:.2f} ({shortest[0]}) to {longest[1]:.2f} ({longest[0]})."
+    )
+    verdict = by_share(1.0 if inside >= share else inside, loose)
+    return Verdict(verdict, reason, measured, "; ".join(within) if inside < 1.0 else "")

@@ -1,0 +1,168 @@
+"""Claims on synchrony of the end blocks: for which states and a it is reached, how fast, and ⟨J⟩ without it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
+from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    by_value,
+    spans,
+    with_error,
+    worst,
+)
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose: float) -> Verdict:
+    """Judge whether an initial state leads to synchrony, or never does, for all a of a range and both laws.
+
+    loose : share of the values of a from which on the claim holds loosely
+    """
+    runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
+    outcome = {True: "synchrony", False: "no synchrony"}
+    shares, measured, exceptions = {}, [], []
+    for law in PAPER_LAWS:
+        state = runs["synchronized"].sel(law=law).values
+        known, right = np.isfinite(state), state == synchronized
+        if not known.any():
+            raise NotTestableError(f"no run from {initial} under the {law} law completed at {a}")
+        shares[law] = float(right[known].mean())
+        measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law]))
+        mean = runs["mean_distance"].sel(law=law).values[right]
+        if len(mean):
+            extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "least")
+            measured.append(Measured(f"{name} ⟨J⟩ there, {law}", float(extreme)))
+        if not right[known].all():
+            where = spans(runs["a"].values, known & ~right)
+            exceptions.append(f"{outcome[not synchronized]} at a = {where} ({law})")
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {}
+        for law in PAPER_LAWS:
+            branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
+            if (branch >= 0).any():
+                found[law] = float(((branch[branch >= 0] == 0) == synchronized).mean())
+        return judge_shares(found, loose)
+
+    own, text = judge_shares(shares, loose)
+    reason = f"There is {outcome[synchronized]} from {initial} at {text} of the values of a with {a}."
+    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+
+
+def edge_of_synchrony(
+    evidence: Evidence, initial: str, upper: bool, claimed: float, tolerance: float, loose: float
+) -> Verdict:
+    """Judge the least or the largest a at which an initial state synchronizes, under both laws.
+
+    An edge of the runs lies between two neighbours of the grid, a = 0 left out. The upper one is judged by the loss of
+    stability a_c of the synchronized orbit as well: near it synchrony takes longer than a run.
+    """
+    runs = evidence.choose(evidence.of_state("mean_distance", initial), Range(above=0.0))
+    side = "largest" if upper else "least"
+    verdicts, measured, texts = [], [], []
+    for law in PAPER_LAWS:
+        low, high = _edge(runs["a"].values, runs["synchronized"].sel(law=law).values == 1.0, upper)
+        edge, error = 0.5 * (low + high), 0.5 * (high - low)
+        if not np.isfinite(edge):
+            raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
+        verdicts.append(by_value(edge, claimed, tolerance, loose, error))
+        measured.append(Measured(f"{side} a with synchrony in the runs, {law}", float(edge), float(error)))
+        texts.append(f"between {low:g} and {high:g} ({law})")
+        if upper and "orbits" in evidence.summaries:
+            orbits = evidence.summary("orbits").sel(law=law)
+            critical, error = orbits["critical_a"].item(), orbits["critical_a_error"].item()
+            verdicts.append(by_value(critical, claimed, tolerance, loose))
+            measured.append(Measured(f"a_c, at which the synchronized orbit loses stability, {law}", critical, error))
+            texts[-1] += f", where the orbit loses stability at a_c = {critical:.5g}"
+    reason = f"The {side} a with synchrony in runs from {initial} lies {'; '.join(texts)}; claimed is {claimed:g}."
+    if upper or "orbits" not in evidence.summaries:
+        return Verdict(worst(verdicts), reason, measured)
+    multipliers = _multipliers_near_zero(evidence)
+    attracts = multipliers and all(abs(item.value) < 1.0 for item in multipliers)
+    more = (
+        " The synchronized orbit attracts down to the least a of the grid: there is no lower edge." if attracts else ""
+    )
+    return Verdict(worst(verdicts), reason + more, [*measured, *multipliers])
+
+
+def _edge(grid: np.ndarray, synchronized: np.ndarray, upper: bool) -> tuple[float, float]:
+    """Return the neighbours of the grid between which synchrony begins or ends; NaN if the grid does not hold them."""
+    index = np.flatnonzero(synchronized)
+    if not len(index):
+        return np.nan, np.nan
+    if upper:
+        return (grid[index[-1]], grid[index[-1] + 1]) if index[-1] + 1 < len(grid) else (np.nan, np.nan)
+    # There is no a below 0.
+    return (grid[index[0] - 1] if index[0] else 0.0), grid[index[0]]
+
+
+def _multipliers_near_zero(evidence: Evidence) -> list[Measured]:
+    """Return the transverse multipliers of synchrony at the least positive a of the grid, if there is an orbit."""
+    orbits = evidence.summary("orbits")
+    orbits = orbits.isel(a=orbits["a"].values > 0.0)
+    if not orbits.sizes["a"]:
+        return []
+    orbits = orbits.isel(a=0)
+    name = f"transverse multiplier at a = {orbits['a'].item():g}"
+    values = {law: orbits["transverse_multiplier"].sel(law=law).item() for law in PAPER_LAWS}
+    return [Measured(f"{name}, {law}", value) for law, value in values.items() if np.isfinite(value)]
+
+
+def mean_distance_at(
+    evidence: Evidence, initial: str, at: float, claimed: float, tolerance: float, loose: float
+) -> Verdict:
+    """Judge ⟨J⟩ of an initial state at one a, under both laws, and under each convention by the attractor reached."""
+    runs = evidence.at(evidence.of_state("mean_distance", initial), at)
+    verdicts, measured, texts = [], [], []
+    for law in PAPER_LAWS:
+        value, error = (runs[name].sel(law=law).item() for name in ("mean_distance", "mean_distance_error"))
+        if not np.isfinite(value):
+            raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
+        verdicts.append(by_value(value, claimed, tolerance, loose))
+        measured.append(Measured(f"⟨J⟩, {law}", value, error))
+        texts.append(f"{with_error(value, error)} ({law})")
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {law: reached(attractors.sel(a=[at]), initial, law, "mean_distance") for law in PAPER_LAWS}
+        means = {law: mean[0] for law, (known, mean) in found.items() if known[0]}
+        if not means:
+            return "", ""
+        verdict = worst(by_value(mean, claimed, tolerance, loose) for mean in means.values())
+        return verdict, "⟨J⟩ = " + ", ".join(f"{mean:.4f} ({law})" for law, mean in means.items())
+
+    reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}, against {claimed:g}."
+    return under_conventions(evidence, worst(verdicts), reason, measured, [], labels)
+
+
+def distance_vanishes(
+    evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
+) -> Verdict:
+    """Judge whether J has fallen below a level for good by a time, loosely by `loose` times that."""
+    runs = evidence.at(evidence.of_state("mean_distance", initial), at).sel(law=law)
+    if level not in runs["level"].values:
+        raise NotTestableError(f"mean_distance.nc has no settling time for J < {level:g}")
+    measured = [
+        Measured(f"time τ from which on J < {height:g}", float(value))
+        for height, value in zip(runs["level"].values, runs["settling_time"].values, strict=True)
+    ]
+    settled = float(runs["settling_time"].sel(level=level).item())
+    text = f"from τ = {settled:g} on" if np.isfinite(settled) else "not till the end of the run"
+    verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
+    return Verdict(
+        verdict,
+        f"J from {initial} at a = {at:g} ({law}) is below {level:g} {text}; claimed is τ = {by:g}.",
+        measured,
+    )

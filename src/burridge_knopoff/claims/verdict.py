@@ -1,0 +1,140 @@
+"""Verdicts, the figures that they rest on, and the rules that turn figures into verdicts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+HOLDS = "holds"
+LOOSELY = "holds loosely"
+CONVENTION = "depends on convention"
+FAILS = "fails"
+NOT_TESTABLE = "not testable"
+
+#: All verdicts, in the order in which they are counted.
+VERDICTS = (HOLDS, LOOSELY, CONVENTION, FAILS, NOT_TESTABLE)
+
+# More spans of a than these are counted instead of listed.
+MOST_SPANS = 8
+
+# From the best to the worst of those that a rule gives.
+_RANK = (HOLDS, LOOSELY, FAILS)
+
+
+class NotTestableError(Exception):
+    """A claim that the study's data cannot judge; the message says why."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A figure that a verdict rests on, with its error where it has one."""
+
+    quantity: str
+    value: float
+    error: float | None = None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a claim is worth: the verdict, why, the measured figures, and where it would be another.
+
+    changes : ranges of a, or conventions, for which the verdict changes; empty where there is none
+    conventions : verdict under each convention «contact, start», where the claim can be judged under each
+    """
+
+    verdict: str
+    reason: str
+    measured: Sequence[Measured] = ()
+    changes: str = ""
+    conventions: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Range:
+    """A range of the friction parameter: `first` and `last` belong to it, `above` and `below` do not."""
+
+    first: float | None = None
+    last: float | None = None
+    above: float | None = None
+    below: float | None = None
+
+    def __str__(self) -> str:
+        if self.above is not None and self.last is None and self.below is None:
+            return f"a > {self.above:g}"
+        low = f"{self.first:g} ≤ " if self.first is not None else f"{self.above:g} < " if self.above is not None else ""
+        high = f" ≤ {self.last:g}" if self.last is not None else f" < {self.below:g}" if self.below is not None else ""
+        return f"{low}a{high}"
+
+    def choose(self, a: np.ndarray) -> np.ndarray:
+        """Return which values lie in the range, shape of a."""
+        chosen = np.ones(np.shape(a), dtype=bool)
+        if self.first is not None:
+            chosen &= a >= self.first
+        if self.last is not None:
+            chosen &= a <= self.last
+        if self.above is not None:
+            chosen &= a > self.above
+        if self.below is not None:
+            chosen &= a < self.below
+        return chosen
+
+
+def worst(verdicts: Iterable[str]) -> str:
+    """Return the worst of the verdicts holds, holds loosely and fails."""
+    return max(verdicts, key=_RANK.index)
+
+
+def by_share(share: float, loose: float) -> str:
+    """Judge «for all»: it holds for every one, or loosely for the share `loose` of them."""
+    return HOLDS if share == 1.0 else LOOSELY if share >= loose else FAILS
+
+
+def shares_text(shares: Mapping[str, float]) -> str:
+    """Return shares as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
+    return ", ".join(f"{100 * share:.1f} % ({name})" for name, share in shares.items())
+
+
+def by_value(value: float, claimed: float, tolerance: float, loose: float, error: float = 0.0) -> str:
+    """Judge a number: it holds within `tolerance` of what is claimed, loosely within `loose`, the error granted.
+
+    A value that is not finite fails.
+    """
+    distance = abs(value - claimed) - error
+    if not math.isfinite(distance):
+        return FAILS
+    return HOLDS if distance <= tolerance else LOOSELY if distance <= loose else FAILS
+
+
+def with_error(value: float, error: float | None = None) -> str:
+    """Return a number as a text shows it: with as many digits as its error leaves, at most six."""
+    if not math.isfinite(value):
+        return str(value)
+    if error is None or not math.isfinite(error) or error <= 0.0:
+        return f"{value:.6g}"
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    if digits > 12:
+        return f"{value:.12g}"
+    return f"{value:.{digits}f} ± {error:.{digits}f}"
+
+
+def spans(a: np.ndarray, chosen: np.ndarray) -> str:
+    """Return the chosen values of a grid as text, neighbours of the grid joined: «0.0025 to 0.02, 0.0475».
+
+    More than MOST_SPANS of them are counted: «44 values from 0.1025 to 0.3».
+
+    a : ascending, shape (n,)
+    chosen : which of them, shape (n,)
+    """
+    parts = []
+    index = np.flatnonzero(chosen)
+    for run in np.split(index, np.flatnonzero(np.diff(index) > 1) + 1) if len(index) else []:
+        first, last = a[run[0]], a[run[-1]]
+        parts.append(
+            f"{first:g}" if len(run) == 1 else f"{first:g}, {last:g}" if len(run) == 2 else f"{first:g} to {last:g}"
+        )
+    if len(parts) > MOST_SPANS:
+        return f"{len(index)} values from {a[index[0]]:g} to {a[index[-1]]:g}"
+    return ", ".join(parts)

@@ -1,0 +1,43 @@
+"""docs/claims.md shows the ledger that lies beside it, and that is of the claims as they stand now."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from pathlib import Path
+
+import pytest
+
+from burridge_knopoff.claims.ledger import read_claims
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def content() -> dict:
+    return json.loads((ROOT / "docs/claims.json").read_text(encoding="utf-8"))
+
+
+def test_the_page_shows_the_ledger(content: dict) -> None:
+    spec = importlib.util.spec_from_file_location("refresh", ROOT / "docs/refresh.py")
+    assert spec is not None
+    assert spec.loader is not None
+    refresh = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(refresh)
+    text = (ROOT / "docs/claims.md").read_text(encoding="utf-8")
+    assert refresh.page(text, content) == text
+    content["claims"][0]["verdict"] = "not testable"
+    assert refresh.page(text, content) != text
+
+
+def test_the_ledger_is_of_the_claims_as_they_stand(content: dict) -> None:
+    claims = read_claims(ROOT / "config/claims.yaml", ROOT / "workflow/schemas/claims.schema.yaml")
+    assert [(claim["name"], claim["statement"], claim["figure"]) for claim in content["claims"]] == [
+        (claim.name, claim.statement, claim.figure) for claim in claims
+    ]
+    assert content["study"] == "paper"
+
+
+def test_every_figure_of_the_page_is_there(content: dict) -> None:
+    for claim in content["claims"]:
+        assert (ROOT / f"docs/figures/{claim['figure']}.png").exists()

@@ -1,0 +1,258 @@
+"""Every claim, on altered data: no verdict is written by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+from burridge_knopoff.claims.ledger import judge, ledger, read_claims
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
+from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, UNDETERMINED
+from tests.claims.worlds import A, Summaries, evidence, paper_world
+
+ROOT = Path(__file__).parents[2]
+CLAIMS = {
+    claim.name: claim
+    for claim in read_claims(ROOT / "config/claims.yaml", ROOT / "workflow/schemas/claims.schema.yaml")
+}
+ONE_OF_MANY = 0.03
+Alteration = Callable[[Summaries], None]
+
+
+def at(dataset: xarray.Dataset, name: str, value: object, **where: object) -> None:
+    """Set a variable where its coordinates are those given; `a` may be a predicate."""
+    predicate = where.pop("a", None)
+    if callable(predicate):
+        where["a"] = dataset["a"].values[predicate(dataset["a"].values)]
+    elif predicate is not None:
+        where["a"] = predicate
+    dataset[name].loc[where] = value
+
+
+def alter(summary: str, name: str, value: object, **where: object) -> Alteration:
+    return lambda world: at(world[summary], name, value, **where)
+
+
+def both(*alterations: Alteration) -> Alteration:
+    def all_of(world: Summaries) -> None:
+        for alteration in alterations:
+            alteration(world)
+
+    return all_of
+
+
+def reached(branch: int, **where: object) -> Alteration:
+    return alter("attractors", "initial_branch", branch, **where)
+
+
+def synchronized(value: int, **where: object) -> Alteration:
+    return alter("mean_distance", "synchronized", value, **where)
+
+
+def narrow_cloud(world: Summaries) -> None:
+    bifurcation = world["bifurcation"]
+    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
+    bifurcation["crossing_velocity"].values[of_plus] = 0.3
+
+
+def faster_cloud(world: Summaries) -> None:
+    bifurcation = world["bifurcation"]
+    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
+    bifurcation["crossing_velocity"].values[of_plus] += 0.5
+
+
+def all_synchronize(world: Summaries) -> None:
+    world["basins"]["branch"].values[...] = 0
+
+
+def far_as_near(share: float) -> Alteration:
+    def mix(world: Summaries) -> None:
+        branch = world["basins"]["branch"].values
+        apart = np.flatnonzero(branch == 1)
+        branch.ravel()[np.random.default_rng(1).permutation(apart)[: int(share * len(apart))]] = 0
+
+    return mix
+
+
+def below(a: np.ndarray) -> np.ndarray:
+    return (a > 0.0) & (a < 0.1)
+
+
+OTHER = {"contact": "symmetric"}
+CASES: list[tuple[str, str, Alteration]] = [
+    ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
+    ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus", law="nonlinear"), reached(1, initial="minus"))),
+    ("minus_synchronizes", CONVENTION, reached(1, initial="minus", **OTHER)),
+    ("minus_synchronizes", CONVENTION, synchronized(0, initial="minus")),
+    ("lower_edge", FAILS, synchronized(1, initial="minus", a=0.0025)),
+    ("lower_edge", FAILS, synchronized(0, initial="minus", a=lambda a: a < 0.015)),
+    ("upper_edge", LOOSELY, alter("orbits", "critical_a", 0.0887)),
+    ("upper_edge", FAILS, alter("orbits", "critical_a", 0.12)),
+    ("upper_edge", FAILS, synchronized(1, initial="minus", a=lambda a: a < 0.145)),
+    ("plus_does_not_synchronize", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
+    ("plus_does_not_synchronize", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("plus_does_not_synchronize", LOOSELY, synchronized(1, initial="plus", a=0.005)),
+    ("plus_mean_distance", FAILS, both(alter("mean_distance", "mean_distance", 0.2), reached(0, initial="plus"))),
+    ("plus_mean_distance", LOOSELY, alter("mean_distance", "mean_distance", 0.147)),
+    ("plus_mean_distance", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", 8000.0)),
+    ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", np.nan)),
+    ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
+    ("history_decides", FAILS, alter("attractors", "basin_count", 0, attractor=1)),
+    ("history_decides", LOOSELY, alter("attractors", "branch", 0, a=ONE_OF_MANY)),
+    ("first_block_decides", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
+    ("first_block_decides", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
+    ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
+    ("phases_decide", FAILS, all_synchronize),
+    ("phases_decide", LOOSELY, far_as_near(0.15)),
+    ("regular_below", FAILS, both(alter("lyapunov", "kind", CHAOTIC), alter("attractors", "kind", CHAOTIC))),
+    ("regular_below", CONVENTION, alter("lyapunov", "kind", CHAOTIC)),
+    ("regular_below", LOOSELY, alter("lyapunov", "kind", CHAOTIC, a=ONE_OF_MANY)),
+    ("chaotic_above", FAILS, both(alter("lyapunov", "kind", PERIODIC), alter("attractors", "kind", PERIODIC))),
+    ("chaotic_above", LOOSELY, alter("lyapunov", "kind", PERIODIC, a=0.2)),
+    ("chaotic_above", HOLDS, alter("lyapunov", "kind", UNDETERMINED, a=0.2)),
+    ("transition", FAILS, alter("lyapunov", "kind", QUASIPERIODIC, a=lambda a: a < 0.135)),
+    ("transition", FAILS, alter("lyapunov", "kind", CHAOTIC, a=lambda a: a > 0.045)),
+    ("transition", FAILS, alter("lyapunov", "kind", QUASIPERIODIC)),
+    ("transition", LOOSELY, alter("lyapunov", "kind", QUASIPERIODIC, a=lambda a: a < 0.125)),
+    ("periodic_is_synchronized", FAILS, alter("lyapunov", "kind", PERIODIC, initial="plus")),
+    ("periodic_is_synchronized", LOOSELY, alter("lyapunov", "kind", PERIODIC, a=ONE_OF_MANY, initial="minus")),
+    ("minus_one_section_point", FAILS, alter("lyapunov", "section_period", 2)),
+    ("minus_one_section_point", LOOSELY, alter("lyapunov", "section_period", 0, a=ONE_OF_MANY)),
+    ("plus_cloud", FAILS, narrow_cloud),
+    ("plus_cloud", FAILS, faster_cloud),
+    ("plus_largest_exponent", FAILS, alter("lyapunov", "lyapunov_exponent", 0.02, exponent=0)),
+    ("plus_largest_exponent", FAILS, alter("lyapunov", "lyapunov_exponent", -0.02, exponent=0)),
+    ("plus_largest_exponent", LOOSELY, alter("lyapunov", "lyapunov_exponent", 0.02, exponent=0, a=ONE_OF_MANY)),
+    ("plus_aperiodic", FAILS, both(alter("lyapunov", "kind", PERIODIC), alter("attractors", "kind", PERIODIC))),
+    ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("minus_periodic", FAILS, both(alter("lyapunov", "kind", CHAOTIC), alter("attractors", "kind", CHAOTIC))),
+    (
+        "velocities_touch_zero",
+        FAILS,
+        both(alter("stick_slip", "stop_rate", 0.0, block=2), alter("attractors", "stop_rate", 0.0, block=2)),
+    ),
+    ("velocities_touch_zero", CONVENTION, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
+    ("sticks_unavoidable", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("antiphase", LOOSELY, alter("stick_slip", "velocity_correlation", -0.2)),
+    ("antiphase", FAILS, alter("stick_slip", "velocity_correlation", 0.9)),
+    ("antiphase", CONVENTION, reached(0, initial="plus", **OTHER)),
+    (
+        "half_frequency",
+        FAILS,
+        both(alter("stick_slip", "stop_rate", 0.34), alter("attractors", "stop_rate", 0.34)),
+    ),
+    ("half_frequency", LOOSELY, alter("stick_slip", "velocity_frequency", 0.22, block=1)),
+    ("half_frequency", CONVENTION, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("cycle_time", FAILS, alter("stick_slip", "cycle_time", 5.7)),
+    ("cycle_time", LOOSELY, alter("stick_slip", "cycle_time", 5.7, a=lambda a: a > 0.245)),
+    ("equilibrium", FAILS, alter("equilibrium", "equilibrium_position", -0.8, block=1)),
+    ("equilibrium", FAILS, alter("equilibrium", "equilibrium_drift", 0.1)),
+    ("equilibrium_unstable", FAILS, alter("equilibrium", "eigenvalue", -0.1, part="real", law="nonlinear")),
+    ("minus_near_equilibrium", FAILS, alter("equilibrium", "equilibrium_position", 0.5, block=1)),
+    ("minus_near_equilibrium", LOOSELY, alter("equilibrium", "equilibrium_position", -0.7, block=1)),
+    ("friction_keeps_sign", FAILS, alter("mean_distance", "least_friction", -0.1, a=0.3)),
+    ("exponentials", FAILS, alter("equilibrium", "eigenvalue", 1.0, part="imaginary")),
+    ("laws_agree", FAILS, alter("agreement", "agrees", 0, a=lambda a: a > 0.055)),
+    ("laws_agree", LOOSELY, alter("agreement", "agrees", 0, a=ONE_OF_MANY, initial="plus")),
+    ("laws_agree", HOLDS, alter("agreement", "agrees", -1, a=ONE_OF_MANY)),
+    ("two_blocks_agree", FAILS, alter("two_blocks", "agrees", 0, state=0)),
+    (
+        "two_blocks_agree",
+        FAILS,
+        both(alter("two_blocks", "agrees", 0, state=0), alter("two_blocks", "agrees", -1, state=1)),
+    ),
+    ("two_blocks_agree", HOLDS, alter("two_blocks", "agrees", -1, state=1, a=0.1)),
+    ("solutions_agree", FAILS, alter("solvers", "difference", 0.05, solver="rk4")),
+    ("solutions_agree", FAILS, alter("agreement", "agrees", 0)),
+    ("map_is_cheaper", FAILS, alter("solvers", "step_count", 10**9)),
+    ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 3 * 10**7)),
+]
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_every_claim_holds_where_the_paper_is_right(name: str) -> None:
+    verdict = judge(CLAIMS[name], evidence(paper_world()))
+    assert verdict.verdict == HOLDS, verdict.reason
+
+
+@pytest.mark.parametrize(("name", "expected", "alteration"), CASES, ids=[f"{c[0]}-{c[1]}" for c in CASES])
+def test_altered_data_alter_the_verdict(name: str, expected: str, alteration: Alteration) -> None:
+    world = paper_world()
+    alteration(world)
+    verdict = judge(CLAIMS[name], evidence(world))
+    assert verdict.verdict == expected, verdict.reason
+    assert verdict.reason
+    if expected == CONVENTION:
+        judged = set(verdict.conventions.values())
+        assert FAILS in judged
+        assert judged & {HOLDS, LOOSELY}
+
+
+def test_every_claim_is_seen_to_fail() -> None:
+    assert {name for name, verdict, _ in CASES if verdict not in (HOLDS, LOOSELY)} == set(CLAIMS)
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_nothing_is_judged_without_its_data(name: str) -> None:
+    verdict = judge(CLAIMS[name], evidence({}))
+    assert verdict.verdict == NOT_TESTABLE
+    assert "the study has no summary" in verdict.reason
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_nothing_is_judged_at_another_driver_velocity(name: str) -> None:
+    assert judge(CLAIMS[name], evidence(paper_world(), v=0.2)).verdict == NOT_TESTABLE
+
+
+def test_other_states_under_the_names_of_the_paper_are_not_judged() -> None:
+    world = paper_world()
+    states = {"plus": {"position": [0.98, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]}}
+    verdict = judge(CLAIMS["plus_mean_distance"], evidence(world, initial=states))
+    assert (verdict.verdict, verdict.reason) == (
+        NOT_TESTABLE,
+        "Not testable here: the study's initial state plus is not the paper's.",
+    )
+    assert "no initial state minus" in judge(CLAIMS["minus_synchronizes"], evidence(world, initial=states)).reason
+
+
+@pytest.mark.parametrize("name", ["plus_mean_distance", "plus_aperiodic", "velocities_touch_zero"])
+def test_a_value_that_is_not_in_the_grid_is_not_replaced_by_its_neighbour(name: str) -> None:
+    world = {
+        key: item.isel(a=item["a"].values != 0.08) if "a" in item.dims else item for key, item in paper_world().items()
+    }
+    verdict = judge(CLAIMS[name], evidence(world))
+    assert (verdict.verdict, "a = 0.08 is not in the grid" in verdict.reason) == (NOT_TESTABLE, True)
+
+
+def test_runs_that_did_not_complete_are_no_evidence() -> None:
+    world = paper_world()
+    at(world["mean_distance"], "status", 1, a=ONE_OF_MANY)
+    at(world["mean_distance"], "synchronized", 0, a=ONE_OF_MANY)
+    at(world["mean_distance"], "mean_distance", np.nan, a=ONE_OF_MANY)
+    assert judge(CLAIMS["minus_synchronizes"], evidence(world)).verdict == HOLDS
+    at(world["mean_distance"], "status", 1)
+    assert judge(CLAIMS["minus_synchronizes"], evidence(world)).verdict == NOT_TESTABLE
+
+
+def test_conventions_are_those_of_the_study() -> None:
+    world = paper_world()
+    reached(0, initial="plus", contact="symmetric", start="moving")(world)
+    own = judge(CLAIMS["plus_does_not_synchronize"], evidence(world, contact="symmetric"))
+    # Under its own convention a study is judged by its runs, in which plus does not synchronize here.
+    assert own.verdict == HOLDS
+    assert own.conventions["symmetric, moving"] == HOLDS
+    assert len(own.conventions) == 4
+
+
+def test_counts_are_those_of_the_verdicts() -> None:
+    content = ledger("test", list(CLAIMS.values()), evidence(paper_world()), ["mean_distance"])
+    assert content["counts"][HOLDS] == len(CLAIMS) == len(content["claims"])
+    assert {claim["figure"] for claim in content["claims"]} == {"mean_distance", ""}
+    assert len(A) > 30
