@@ -18,3 +18,13 @@ settings.load_profile("study")
 def repository() -> Path:
     """Root of the checkout."""
     return Path(__file__).parent.parent
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory: pytest.TempPathFactory):
+    """A tiny study that has run to its end; tests only read it."""
+    from tests.workflow.conftest import Study
+
+    study = Study(tmp_path_factory.mktemp("finished"))
+    study.output = study.ok()
+    return study

@@ -1,0 +1,64 @@
+"""Maps of basins for the page: which attractor each initial state reaches, and when that was certain."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.colors import to_hex
+
+from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.report.numbers import rounded
+
+UNDETERMINED_COLOR = "#000000"
+
+#: Largest decision time that two bytes hold; 0 stands for undetermined.
+LARGEST_TIME = 65535
+
+
+def basin_maps(
+    basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, tuple[float, float]]
+) -> dict[str, Any]:
+    """Return the maps, each with `classes` (name, colour and share of the states) and two arrays of one plane.
+
+    label : base64 of one byte a pixel, the position in `classes`, rows of equal U_N(0) one after another
+    time : base64 of two bytes a pixel, least significant first: decision time τ, rounded, 0 if undetermined
+    marked : U_1(0) and U_N(0) of the initial states of the study in the plane
+    """
+    colors = branch_colors(attractors)
+    return {
+        "first": rounded(basins["first_position"].values),
+        "last": rounded(basins["last_position"].values),
+        "marked": [{"name": name, "first": x, "last": y} for name, (x, y) in marked.items()],
+        "maps": [_map(basins.isel(map=number), colors) for number in range(basins.sizes["map"])],
+    }
+
+
+def _map(one: xarray.Dataset, colors: dict[int, str]) -> dict[str, Any]:
+    branch, side = one["branch"].values.astype(int), one["side"].values.astype(int)
+    # Branches in order, the side + before −, undetermined last.
+    present = sorted(
+        {(int(b), int(s)) for b, s in zip(branch.ravel(), side.ravel(), strict=True)},
+        key=lambda pair: (pair[0] < 0, pair[0], -pair[1]),
+    )
+    label = np.zeros(branch.shape, dtype="u1")
+    classes = []
+    for number, (b, s) in enumerate(present):
+        members = (branch == b) & (side == s)
+        label[members] = number
+        name = "undetermined" if b < 0 else branch_name(b) + {1: " (+)", -1: " (−)", 0: ""}[s]
+        shade = UNDETERMINED_COLOR if b < 0 else to_hex(side_color(colors[b], s))
+        classes.append({"name": name, "color": shade, "percent": rounded(100.0 * members.mean())})
+    time = np.nan_to_num(np.clip(np.round(one["decision_time"].values), 1, LARGEST_TIME), nan=0.0)
+    return {
+        "law": LAWS[int(one["law"])],
+        "a": one["a"].item(),
+        "exponent": rounded(one["uncertainty_exponent"].item()),
+        "exponent_error": rounded(one["uncertainty_exponent_error"].item()),
+        "classes": classes,
+        "label": base64.b64encode(label.tobytes()).decode(),
+        "time": base64.b64encode(time.astype("<u2").tobytes()).decode(),
+    }

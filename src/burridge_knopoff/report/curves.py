@@ -1,0 +1,149 @@
+"""What the interactive charts over a show: attractors, multipliers, agreement, longer chains."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
+from burridge_knopoff.figures.lyapunov import KIND_COLORS
+from burridge_knopoff.report.numbers import rounded
+from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.summaries.orbits import FOUND
+
+
+def kinds() -> list[dict[str, Any]]:
+    """Return number, name and colour of each kind of motion."""
+    return [{"number": kind, "name": KINDS[kind], "color": color} for kind, color in KIND_COLORS.items()]
+
+
+def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
+    """Return number, name and colour of each branch, those of a short range last; they share a colour and a name."""
+    colors = branch_colors(attractors)
+    ordered = sorted(colors, key=lambda number: (colors[number] == OTHER_COLOR, number))
+    return [
+        {
+            "number": number,
+            "name": branch_name(number),
+            "group": "other branches" if colors[number] == OTHER_COLOR else branch_name(number),
+            "color": colors[number],
+        }
+        for number in ordered
+    ]
+
+
+def attractor_points(attractors: xarray.Dataset) -> list[dict[str, list[Any]]]:
+    """Return, for each law, the attractors as columns: branch, a, ⟨J⟩, kind, side, and the basin fraction."""
+    laws = []
+    for law in attractors["law"].values:
+        one = attractors.sel(law=law)
+        there = one["branch"].values >= 0
+        a = np.broadcast_to(one["a"].values[:, None], there.shape)
+        columns = {name: one[name].values[there] for name in ("branch", "mean_distance", "kind", "side")}
+        laws.append({"a": rounded(a[there]), **{name: rounded(column) for name, column in columns.items()}})
+    return laws
+
+
+def basin_fractions(attractors: xarray.Dataset) -> list[list[dict[str, Any]]]:
+    """Return, for each law and each group of branches, fraction of the sampled states and its 95 % Wilson interval.
+
+    Both sides of a branch count together; None where it does not exist.
+    """
+    samples = int(attractors.attrs["samples"])
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for item in branches(attractors):
+        groups.setdefault(item["group"], []).append(item)
+    laws = []
+    for law in attractors["law"].values:
+        one = attractors.sel(law=law)
+        curves = []
+        for group, items in groups.items():
+            members = np.isin(one["branch"].values, [item["number"] for item in items])
+            there = members.any(axis=1)
+            if not there.any():
+                continue
+            hits = np.where(members, one["basin_count"].values, 0).sum(axis=1)
+            known = {hit: fraction_interval(hit, samples) for hit in set(hits.tolist())}
+            interval = np.array([known[hit] for hit in hits.tolist()])
+            interval[~there] = np.nan
+            fraction, low, high = rounded(interval.T)
+            curves.append({"name": group, "color": items[0]["color"], "fraction": fraction, "low": low, "high": high})
+        laws.append(curves)
+    return laws
+
+
+def conventions(attractors: xarray.Dataset) -> dict[str, Any]:
+    """Return which branch each initial state reaches under each convention: rows by law, and their names."""
+    reached = attractors["initial_branch"].stack(row=("initial", "contact", "start")).transpose("law", "row", "a")
+    names = [", ".join(map(str, row)) for row in reached["row"].values]
+    return {"names": names, "branch": reached.values.tolist()}
+
+
+def orbit_curves(orbits: xarray.Dataset) -> list[dict[str, Any]]:
+    """Return, for each law, multipliers against a and the asymmetric orbits beyond a_c; empty if there is no orbit."""
+    if not (orbits["status"].values == FOUND).any():
+        return []
+    laws = []
+    for law in orbits["law"].values:
+        one = orbits.sel(law=law)
+        real, imaginary = (
+            one["multiplier"].sel(mode="symmetric_1", part=part).values for part in ("real", "imaginary")
+        )
+        modulus = np.hypot(real, imaginary)
+        laws.append(
+            {
+                "law": str(law),
+                "transverse": rounded(one["transverse_multiplier"].values),
+                # The modulus, of a complex pair as well, with the sign of the real part: as in the figure.
+                "symmetric": rounded(np.where(real < 0.0, -modulus, modulus)),
+                "period": rounded(one["period"].values),
+                "critical_a": rounded(one["critical_a"].item()),
+                "offset": rounded(one["branch_offset"].values),
+                "asymmetry": rounded(one["branch_asymmetry"].values),
+                "exponent": rounded(one["amplitude_exponent"].item()),
+                "coefficient": rounded(one["amplitude_coefficient"].item()),
+            }
+        )
+    return laws
+
+
+def agreement_curves(agreement: xarray.Dataset) -> dict[str, Any]:
+    """Return |Δ⟨J⟩| with both tolerances, the distance of section points and the common order, over (initial, a)."""
+    share = agreement.attrs["relative_tolerance"] * agreement["mean_distance"].max("law")
+    noise = agreement.attrs["standard_errors"] * agreement["difference_error"]
+    return {
+        "standard_errors": rounded(agreement.attrs["standard_errors"]),
+        "percent": rounded(100.0 * agreement.attrs["relative_tolerance"]),
+        "difference": rounded(_positive(np.abs(agreement["difference"].values))),
+        "noise": rounded(_positive(noise.values)),
+        "share": rounded(_positive(share.values)),
+        "section_distance": rounded(_positive(agreement["section_distance"].values)),
+        "event_order_time": rounded(_positive(agreement["event_order_time"].values)),
+    }
+
+
+def _positive(values: np.ndarray) -> np.ndarray:
+    """Return the values with those that a logarithmic axis cannot show left out."""
+    return np.where(values > 0.0, values, np.nan)
+
+
+def chain_fractions(chains: xarray.Dataset) -> dict[str, Any]:
+    """Return the fraction of states that synchronize, with its interval and the undetermined ones, (law, blocks, a)."""
+    values = {
+        short: rounded(chains[f"{name}"].transpose("law", "blocks", "a").values)
+        for short, name in (
+            ("fraction", "synchronized_fraction"),
+            ("low", "synchronized_low"),
+            ("high", "synchronized_high"),
+            ("undetermined", "undetermined_fraction"),
+        )
+    }
+    return {
+        "laws": [str(law) for law in chains["law"].values],
+        "blocks": chains["blocks"].values.tolist(),
+        "a": rounded(chains["a"].values),
+        **values,
+    }

@@ -1,0 +1,103 @@
+"""What a study asked for, in the words of its config, and where its numbers come from."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import xarray
+import yaml
+
+from burridge_knopoff.config import Study, all_points
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.provenance import provenance
+from burridge_knopoff.report.numbers import text
+
+#: Distributions whose versions the report states.
+LIBRARIES = (
+    *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
+    *("jsonschema", "pyyaml", "jinja2", "plotly", "pillow"),
+)
+
+
+def what_was_run(study: Study) -> list[tuple[str, str]]:
+    """Return names and values of what decides the runs."""
+    config = study.config
+    values = list(study.grid.values())
+    solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in LAWS)
+    if "rk4" in config["solver"].values():
+        solvers += f", step {text(config['step'])}"
+    transient, window = config["transient"], config["window"]
+    blocks = len(next(iter(config["initial"].values()))["position"])
+    return [
+        ("Blocks", f"N = {blocks}"),
+        ("Friction laws", "linearized, Φ = 1 − aU′; nonlinear, Φ = 1/(1 + aU′)"),
+        ("Friction parameter", f"a = {_grid(config['a'])}: {len(values)} value{'s' if len(values) > 1 else ''}"),
+        ("Driver velocity", f"v = {text(config['v'])}"),
+        ("Conventions", f"contact {config['contact']}, start {config['start']}"),
+        ("Solvers", solvers),
+        (
+            "Windows",
+            f"transient {text(transient)}, then ⟨J⟩ over τ = {text(transient)} to {text(transient + window)} in "
+            f"{config['batches']} batches",
+        ),
+        ("Synchronized", f"where ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
+        ("Runs", str(len(all_points(study)))),
+    ]
+
+
+def _grid(items: list[Any]) -> str:
+    parts = [
+        f"{text(item['from'])} to {text(item['to'])} by {text(item['step'])}" if isinstance(item, dict) else text(item)
+        for item in items
+    ]
+    return ", ".join(parts)
+
+
+def initial_states(study: Study) -> list[dict[str, str]]:
+    """Return name, U(0) and U'(0) of each initial state."""
+    return [
+        {"name": name, **{key: ", ".join(text(value) for value in state[key]) for key in ("position", "velocity")}}
+        for name, state in study.config["initial"].items()
+    ]
+
+
+def config_text(study: Study) -> str:
+    """Return the config with all defaults as YAML."""
+    return yaml.safe_dump(dict(study.config), sort_keys=False, allow_unicode=True, default_flow_style=None, width=88)
+
+
+def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
+    """Return which software made each summary, as its file says."""
+    return [
+        {"name": f"{name}.nc", **{key: str(dataset.attrs.get(key, "–")) for key in provenance()}}
+        for name, dataset in summaries.items()
+    ]
+
+
+def software() -> list[tuple[str, str]]:
+    """Return the provenance of this report and the versions of the libraries."""
+    found = provenance()
+    rows = [
+        ("Software", found["software"]),
+        ("Source fingerprint of the runs", found["source_fingerprint"]),
+        ("Git commit", found["git_commit"]),
+        ("Python", platform.python_version()),
+    ]
+    for name in LIBRARIES:
+        try:
+            rows.append((name, version(name)))
+        except PackageNotFoundError:
+            continue
+    return rows
+
+
+def foreign_settings(dataset: xarray.Dataset, study: Study) -> list[str]:
+    """Return what of a summary's v, contact and start differs from the study: it was made before a change of it."""
+    return [
+        f"{key} = {dataset.attrs[key]}, here {study.config[key]}"
+        for key in ("v", "contact", "start")
+        if key in dataset.attrs and dataset.attrs[key] != study.config[key]
+    ]

@@ -1,0 +1,172 @@
+"""The page: everything that it shows, put into its template."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import xarray
+from markupsafe import Markup
+
+from burridge_knopoff.config import Study
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.files import write_text
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.report import curves, overview, tables
+from burridge_knopoff.report.basin_maps import basin_maps
+from burridge_knopoff.report.numbers import embedded_json, text, with_error
+from burridge_knopoff.report.pictures import read_picture
+from burridge_knopoff.report.prose import prose
+from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
+from burridge_knopoff.report.section_points import section_counts
+from burridge_knopoff.report.stages import read_stages
+from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
+from burridge_knopoff.summaries.agreement import digest
+
+FOLDER = Path(__file__).parent
+
+#: The scripts of the page, in the order in which they are joined: they share one scope.
+SCRIPTS = ("data", "theme", "charts", "runs", "curves", "orbits", "maps", "agreement", "pictures", "start")
+
+#: Figures that stand in a section of their own; all others come together.
+PLACED = ("mean_distance", "bifurcation", "lyapunov", "orbits", "basins", "basin_fractions", "agreement", "chains")
+
+#: Summaries without which there is no report; basins, chains and two_blocks may be missing.
+NEEDED = ("mean_distance", "bifurcation", "lyapunov", "attractors", "agreement", "orbits")
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The files that a report is made of.
+
+    claims : the verdicts; summaries, figures : {name: path} of netCDF files and of PNG pictures
+    benchmarks : folder of Snakemake's benchmark files, which need not exist
+    """
+
+    claims: Path
+    summaries: Mapping[str, Path]
+    figures: Mapping[str, Path]
+    benchmarks: Path = field(default=Path("benchmarks"))
+
+
+def write_report(study: Study, sources: Sources, configfile: str, path: str | Path) -> None:
+    """Write the report of a study as one HTML file.
+
+    configfile : path of its config as the commands in the report name it, empty for the default study
+    Raises ValueError, one line that names the file, if a source is missing or cannot be read.
+    """
+    write_text(path, render(study, sources, configfile))
+
+
+def render(study: Study, sources: Sources, configfile: str = "") -> str:
+    """Return the report as HTML; see `write_report`."""
+    for name in NEEDED:
+        if name not in sources.summaries:
+            raise ValueError(f"{name}.nc: not among the summaries of the report; it needs {', '.join(NEEDED)}")
+    verdicts = read_verdicts(sources.claims)
+    summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
+    pictures = {name: read_picture(path) for name, path in sources.figures.items()}
+    commands = Commands(study, configfile)
+    chains = summaries.get("chains")
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(FOLDER / "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters.update(number=text, prose=prose)
+    environment.globals.update(with_error=with_error)
+    return environment.get_template("report.html.jinja").render(
+        study=study.name,
+        blocks=len(next(iter(study.config["initial"].values()))["position"]),
+        setting=verdicts.setting,
+        verdicts=verdicts,
+        signs=SIGNS,
+        ran=overview.what_was_run(study),
+        states=overview.initial_states(study),
+        config=overview.config_text(study),
+        crossed=_crossed(summaries["bifurcation"], len(study.initial)),
+        data=_data(study, commands, summaries),
+        laws=[str(law) for law in summaries["mean_distance"]["law"].values],
+        initial=list(study.initial),
+        pictures=pictures,
+        further=[picture for name, picture in pictures.items() if name not in PLACED],
+        exponents=bool(summaries["lyapunov"]["lyapunov_exponent"].notnull().any()),
+        branches=tables.branch_table(summaries["attractors"]),
+        attractors=summaries["attractors"].attrs,
+        transitions=tables.transition_table(summaries["orbits"]),
+        maps=_map_table(summaries.get("basins")),
+        agreement=digest(summaries["agreement"]).splitlines(),
+        chains=tables.chain_table(chains) if chains is not None else [],
+        chain_laws=[str(law) for law in chains["law"].values] if chains is not None else [],
+        chain_settings=overview.foreign_settings(chains, study) if chains is not None else [],
+        unclear=unclear_runs(commands, summaries["mean_distance"], summaries["lyapunov"]),
+        origins=overview.origins(summaries),
+        software=overview.software(),
+        stages=read_stages(sources.benchmarks),
+        style=_static("style.css"),
+        plotly=_plotly(),
+        scripts=Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS),
+    )
+
+
+def _data(study: Study, commands: Commands, summaries: Mapping[str, xarray.Dataset]) -> Markup:
+    """Return all numbers of the charts as JSON."""
+    attractors, basins, chains = summaries["attractors"], summaries.get("basins"), summaries.get("chains")
+    return embedded_json(
+        {
+            "runs": embedded_runs(commands, *(summaries[name] for name in ("mean_distance", "lyapunov", "agreement"))),
+            "kinds": curves.kinds(),
+            "branches": curves.branches(attractors),
+            "attractors": curves.attractor_points(attractors),
+            "fractions": curves.basin_fractions(attractors),
+            "conventions": curves.conventions(attractors),
+            "sections": section_counts(summaries["bifurcation"]),
+            "orbits": curves.orbit_curves(summaries["orbits"]),
+            "basins": None if basins is None else basin_maps(basins, attractors, study.marked_states),
+            "agreement": curves.agreement_curves(summaries["agreement"]),
+            "chains": None if chains is None else curves.chain_fractions(chains),
+        }
+    )
+
+
+def _crossed(bifurcation: xarray.Dataset, states: int) -> list[list[bool]]:
+    """Return, for each law and initial state, whether any of its runs crossed the section."""
+    counts = bifurcation["crossing_count"].values.reshape(len(LAWS), states, -1)
+    return (counts.sum(axis=2) > 0).tolist()
+
+
+def _map_table(basins: xarray.Dataset | None) -> list[dict[str, Any]]:
+    """Return law, a, and the uncertainty exponent of the boundary of each map."""
+    if basins is None:
+        return []
+    names = basins["law"].attrs["flag_meanings"].split()
+    rows = []
+    for number in range(basins.sizes["map"]):
+        one = basins.isel(map=number)
+        exponent = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
+        undetermined = int(one["undetermined_count"])
+        rows.append(
+            {
+                "law": names[int(one["law"])],
+                "a": text(one["a"].item()),
+                "exponent": with_error(*exponent),
+                "undetermined": f"{undetermined} of {one['branch'].size}",
+            }
+        )
+    return rows
+
+
+def _static(name: str) -> Markup:
+    return Markup((FOLDER / "static" / name).read_text(encoding="utf-8"))
+
+
+def _plotly() -> Markup:
+    from plotly.offline import get_plotlyjs
+
+    # The sequence may stand in a string of the script; in HTML it would end the element.
+    return Markup(get_plotlyjs().replace("</script", "<\\/script"))

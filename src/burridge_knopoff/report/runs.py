@@ -1,0 +1,111 @@
+"""The runs of a study one by one: what each found, where its file lies, and the commands that make it again."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.config import Study
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.report.numbers import exact
+from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
+
+COMPLETED = STATUS.index("completed")
+
+
+@dataclass(frozen=True)
+class Commands:
+    """What a person types in the folder of the Snakefile to make one run again.
+
+    configfile : path of the study's config, empty for the default study
+    """
+
+    study: Study
+    configfile: str = ""
+
+    def point(self, law: str, initial: str, a: str) -> str:
+        """Return the path of a point file below the results of the study."""
+        return f"points/{law}/{initial}/a{a}.nc"
+
+    def snakemake(self, law: str, initial: str, a: str) -> str:
+        """Return the command that makes the point file again; the target stands before --configfile."""
+        words = ["snakemake", "-c1", "--force", f"results/{self.study.name}/{self.point(law, initial, a)}"]
+        return shlex.join([*words, *(["--configfile", self.configfile] if self.configfile else [])])
+
+    def simulate(self, law: str, initial: str, a: str) -> str:
+        """Return the command of the same run by hand; it writes a copy of the point file into the current folder."""
+        return f"bk simulate {self.study.options(law, initial, a)} --out {law}_{initial}_a{a}.nc"
+
+
+def embedded_runs(
+    commands: Commands, mean_distance: xarray.Dataset, lyapunov: xarray.Dataset, agreement: xarray.Dataset
+) -> dict[str, Any]:
+    """Return what the page knows of every run, values exact, arrays over (law, initial, a).
+
+    `first` are the indices of the run that is shown at first, the one of the figures of single runs.
+    `simulate` holds for each law and initial state the command in two parts, with `--a` and its value between them.
+    """
+    study = commands.study
+    names = list(study.grid)
+    exponent, error = lyapunov["lyapunov_exponent"].values, lyapunov["lyapunov_error"].values
+    return {
+        "laws": list(LAWS),
+        "initial": list(study.initial),
+        "a": list(study.grid.values()),
+        "texts": [repr(value) for value in study.grid.values()],
+        "names": names,
+        "first": [LAWS.index(study.config["figures"]["law"]), 0, names.index(study.figure_point)],
+        "mean_distance": _nested(mean_distance["mean_distance"].values),
+        "mean_distance_error": _nested(mean_distance["mean_distance_error"].values),
+        "status": mean_distance["status"].values.tolist(),
+        "kind": lyapunov["kind"].values.tolist(),
+        "period": lyapunov["section_period"].values.tolist(),
+        "exponents": _nested(exponent),
+        "exponent_errors": _nested(error),
+        "agrees": agreement["agrees"].values.tolist(),
+        "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in LAWS],
+        "configfile": shlex.join(["--configfile", commands.configfile]) if commands.configfile else "",
+        "results": f"results/{study.name}",
+        "statuses": list(STATUS),
+        "kinds": {str(number): name for number, name in KINDS.items()},
+    }
+
+
+def _nested(values: np.ndarray) -> Any:
+    return exact(values.item()) if values.ndim == 0 else [_nested(np.asarray(item)) for item in values]
+
+
+def _halves(commands: Commands, law: str, initial: str) -> list[str]:
+    """Split the command of a run at its value of a, which is all that differs along the grid but for the file name."""
+    name, value = next(iter(commands.study.grid.items()))
+    command = commands.simulate(law, initial, name).removesuffix(f"{name}.nc")
+    before, after = command.split(f" --a {value!r} ", 1)
+    return [before, after]
+
+
+def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xarray.Dataset) -> list[dict[str, str]]:
+    """Return the runs that did not complete, then those whose kind of motion is undetermined."""
+    failed, undetermined = [], []
+    for i, law in enumerate(LAWS):
+        for j, initial in enumerate(commands.study.initial):
+            for k, a in enumerate(commands.study.grid):
+                status = int(mean_distance["status"].values[i, j, k])
+                if status == COMPLETED and int(lyapunov["kind"].values[i, j, k]) != UNDETERMINED:
+                    continue
+                run = {
+                    "law": law,
+                    "initial": initial,
+                    "a": repr(commands.study.grid[a]),
+                    "path": commands.point(law, initial, a),
+                    "command": commands.snakemake(law, initial, a),
+                }
+                if status == COMPLETED:
+                    undetermined.append({**run, "what": "kind of motion undetermined"})
+                else:
+                    failed.append({**run, "what": f"did not complete: {STATUS[status]}"})
+    return [*failed, *undetermined]

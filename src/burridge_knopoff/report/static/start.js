@@ -1,0 +1,6 @@
+startTheme();
+startRuns();
+startPictures();
+fillLegends();
+themeListeners.push(fillLegends);
+startCharts();

@@ -1,0 +1,113 @@
+"""Tables of the page: what each branch of attractors, each transition and each chain amounts to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.figures.branches import branch_name
+from burridge_knopoff.report.numbers import text, with_error
+from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.summaries.orbits import FOUND, SIDES, UNDETERMINED
+from burridge_knopoff.summaries.orbits import KINDS as BIFURCATIONS
+
+
+def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
+    """Return a row for each law and branch: where it exists, ⟨J⟩, kinds of motion, and its largest basin fraction."""
+    rows = []
+    a = attractors["a"].values
+    samples = int(attractors.attrs["samples"])
+    for law in attractors["law"].values:
+        one = attractors.sel(law=law)
+        branch = one["branch"].values
+        for number in sorted({int(n) for n in np.unique(branch) if n >= 0}):
+            members = branch == number
+            there = np.flatnonzero(members.any(axis=1))
+            distance = one["mean_distance"].values[members]
+            fraction = np.where(members, one["basin_count"].values, 0).sum(axis=1) / max(samples, 1)
+            largest = int(fraction.argmax())
+            rows.append(
+                {
+                    "law": str(law),
+                    "branch": branch_name(number),
+                    "range": f"{text(a[there[0]])} to {text(a[there[-1]])}",
+                    "values": f"{len(there)} of {len(a)}",
+                    "distance": f"{distance.min():.4f} to {distance.max():.4f}",
+                    "kinds": ", ".join(KINDS[int(kind)] for kind in np.unique(one["kind"].values[members])),
+                    "fraction": f"{fraction[largest]:.3f} (a = {text(a[largest])})" if samples else "–",
+                }
+            )
+    return rows
+
+
+def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
+    """Return names and values, a column for each law, of the transitions of the synchronized orbit; {} without one."""
+    if not (orbits["status"].values == FOUND).any():
+        return {}
+    laws = [str(law) for law in orbits["law"].values]
+
+    def row(name: str, value: str, error: str = "") -> dict[str, Any]:
+        cells = []
+        for law in laws:
+            one = orbits.sel(law=law)
+            number = one[value].item()
+            # Errors of a few units of the last digit say no more than that all digits shown hold.
+            cells.append(with_error(number, one[error].item()) if error else _long(number))
+        return {"name": name, "cells": cells}
+
+    kinds = [_flag(orbits.sel(law=law)["bifurcation_kind"].item(), BIFURCATIONS) for law in laws]
+    sides = [_flag(orbits.sel(law=law)["bifurcation_side"].item(), SIDES) for law in laws]
+    return {
+        "laws": laws,
+        "rows": [
+            row("a_c, at which |μ| reaches 1", "critical_a", "critical_a_error"),
+            {
+                "name": "bifurcation at a_c",
+                "cells": [f"{side} {kind}" for side, kind in zip(sides, kinds, strict=True)],
+            },
+            row("a at which block 2 begins to stick", "grazing_a"),
+            row("a at which a mirror-symmetric multiplier reaches −1", "symmetric_flip_a"),
+            row("exponent of |x_1 − x_3| against a − a_c", "amplitude_exponent", "amplitude_exponent_error"),
+            row("coefficient of that power law", "amplitude_coefficient"),
+            row("largest difference of |x_1 − x_3| up and down in a", "hysteresis"),
+        ],
+    }
+
+
+def _long(value: float) -> str:
+    return text(value) if not np.isfinite(value) else f"{value:.10g}".replace("-", "−")
+
+
+def _flag(value: int, meanings: dict[int, str]) -> str:
+    return "" if value == UNDETERMINED else meanings[value]
+
+
+def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:
+    """Return a row for each law and number of blocks: the most states that synchronize at any a, and at which a any."""
+    rows = []
+    a, states = chains["a"].values, chains.sizes["state"]
+    for law in chains["law"].values:
+        for blocks in chains["blocks"].values:
+            one = chains.sel(law=law, blocks=blocks)
+            fraction = one["synchronized_fraction"].values
+            ends = one["synchronized_low"].values, one["synchronized_high"].values
+            # Among equal fractions the one that is known best.
+            best = min(range(len(a)), key=lambda k: (-fraction[k], ends[1][k]))
+            low, high = (end[best] for end in ends)
+            some = a[fraction > 0.0]
+            open_states = round(float(one["undetermined_fraction"].sum()) * states)
+            rows.append(
+                {
+                    "law": str(law),
+                    "blocks": str(int(blocks)),
+                    "most": f"{round(fraction[best] * states)} of {states}" if len(some) else f"0 of {states}",
+                    "at": text(a[best]) if len(some) else "–",
+                    "interval": f"{100 * low:.0f} to {100 * high:.0f} %",
+                    "values": f"{len(some)} of {len(a)}"
+                    + (f", {text(some[0])} to {text(some[-1])}" if len(some) else ""),
+                    "undetermined": f"{open_states} of {states * len(a)}",
+                }
+            )
+    return rows

@@ -1,0 +1,68 @@
+"""The verdicts on the paper's statements, read from the file that the rule `claims` writes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+#: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
+SIGNS = {
+    "holds": "✓",
+    "holds loosely": "≈",
+    "depends on convention": "⇄",
+    "fails": "✗",
+    "not testable": "–",
+}
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """The judged statements of the paper.
+
+    counts : {verdict: number of statements}, every verdict in the order of SIGNS
+    topics : {topic: its claims}, each claim a mapping as in the file
+    setting : v, contact and start for which they were judged, with the provenance
+    """
+
+    counts: dict[str, int]
+    topics: dict[str, list[dict[str, Any]]]
+    setting: dict[str, Any]
+
+
+_TEXTS = ("name", "topic", "statement", "place", "verdict", "reason")
+
+
+def read_verdicts(path: str | Path) -> Verdicts:
+    """Read the verdicts.
+
+    Raises ValueError, one line that names the file, if it is not such a file, or if its counts are not those of its
+    claims.
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        claims = [_claim(claim) for claim in content["claims"]]
+        stated = {verdict: int(content["counts"].get(verdict, 0)) for verdict in SIGNS}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"{path}: not a file of verdicts ({type(error).__name__}: {error}); make it again") from None
+    counts = {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in SIGNS}
+    if counts != stated:
+        raise ValueError(f"{path}: counts: {stated} is not allowed: the claims have {counts}")
+    topics: dict[str, list[dict[str, Any]]] = {}
+    for claim in claims:
+        topics.setdefault(claim["topic"], []).append(claim)
+    setting = {key: value for key, value in content.items() if key not in ("claims", "counts")}
+    return Verdicts(counts, topics, setting)
+
+
+def _claim(claim: dict[str, Any]) -> dict[str, Any]:
+    for key in _TEXTS:
+        if not isinstance(claim[key], str):
+            raise ValueError(f"{key}: {claim[key]!r} is not allowed: text")
+    verdicts = [claim["verdict"], *claim.get("conventions", {}).values()]
+    for verdict in verdicts:
+        if verdict not in SIGNS:
+            raise ValueError(f"verdict: {verdict!r} is not allowed: {' | '.join(SIGNS)}")
+    optional: dict[str, Any] = {"measured": [], "changes": "", "conventions": {}, "figure": ""}
+    return {**optional, **claim}

@@ -1,0 +1,114 @@
+"""Studies of which reports are made: a finished one with everything, and a poor one that lacks most of it."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.config import Study, load_study, read_schema
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.report.page import Sources
+from burridge_knopoff.settings import Settings
+from burridge_knopoff.simulation import STATUS, run
+from burridge_knopoff.summaries import agreement, attractors, bifurcation, lyapunov, mean_distance, orbits
+from burridge_knopoff.summaries.points import Grid
+
+CLAIMS = Path(__file__).parent / "claims.json"
+
+POOR = {
+    "study": "poor",
+    "a": [0.1, 0.2],
+    "initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}},
+    "transient": 100,
+    "window": 100,
+    "batches": 2,
+    "attractors": {"samples": 2, "transient": 100, "window": 100, "time_limit": 1000, "pushes": 4},
+    "basins": {"linearized": [], "nonlinear": []},
+}
+
+
+@dataclass(frozen=True)
+class Poor:
+    """Two blocks, one initial state, no maps, no chains, no benchmarks, a failed run, and nothing that is testable."""
+
+    study: Study
+    sources: Sources
+    folder: Path
+
+
+@pytest.fixture(scope="session")
+def poor(tmp_path_factory, repository) -> Poor:
+    folder = tmp_path_factory.mktemp("poor") / "results" / "poor"
+    study = load_study(POOR, read_schema(repository / "workflow/schemas/config.schema.yaml"), "poor.yaml")
+    config = study.config
+    grid = Grid(folder / "points", study.initial, dict(study.grid))
+    state = InitialState("pair", **{key: tuple(value) for key, value in config["initial"]["pair"].items()})
+    settings = Settings(transient=100.0, window=100.0, batches=2)
+    for _, (law, initial, a) in grid:
+        write_point(run(Chain(2), Friction(law, grid.a[a]), state, settings), grid.path(law, initial, a))
+    threshold = config["synchronization_threshold"]
+    values = list(study.grid.values())
+    kinds = lyapunov.summarize(grid, config["lyapunov_exponents"], threshold, config["motion"])
+    found = {
+        "mean_distance": mean_distance.summarize(grid, threshold),
+        "bifurcation": bifurcation.summarize(grid),
+        "lyapunov": kinds,
+        "agreement": agreement.summarize(grid, kinds, threshold, config["agreement"]),
+        "orbits": orbits.summarize(2, values, config["v"], config["contact"]),
+        "attractors": attractors.merge([attractors.one_law(law, values, config["initial"], config) for law in LAWS]),
+    }
+    _fail(found)
+    for name, dataset in found.items():
+        write_summary(dataset, folder / "summary" / f"{name}.nc")
+    (folder / "figures").mkdir()
+    for name in ("mean_distance", "orbits", "motion_pair"):
+        Image.new("RGBA", (900, 600), "white").save(folder / "figures" / f"{name}.png")
+    claims = folder / "summary" / "claims.json"
+    claims.write_text(
+        '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"not testable": 1},'
+        ' "claims": [{"name": "none", "topic": "chaos", "statement": "It </script><img src=x onerror=alert(1)>.",'
+        ' "place": "Sec. 1", "verdict": "not testable", "reason": "No run."}]}'
+    )
+    summaries, figures = (
+        {path.stem: path for path in (folder / place).glob(f"*{suffix}")}
+        for place, suffix in (("summary", ".nc"), ("figures", ".png"))
+    )
+    return Poor(study, Sources(claims, summaries, figures, folder / "benchmarks"), folder)
+
+
+def _fail(found) -> None:
+    """Let the run of the linearized law at the second a be one that did not complete."""
+    where = {"law": 0, "initial": 0, "a": 1}
+    for name in ("mean_distance", "lyapunov"):
+        found[name]["status"][where] = STATUS.index("diverged")
+        found[name]["mean_distance"][where] = np.nan
+    found["mean_distance"]["mean_distance_error"][where] = np.nan
+    for name in ("lyapunov_exponent", "lyapunov_error"):
+        found["lyapunov"][name][where] = np.nan
+    found["lyapunov"]["kind"][where] = -1
+    for name in ("difference", "difference_error", "section_distance"):
+        found["agreement"][name][{"initial": 0, "a": 1}] = np.nan
+    found["agreement"]["agrees"][{"initial": 0, "a": 1}] = -1
+
+
+@pytest.fixture
+def reported(finished, tmp_path):
+    """A copy of the finished study with its report."""
+    from tests.workflow.conftest import Study as Folder
+
+    subprocess.run(["cp", "-a", str(finished.folder), str(tmp_path / "copy")], check=True)
+    study = Folder(tmp_path / "copy", finished.config.read_text())
+    claims = study.folder / "results" / "tiny" / "summary" / "claims.json"
+    if not claims.exists():
+        claims.write_bytes(CLAIMS.read_bytes())
+    study.ok("report")
+    return study

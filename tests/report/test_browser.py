@@ -1,0 +1,257 @@
+"""The report in a browser, read as its readers do: with a pointer, with the keyboard, on a phone, in print."""
+
+import os
+import shutil
+
+import netCDF4
+import pytest
+
+from burridge_knopoff.report.page import write_report
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = os.environ.get("CHROMIUM") or next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
+pytestmark = pytest.mark.skipif(not CHROMIUM, reason="no chromium is found; the variable CHROMIUM may name one")
+
+# Text of every element whose contrast with what lies behind it is below WCAG AA, and none that a chart draws.
+LOW_CONTRAST = """() => {
+  const parse = (color) => (color.match(/[\\d.]+/g) ?? []).map(Number);
+  const light = ([r, g, b]) => [r, g, b].map((c) => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, c, n) => sum + c * [0.2126, 0.7152, 0.0722][n], 0);
+  const behind = (node) => {
+    for (; node; node = node.parentElement) {
+      const color = parse(getComputedStyle(node).backgroundColor);
+      if (color.length === 3 || color[3] > 0.99) return color;
+    }
+    return [255, 255, 255];
+  };
+  return [...document.querySelectorAll("body *")].filter((node) => {
+    if (node.closest(".chart, svg, script, dialog") || !node.checkVisibility()) return false;
+    if (![...node.childNodes].some((child) => child.nodeType === 3 && child.textContent.trim())) return false;
+    const [one, two] = [light(parse(getComputedStyle(node).color)), light(behind(node))].sort((a, b) => b - a);
+    return (one + 0.05) / (two + 0.05) < 4.5;
+  }).map((node) => node.textContent.trim().slice(0, 40));
+}"""
+
+FOCUSED = """() => {
+  const node = document.activeElement;
+  const style = getComputedStyle(node);
+  const box = node.getBoundingClientRect();
+  return {
+    name: node.getAttribute("aria-label") || node.id || node.textContent.trim().slice(0, 40) || node.tagName,
+    body: node === document.body,
+    visible: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2 && box.width > 0 && box.height > 0
+      && node.checkVisibility({ opacityProperty: true }),
+  };
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as tools:
+        browser = tools.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
+class Reader:
+    """A window on a report; collects everything that goes wrong in it."""
+
+    def __init__(self, browser, path, **window):
+        self.wrong, self.requests = [], []
+        self.context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **window})
+        self.page = self.context.new_page()
+        self.page.on("console", lambda message: self.wrong.append(f"{message.type}: {message.text}"))
+        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.url = path.as_uri()
+        self.page.goto(self.url)
+
+    def draw_everything(self):
+        """Scroll to every chart, and wait until it is drawn; return how many there are."""
+        charts = self.page.locator(".chart").all()
+        for chart in charts:
+            chart.scroll_into_view_if_needed()
+            chart.and_(self.page.locator("[data-drawn]")).wait_for(timeout=20_000)
+            assert chart.locator(".main-svg").count() >= 1
+            assert chart.evaluate("box => box._fullData.some((trace) => (trace.x ?? []).length)"), chart
+        return len(charts)
+
+    def close(self):
+        """Close the window; nothing may have been written to the console, and no other file asked for."""
+        asked = {url for url in self.requests if not url.startswith(("data:", "blob:"))}
+        assert self.wrong == []
+        assert asked == {self.url}
+        self.context.close()
+
+
+def detail(page):
+    """Return what the panel of one run says: {name: text}."""
+    return dict(
+        zip(
+            page.locator("#run-detail dt").all_inner_texts(),
+            page.locator("#run-detail dd").all_inner_texts(),
+            strict=True,
+        )
+    )
+
+
+def check_run(page, results, law, initial, a):
+    """Hold the panel against the point file of this run."""
+    path = f"points/{law}/{initial}/a{a:.4f}.nc"
+    shown = detail(page)
+    assert page.locator("#run-file").get_attribute("href") == path
+    with netCDF4.Dataset(results / path) as point:
+        assert (point.law, point.initial, float(point["a"][...])) == (law, initial, a)
+        mean, error = (float(point[name][...]) for name in ("mean_distance", "mean_distance_error"))
+        exponents = point["lyapunov_exponent"][:].tolist()
+    number = [float(part) for part in shown["⟨J⟩"].replace("−", "-").split(" ± ")]
+    assert number == [mean, error]
+    lines = shown["Lyapunov exponents"].replace("−", "-").replace("∞", "inf").splitlines()
+    assert [float(line.split(" = ")[1].split(" ± ")[0]) for line in lines] == exponents
+    assert shown["Run"] == f"{law} law, initial state {initial}, a = {a!r}"
+    assert page.locator("#run-snakemake").inner_text() == (
+        f"snakemake -c1 --force results/tiny/{path} --configfile study.yaml"
+    )
+    words = page.locator("#run-simulate").inner_text().split()
+    assert words[:7] == ["bk", "simulate", "--law", law, "--a", repr(a), "--initial"]
+    assert words[-2:] == ["--out", f"{law}_{initial}_a{a:.4f}.nc"]
+
+
+def click_run(page, law, initial, a):
+    """Click on a point of a curve of ⟨J⟩."""
+    chart = page.locator(f'.chart[data-chart="distance"][data-law="{law}"]')
+    chart.scroll_into_view_if_needed()
+    x, y = chart.evaluate(
+        """(box, [initial, a]) => {
+          const trace = box._fullData.filter((trace) => trace.meta === "run")[initial];
+          const { xaxis, yaxis } = box._fullLayout;
+          const place = box.getBoundingClientRect();
+          return [place.x + xaxis._offset + xaxis.d2p(trace.x[a]), place.y + yaxis._offset + yaxis.d2p(trace.y[a])];
+        }""",
+        [initial, a],
+    )
+    page.mouse.move(x - 1, y)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.up()
+
+
+def tab_through(page):
+    """Press Tab from the top to the end; return the names of all that was reached. Each must show that it has focus."""
+    page.evaluate(
+        "() => { document.body.tabIndex = -1; document.body.focus(); document.body.removeAttribute('tabindex'); }"
+    )
+    reached = []
+    for _ in range(600):
+        page.keyboard.press("Tab")
+        focused = page.evaluate(FOCUSED)
+        if focused["body"]:
+            return reached
+        assert focused["visible"], focused["name"]
+        reached.append(focused["name"])
+    raise AssertionError(f"a keyboard trap: {reached[-5:]}")
+
+
+def check_contrast(page):
+    """Hold every text against what lies behind it."""
+    low = page.evaluate(LOW_CONTRAST)
+    assert low == [], low
+
+
+def test_the_report_of_a_study(browser, reported):
+    results = reported.folder / "results" / "tiny"
+    path = results / "report.html"
+    assert path.stat().st_size < 15e6
+
+    reader = Reader(browser, path, color_scheme="light")
+    page = reader.page
+    # Charts wait until they are scrolled to.
+    assert page.locator(".chart[data-drawn]").count() < page.locator(".chart").count()
+    assert reader.draw_everything() == 21
+    assert page.locator(".picture.fallback").first.is_hidden()
+    assert page.locator(".badge").first.inner_text() == "✓ holds"
+
+    # A run by pointer, by arrow keys, by the buttons and by the lists.
+    check_run(page, results, "linearized", "minus", 0.08)
+    click_run(page, law=1, initial=1, a=3)
+    check_run(page, results, "nonlinear", "plus", 0.22)
+    page.locator('.chart[data-chart="distance"][data-law="0"]').focus()
+    page.keyboard.press("ArrowLeft")
+    check_run(page, results, "linearized", "plus", 0.2)
+    page.keyboard.press("ArrowUp")
+    check_run(page, results, "linearized", "minus", 0.2)
+    page.locator("#run-previous").press("Enter")
+    check_run(page, results, "linearized", "minus", 0.08)
+    page.locator("#run-law").select_option("nonlinear")
+    page.locator("#run-a").select_option("0.05")
+    check_run(page, results, "nonlinear", "minus", 0.05)
+    assert page.locator("#run-previous").is_disabled()
+    assert page.locator("#run-detail").get_attribute("aria-live") == "polite"
+    page.locator('[data-copies="run-snakemake"]').click()
+    page.locator("#copied").get_by_text("opied").or_(page.locator("#copied").get_by_text("Selected")).wait_for()
+
+    # A chart is saved as a picture, and none can be sent anywhere.
+    buttons = page.locator(".modebar-btn").evaluate_all("all => [...new Set(all.map((one) => one.dataset.title))]")
+    assert set(buttons) == {"Download plot as a PNG", "Zoom", "Pan", "Zoom in", "Zoom out", "Reset axes"}
+    with page.expect_download() as download:
+        page.locator(".modebar-btn").first.press("Enter")
+    assert download.value.path().read_bytes().startswith(b"\x89PNG")
+
+    # A figure at its full size, opened and closed with the keyboard.
+    page.locator(".thumbnail").first.press("Enter")
+    assert page.locator("#viewer").is_visible()
+    assert page.locator("#viewer img").evaluate("image => image.decode().then(() => image.naturalWidth)") == 2100
+    page.keyboard.press("Escape")
+    assert page.locator("#viewer").is_hidden()
+
+    reached = tab_through(page)
+    assert reached[0] == "Skip to the content"
+    assert {"run-law", "run-initial", "run-a", "run-next"} <= set(reached)
+    assert sum(name.startswith("⟨J⟩ against a, ") for name in reached) == 2
+
+    # Both themes: readable, and the charts follow.
+    paper = "getComputedStyle(document.body).backgroundColor"
+    ink = "document.querySelector('.chart')._fullLayout.font.color"
+    light = page.evaluate(paper), page.evaluate(ink)
+    check_contrast(page)
+    page.get_by_label("dark", exact=True).check()
+    page.wait_for_function(f"(before) => {ink} !== before", arg=light[1])
+    assert page.evaluate(paper) != light[0]
+    check_contrast(page)
+    page.emulate_media(media="print")
+    assert page.evaluate(paper) == light[0]
+    assert page.locator(".chart").first.is_hidden()
+    for picture in page.locator(".picture img").all():
+        assert picture.is_visible()
+        assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") >= 900
+    reader.close()
+
+    for width in (360, 320):
+        phone = Reader(
+            browser, path, viewport={"width": width, "height": 700}, has_touch=True, is_mobile=True, color_scheme="dark"
+        )
+        phone.draw_everything()
+        assert phone.page.evaluate("document.documentElement.scrollWidth") <= width
+        assert phone.page.evaluate(paper) != light[0]
+        phone.close()
+
+    plain = Reader(browser, path, java_script_enabled=False)
+    for picture in plain.page.locator(".picture img").all():
+        assert picture.is_visible()
+    assert plain.page.locator(".js-only").first.is_hidden()
+    plain.close()
+
+
+def test_the_report_of_a_study_that_lacks_most(browser, poor):
+    path = poor.folder / "report.html"
+    write_report(poor.study, poor.sources, "poor.yaml", path)
+    reader = Reader(browser, path)
+    reader.draw_everything()
+    reader.page.locator("#run-law").select_option("linearized")
+    reader.page.locator("#run-a").select_option("0.2")
+    shown = detail(reader.page)
+    assert (shown["⟨J⟩"], shown["Status"]) == ("–", "diverged")
+    assert shown["Kind of motion"] == "undetermined"
+    reader.close()

@@ -1,0 +1,104 @@
+"""The page of a study that lacks most of what a report can show: whole HTML, and a line for what is not there."""
+
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import pytest
+
+from burridge_knopoff.report.page import NEEDED, render, write_report
+
+VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
+
+
+class Page(HTMLParser):
+    """Elements of a page in order, as (name, attributes), and whether they are nested as they should be."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.elements, self.open, self.text = [], [], []
+        self.feed(html)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] not in ("script", "style"):
+            self.text.append(data)
+
+
+@pytest.fixture(scope="module")
+def html(poor):
+    return render(poor.study, poor.sources, "poor.yaml")
+
+
+@pytest.fixture(scope="module")
+def page(html):
+    return Page(html)
+
+
+def test_what_is_missing_is_said_in_a_line(page):
+    text = " ".join(" ".join(page.text).split())
+    for line in (
+        "No synchronized orbit was computed",
+        "This study has no maps of basins.",
+        "No run crossed the section W = 0 in its window.",
+        "Longer chains were not part of this study",
+        "Snakemake left no benchmark files",
+    ):
+        assert line in text
+    charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
+    assert not {"map", "chains", "multipliers", "asymmetry", "sections"} & set(charts)
+    assert {"distance", "exponents", "agreement"} <= set(charts)
+
+
+def test_a_failed_run_stands_with_its_file_and_command(page):
+    text = " ".join(" ".join(page.text).split())
+    assert "did not complete: diverged" in text
+    path = "points/linearized/pair/a0.2000.nc"
+    assert any(attributes.get("href") == path for _, attributes in page.elements)
+    assert f"snakemake -c1 --force results/poor/{path} --configfile poor.yaml" in text
+
+
+def test_texts_of_others_are_escaped(page):
+    assert "It </script><img src=x onerror=alert(1)>." in page.text
+    assert all("onerror" not in attributes for _, attributes in page.elements)
+
+
+def test_the_html_is_sound(page):
+    ids = [attributes["id"] for _, attributes in page.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    targets = [attributes["href"] for tag, attributes in page.elements if tag in ("a", "use")]
+    assert {target[1:] for target in targets if target.startswith("#")} <= set(ids)
+    for _, attributes in page.elements:
+        for name in ("aria-labelledby",):
+            assert set(attributes.get(name, "").split()) <= set(ids)
+        for name in ("src", "href"):
+            value = attributes.get(name, "")
+            assert value.startswith(("data:", "#")) or not value or "//" not in value
+    levels = [int(tag[1]) for tag, _ in page.elements if tag in ("h1", "h2", "h3", "h4")]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(following <= level + 1 for level, following in pairwise(levels))
+    assert all(attributes.get("alt") for tag, attributes in page.elements if tag == "img")
+
+
+def test_the_same_inputs_give_the_same_page(poor, html):
+    assert render(poor.study, poor.sources, "poor.yaml") == html
+
+
+def test_a_missing_summary_stops_before_anything_is_written(poor, tmp_path):
+    for name in NEEDED:
+        summaries = {key: path for key, path in poor.sources.summaries.items() if key != name}
+        with pytest.raises(ValueError, match=f"{name}.nc: not among the summaries"):
+            write_report(poor.study, replace(poor.sources, summaries=summaries), "", tmp_path / "report.html")
+    assert list(tmp_path.iterdir()) == []
