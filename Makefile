@@ -1,12 +1,12 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
-# `make benchmark`: the tables of docs/performance.md (about half an hour).
+# `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
 
 PYTHON ?= python3
 BIN := .venv/bin
 KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup test benchmark lock clean
+.PHONY: study setup test benchmark docs lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -55,6 +55,12 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/study.py
 	.venv-benchmark/bin/python benchmarks/stages.py
 	.venv-benchmark/bin/python benchmarks/stages.py --target chains
+
+# The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains.
+docs: setup
+	$(BIN)/snakemake -c2 chains
+	$(BIN)/snakemake -c2
+	$(BIN)/python docs/refresh.py results/paper
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:

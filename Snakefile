@@ -1,12 +1,17 @@
-# The study: config -> points -> summary -> figures. Run `snakemake -c2`; README.md tells more.
+# The study: config -> points -> summary -> figures -> report. Run `snakemake -c2`; README.md tells more.
+import hashlib
+import os
 import shlex
 import sys
+import time
 from pathlib import Path
 
 from snakemake.utils import min_version
 
 min_version("9.0")
 
+from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.closing import closing_lines
 from burridge_knopoff.config import (
     ConfigError,
     all_points,
@@ -16,7 +21,17 @@ from burridge_knopoff.config import (
 )
 from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import STABILITY_SOURCES, source_fingerprint
+from burridge_knopoff.provenance import (
+    CLAIM_SOURCES,
+    REPORT_SOURCES,
+    STABILITY_SOURCES,
+    source_fingerprint,
+)
+from burridge_knopoff.settings import SOLVERS
+from snakemake_logger_plugin_study.outcome import say_outcome
+from snakemake_logger_plugin_study.plan import announce
+
+BEGIN = time.monotonic()
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
 if not workflow.configfiles:
@@ -31,7 +46,11 @@ if " " in sys.executable:
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
     )
 
+CLAIMS_FILE = str(Path(workflow.basedir, "config/claims.yaml"))
+CLAIMS_SCHEMA = str(Path(workflow.basedir, "workflow/schemas/claims.schema.yaml"))
+
 try:
+    read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
     check_file(workflow.configfiles[0])
     STUDY = load_study(
         config,
@@ -55,6 +74,10 @@ shell.prefix(
 container: "docker://python:3.11"
 
 
+# What `snakemake --report` says on its first page.
+report: "workflow/report/workflow.rst"
+
+
 wildcard_constraints:
     law="|".join(LAWS),
     initial="|".join(STUDY.initial),
@@ -67,8 +90,13 @@ include: "workflow/rules/summarize.smk"
 include: "workflow/rules/attractors.smk"
 include: "workflow/rules/basins.smk"
 include: "workflow/rules/orbits.smk"
+include: "workflow/rules/equilibrium.smk"
+include: "workflow/rules/solvers.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/two_blocks.smk"
 include: "workflow/rules/chains.smk"
+include: "workflow/rules/claims.smk"
+include: "workflow/rules/report.smk"
 
 
 rule all:
@@ -77,5 +105,30 @@ rule all:
         rules.points.input,
         rules.summary.input,
         rules.figures.input,
+        rules.report.output,
     message:
-        f"study {STUDY.name}: all points, summaries and figures are in {RESULTS}"
+        f"study {STUDY.name}: all points, summaries, figures and the report are in {RESULTS}"
+
+
+onstart:
+    announce(workflow)
+
+
+onsuccess:
+    say_outcome(
+        workflow,
+        closing_lines,
+        results=RESULTS,
+        seconds=time.monotonic() - BEGIN,
+        success=True,
+    )
+
+
+onerror:
+    say_outcome(
+        workflow,
+        closing_lines,
+        results=RESULTS,
+        seconds=time.monotonic() - BEGIN,
+        success=False,
+    )

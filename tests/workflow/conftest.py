@@ -20,6 +20,8 @@ window: 200
 batches: 4
 attractors: {samples: 6, transient: 500, window: 500, time_limit: 5000, pushes: 4}
 basins: {pixels: 8, pairs: 20}
+solvers: {a: [0.2], step: 0.01}
+chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 """
 
 
@@ -31,6 +33,7 @@ class Study:
         self.folder = folder
         self.config = folder / "study.yaml"
         self.config.write_text(config)
+        self.output = ""
 
     def command(self, *arguments: str, cores: int = 2) -> list[str]:
         """Return the command line; arguments follow the usual ones."""
@@ -62,14 +65,6 @@ class Study:
             for path in sorted((results / folder).rglob("*"))
             if path.is_file()
         }
-
-
-@pytest.fixture(scope="session")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    """A tiny study that has run to its end; tests only read it."""
-    study = Study(tmp_path_factory.mktemp("finished"))
-    study.ok()
-    return study
 
 
 @pytest.fixture

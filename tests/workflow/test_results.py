@@ -1,6 +1,7 @@
 """What a study leaves: points, summaries and figures, opened and held against the package."""
 
 import csv
+import re
 
 import numpy as np
 import pytest
@@ -36,7 +37,7 @@ def test_every_point_is_there(results):
 
 def test_mean_distance_summary(results):
     with xr.open_dataset(results / "summary" / "mean_distance.nc") as summary:
-        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4}
+        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 3}
         assert summary["a"].values.tolist() == GRID
         for law in ("linearized", "nonlinear"):
             run = simulate(law, 0.2, "plus", **OPTIONS)
@@ -125,6 +126,44 @@ def test_orbits_summary(results):
             assert orbits["period"].sel(law=law, a=0.2).item() == pytest.approx(orbit.period, abs=1e-12)
 
 
+def test_stick_slip_summary(results):
+    with xr.open_dataset(results / "summary" / "stick_slip.nc") as cycles:
+        assert dict(cycles.sizes) == {"law": 2, "initial": 2, "a": 4, "block": 3}
+        run = simulate("nonlinear", 0.22, "plus", events="all", **OPTIONS)
+        point = cycles.sel(law="nonlinear", initial="plus", a=0.22)
+        for block in (1, 2, 3):
+            stops = run.event_time[(run.event_block == block) & (run.event_kind == 0) & (run.event_time >= 100.0)]
+            one = point.sel(block=block)
+            assert one["stop_rate"].item() == len(stops) / 200.0 > 0.0
+            assert one["cycle_time"].item() == pytest.approx(np.diff(stops).mean(), rel=1e-12)
+        expected = np.corrcoef(run.velocity[:, 0], run.velocity[:, 2])[0, 1]
+        assert point["velocity_correlation"].item() == pytest.approx(expected, abs=1e-12)
+
+
+def test_equilibrium_summary(results):
+    with xr.open_dataset(results / "summary" / "equilibrium.nc") as sliding:
+        assert sliding["a"].values.tolist() == GRID
+        real = sliding["eigenvalue"].sel(part="real", law="linearized").max("mode")
+        assert real.values == pytest.approx(0.5 * np.array(GRID))
+        assert (sliding["growth_rate"] > 0.0).all()
+
+
+def test_solvers_summary(results):
+    with xr.open_dataset(results / "summary" / "solvers.nc") as solvers:
+        assert solvers["a"].values.tolist() == [0.2]
+        run = simulate("nonlinear", 0.2, "minus", solver="rk4", step=0.01, **OPTIONS)
+        point = solvers.sel(law="nonlinear", solver="rk4", initial="minus", a=0.2)
+        assert point["mean_distance"].item() == run.mean_distance
+        assert point["step_count"].item() == run.step_count
+        assert abs(solvers["difference"].sel(solver="series")).max() < 1e-11
+    found = {str(path.relative_to(results / "solvers").parent) for path in (results / "solvers").rglob("a*.nc")}
+    assert found == {
+        f"{way}/{initial}"
+        for way in ("linearized/series", "linearized/rk4", "nonlinear/rk4")
+        for initial in ("minus", "plus")
+    }
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -139,6 +178,9 @@ def test_orbits_summary(results):
         "basins",
         "basin_fractions",
         "orbits",
+        "stick_slip",
+        "equilibrium",
+        "solvers",
     ],
 )
 def test_figures_are_pictures(results, name):
@@ -156,3 +198,13 @@ def test_logs_and_benchmarks(results):
         assert {f"{rule}{suffix}" for rule in ("mean_distance", "agreement", "figure_bifurcation")} <= names
         assert len(list((results / folder / "simulate").rglob(f"*{suffix}"))) == 16
     assert all(path.read_text() == "" for path in (results / "logs" / "simulate").rglob("*.log"))
+
+
+def test_the_data_dictionary_names_every_variable(results, repository):
+    words = set(re.findall(r"`(\w+)`", (repository / "docs" / "data.md").read_text()))
+    files = [*results.glob("summary/*.nc"), results / "points" / "linearized" / "plus" / "a0.0800.nc"]
+    assert len(files) >= 8
+    for path in files:
+        with xr.open_dataset(path) as dataset:
+            unknown = {str(name) for name in dataset.variables} - words - {"law", "initial"}
+            assert not unknown, path

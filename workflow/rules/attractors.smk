@@ -38,7 +38,12 @@ rule attractors:
         expand(rules.attractors_of_law.output, law=LAWS),
     output:
         dataset=f"{SUMMARY}/attractors.nc",
-        digest=f"{SUMMARY}/attractors.txt",
+        digest=report(
+            f"{SUMMARY}/attractors.txt",
+            caption="../report/attractors_text.rst",
+            category="Attractors",
+            labels={"result": "attractors in words", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/attractors.log",
     benchmark:

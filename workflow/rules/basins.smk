@@ -75,7 +75,12 @@ rule basins:
         ],
     output:
         dataset=f"{SUMMARY}/basins.nc",
-        digest=f"{SUMMARY}/basins.txt",
+        digest=report(
+            f"{SUMMARY}/basins.txt",
+            caption="../report/basins_text.rst",
+            category="Attractors",
+            labels={"result": "basins in words", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/basins.log",
     benchmark:

@@ -1,7 +1,5 @@
-# Longer chains, and two blocks under both laws: an optional stage with a target of its own, `snakemake -c2 chains`.
+# Longer chains: an optional stage with a target of its own, `snakemake -c2 chains`.
 
-CHAINS = STUDY.config["chains"]
-CHAIN_MODEL = {key: STUDY.config[key] for key in ("v", "contact", "start")}
 # Long chains take longest; they begin first.
 CHAIN_BLOCKS = sorted(CHAINS["blocks"], reverse=True)
 
@@ -59,39 +57,18 @@ rule chains_summary:
         "../scripts/chains_summary.py"
 
 
-rule two_blocks:
-    output:
-        f"{SUMMARY}/two_blocks.nc",
-    log:
-        f"{RESULTS}/logs/two_blocks.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/two_blocks.tsv"
-    resources:
-        mem_mb=400,
-        runtime=30,
-    params:
-        sample={key: CHAINS[key] for key in ("seed", "position", "velocity")},
-        two_blocks=CHAINS["two_blocks"],
-        settings={
-            key: STUDY.config[key]
-            for key in (*CHAIN_MODEL, "transient", "window", "batches")
-        },
-        threshold=STUDY.config["synchronization_threshold"],
-        motion=STUDY.config["motion"],
-        agreement=STUDY.config["agreement"],
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/two_blocks.py")),
-    message:
-        "two blocks: linearized against nonlinear law"
-    script:
-        "../scripts/two_blocks.py"
-
-
 rule figure_chains:
     input:
         chains=f"{SUMMARY}/chains.nc",
         two_blocks=f"{SUMMARY}/two_blocks.nc",
     output:
-        multiext(f"{FIGURES}/chains", ".pdf", ".png"),
+        f"{FIGURES}/chains.pdf",
+        report(
+            f"{FIGURES}/chains.png",
+            caption="../report/chains.rst",
+            category="Longer chains",
+            labels={"result": "longer chains, two blocks", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/figure_chains.log",
     benchmark:

@@ -10,29 +10,40 @@ FIGURE_POINTS = {
 }
 
 
+FIGURE_NAMES = [
+    "friction_laws",
+    "mean_distance",
+    "bifurcation",
+    "distance",
+    "lyapunov",
+    "agreement",
+    "basin_fractions",
+    *(["basins"] if BASIN_MAPS else []),
+    "orbits",
+    "stick_slip",
+    "equilibrium",
+    "solvers",
+    "two_blocks",
+    *(f"motion_{initial}" for initial in STUDY.initial),
+]
+
+
 rule figures:
     input:
-        expand(
-            f"{FIGURES}/{{name}}.{{format}}",
-            name=[
-                "friction_laws",
-                "mean_distance",
-                "bifurcation",
-                "distance",
-                "lyapunov",
-                "agreement",
-                "basin_fractions",
-                *(["basins"] if BASIN_MAPS else []),
-                "orbits",
-                *(f"motion_{initial}" for initial in STUDY.initial),
-            ],
-            format=FORMATS,
-        ),
+        expand(f"{FIGURES}/{{name}}.{{format}}", name=FIGURE_NAMES, format=FORMATS),
 
 
 rule figure_friction_laws:
+    input:
+        rules.mean_distance.output,
     output:
-        multiext(f"{FIGURES}/friction_laws", ".pdf", ".png"),
+        f"{FIGURES}/friction_laws.pdf",
+        report(
+            f"{FIGURES}/friction_laws.png",
+            caption="../report/friction_laws.rst",
+            category="Model",
+            labels={"result": "friction laws", "paper": "Fig. 2"},
+        ),
     log:
         f"{RESULTS}/logs/figure_friction_laws.log",
     benchmark:
@@ -41,7 +52,7 @@ rule figure_friction_laws:
         a=STUDY.grid[STUDY.figure_point],
         largest=max(STUDY.grid.values()),
     message:
-        "figure: friction laws"
+        "figure: friction laws, and the least friction in the runs"
     script:
         "../scripts/figure_friction_laws.py"
 
@@ -51,7 +62,13 @@ rule figure_mean_distance:
         rules.mean_distance.output,
         rules.attractors.output.dataset,
     output:
-        multiext(f"{FIGURES}/mean_distance", ".pdf", ".png"),
+        f"{FIGURES}/mean_distance.pdf",
+        report(
+            f"{FIGURES}/mean_distance.png",
+            caption="../report/mean_distance.rst",
+            category="Synchronization",
+            labels={"result": "⟨J⟩ against a", "paper": "Figs. 3a, 3b"},
+        ),
     log:
         f"{RESULTS}/logs/figure_mean_distance.log",
     benchmark:
@@ -66,7 +83,13 @@ rule figure_bifurcation:
     input:
         rules.bifurcation.output,
     output:
-        multiext(f"{FIGURES}/bifurcation", ".pdf", ".png"),
+        f"{FIGURES}/bifurcation.pdf",
+        report(
+            f"{FIGURES}/bifurcation.png",
+            caption="../report/bifurcation.rst",
+            category="Synchronization",
+            labels={"result": "bifurcation diagrams", "paper": "Figs. 4a, 4b"},
+        ),
     log:
         f"{RESULTS}/logs/figure_bifurcation.log",
     benchmark:
@@ -81,7 +104,13 @@ rule figure_distance:
     input:
         **FIGURE_POINTS,
     output:
-        multiext(f"{FIGURES}/distance", ".pdf", ".png"),
+        f"{FIGURES}/distance.pdf",
+        report(
+            f"{FIGURES}/distance.png",
+            caption="../report/distance.rst",
+            category="Runs",
+            labels={"result": "J against time", "paper": "Figs. 5a, 5b"},
+        ),
     log:
         f"{RESULTS}/logs/figure_distance.log",
     benchmark:
@@ -96,7 +125,16 @@ rule figure_motion:
     input:
         lambda wildcards: FIGURE_POINTS[wildcards.initial],
     output:
-        multiext(f"{FIGURES}/motion_{{initial}}", ".pdf", ".png"),
+        f"{FIGURES}/motion_{{initial}}.pdf",
+        report(
+            f"{FIGURES}/motion_{{initial}}.png",
+            caption="../report/motion.rst",
+            category="Runs",
+            labels={
+                "result": "velocities and positions, {initial}",
+                "paper": "Figs. 6, 7",
+            },
+        ),
     log:
         f"{RESULTS}/logs/figure_motion_{{initial}}.log",
     benchmark:
@@ -111,7 +149,13 @@ rule figure_lyapunov:
     input:
         rules.lyapunov.output,
     output:
-        multiext(f"{FIGURES}/lyapunov", ".pdf", ".png"),
+        f"{FIGURES}/lyapunov.pdf",
+        report(
+            f"{FIGURES}/lyapunov.png",
+            caption="../report/lyapunov.rst",
+            category="Synchronization",
+            labels={"result": "Lyapunov exponents", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/figure_lyapunov.log",
     benchmark:
@@ -126,7 +170,13 @@ rule figure_basin_fractions:
     input:
         rules.attractors.output.dataset,
     output:
-        multiext(f"{FIGURES}/basin_fractions", ".pdf", ".png"),
+        f"{FIGURES}/basin_fractions.pdf",
+        report(
+            f"{FIGURES}/basin_fractions.png",
+            caption="../report/basin_fractions.rst",
+            category="Attractors",
+            labels={"result": "basin fractions and sweeps of a", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/figure_basin_fractions.log",
     benchmark:
@@ -142,7 +192,13 @@ rule figure_basins:
         rules.basins.output.dataset,
         rules.attractors.output.dataset,
     output:
-        multiext(f"{FIGURES}/basins", ".pdf", ".png"),
+        f"{FIGURES}/basins.pdf",
+        report(
+            f"{FIGURES}/basins.png",
+            caption="../report/basins.rst",
+            category="Attractors",
+            labels={"result": "maps of basins", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/figure_basins.log",
     benchmark:
@@ -159,7 +215,13 @@ rule figure_agreement:
     input:
         rules.agreement.output.dataset,
     output:
-        multiext(f"{FIGURES}/agreement", ".pdf", ".png"),
+        f"{FIGURES}/agreement.pdf",
+        report(
+            f"{FIGURES}/agreement.png",
+            caption="../report/agreement.rst",
+            category="Friction laws",
+            labels={"result": "agreement of the two laws", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/figure_agreement.log",
     benchmark:
@@ -175,7 +237,13 @@ rule figure_orbits:
         orbits=rules.orbits.output[0],
         runs=rules.mean_distance.output[0],
     output:
-        multiext(f"{FIGURES}/orbits", ".pdf", ".png"),
+        f"{FIGURES}/orbits.pdf",
+        report(
+            f"{FIGURES}/orbits.png",
+            caption="../report/orbits.rst",
+            category="Synchronization",
+            labels={"result": "synchronized orbit", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/figure_orbits.log",
     benchmark:
@@ -184,3 +252,68 @@ rule figure_orbits:
         "figure: the synchronized orbit and where it is lost"
     script:
         "../scripts/figure_orbits.py"
+
+
+rule figure_stick_slip:
+    input:
+        rules.stick_slip.output,
+    output:
+        f"{FIGURES}/stick_slip.pdf",
+        report(
+            f"{FIGURES}/stick_slip.png",
+            caption="../report/stick_slip.rst",
+            category="Runs",
+            labels={"result": "stick-slip cycles", "paper": "none"},
+        ),
+    log:
+        f"{RESULTS}/logs/figure_stick_slip.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_stick_slip.tsv"
+    params:
+        law=STUDY.config["figures"]["law"],
+    message:
+        "figure: stick-slip cycles against a"
+    script:
+        "../scripts/figure_stick_slip.py"
+
+
+rule figure_equilibrium:
+    input:
+        rules.equilibrium.output,
+    output:
+        f"{FIGURES}/equilibrium.pdf",
+        report(
+            f"{FIGURES}/equilibrium.png",
+            caption="../report/equilibrium.rst",
+            category="Model",
+            labels={"result": "uniform sliding", "paper": "none"},
+        ),
+    log:
+        f"{RESULTS}/logs/figure_equilibrium.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_equilibrium.tsv"
+    message:
+        "figure: uniform sliding and the growth of its perturbations"
+    script:
+        "../scripts/figure_equilibrium.py"
+
+
+rule figure_solvers:
+    input:
+        rules.solvers.output,
+    output:
+        f"{FIGURES}/solvers.pdf",
+        report(
+            f"{FIGURES}/solvers.png",
+            caption="../report/solvers.rst",
+            category="Friction laws",
+            labels={"result": "independent solvers", "paper": "none"},
+        ),
+    log:
+        f"{RESULTS}/logs/figure_solvers.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_solvers.tsv"
+    message:
+        "figure: independent solvers of the same equations"
+    script:
+        "../scripts/figure_solvers.py"

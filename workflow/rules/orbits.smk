@@ -13,7 +13,7 @@ rule orbits:
         runtime=30,
     params:
         model={
-            "blocks": len(next(iter(STUDY.config["initial"].values()))["position"]),
+            "blocks": STUDY.blocks,
             "v": STUDY.config["v"],
             "contact": STUDY.config["contact"],
         },

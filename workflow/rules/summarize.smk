@@ -17,6 +17,11 @@ rule summary:
         f"{SUMMARY}/agreement.csv",
         f"{SUMMARY}/agreement.txt",
         f"{SUMMARY}/orbits.nc",
+        f"{SUMMARY}/stick_slip.nc",
+        f"{SUMMARY}/equilibrium.nc",
+        f"{SUMMARY}/solvers.nc",
+        f"{SUMMARY}/two_blocks.nc",
+        multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md"),
 
 
 rule mean_distance:
@@ -35,6 +40,7 @@ rule mean_distance:
         initial=STUDY.initial,
         grid=dict(STUDY.grid),
         threshold=STUDY.config["synchronization_threshold"],
+        sources=source_fingerprint(("summaries/mean_distance.py",)),
     message:
         "<J> over law, initial state and a"
     script:
@@ -92,8 +98,18 @@ rule agreement:
         lyapunov=rules.lyapunov.output,
     output:
         dataset=f"{SUMMARY}/agreement.nc",
-        table=f"{SUMMARY}/agreement.csv",
-        digest=f"{SUMMARY}/agreement.txt",
+        table=report(
+            f"{SUMMARY}/agreement.csv",
+            caption="../report/agreement_table.rst",
+            category="Friction laws",
+            labels={"result": "table of the agreement", "paper": "none"},
+        ),
+        digest=report(
+            f"{SUMMARY}/agreement.txt",
+            caption="../report/agreement_text.rst",
+            category="Friction laws",
+            labels={"result": "agreement in words", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/agreement.log",
     benchmark:
@@ -110,3 +126,27 @@ rule agreement:
         "linearized against nonlinear law"
     script:
         "../scripts/agreement.py"
+
+
+rule stick_slip:
+    input:
+        rules.points.input,
+    output:
+        f"{SUMMARY}/stick_slip.nc",
+    log:
+        f"{RESULTS}/logs/stick_slip.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/stick_slip.tsv"
+    resources:
+        mem_mb=400,
+        runtime=30,
+    params:
+        initial=STUDY.initial,
+        grid=dict(STUDY.grid),
+        blocks=STUDY.blocks,
+        window={key: STUDY.config[key] for key in ("transient", "window", "batches")},
+        sources=source_fingerprint(("summaries/stick_slip.py",)),
+    message:
+        "stick-slip cycles of each block"
+    script:
+        "../scripts/stick_slip.py"

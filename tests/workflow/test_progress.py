@@ -1,0 +1,147 @@
+"""What a run shows: stages and time left on a terminal and without one, and its last lines."""
+
+import os
+import pty
+import re
+import signal
+import subprocess
+
+import xarray as xr
+
+POINTS = [f"results/tiny/points/{law}/plus/a0.0{a}00.nc" for law in ("linearized", "nonlinear") for a in (5, 8)]
+
+
+def on_a_terminal(command, folder, until=None):
+    """Run a command on a pseudo terminal; return its exit code and what it wrote, after Ctrl-C once `until` is seen."""
+    main, side = pty.openpty()
+    environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NO_COLOR"))}
+    process = subprocess.Popen(
+        command,
+        cwd=folder,
+        stdin=side,
+        stdout=side,
+        stderr=side,
+        start_new_session=True,
+        env={**environment, "TERM": "xterm", "COLUMNS": "100", "LINES": "40"},
+    )
+    os.close(side)
+    written = b""
+    while True:
+        try:
+            chunk = os.read(main, 65536)
+        except OSError:
+            break
+        if not chunk:
+            break
+        written += chunk
+        if until and until in written:
+            until = None
+            # As the terminal does it: to all of its foreground processes.
+            os.killpg(process.pid, signal.SIGINT)
+    os.close(main)
+    return process.wait(), written.decode()
+
+
+def plain(text):
+    """Return text without the sequences that move the cursor and colour."""
+    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text).replace("\r", "\n")
+
+
+def test_a_terminal_shows_stages_and_time_left(study):
+    command = [argument for argument in study.command(*[]) if argument != "--nocolor"]
+    # So many that the display is drawn anew while some are still to come.
+    code, written = on_a_terminal([*command[:2], "points", *command[2:]], study.folder)
+    text = plain(written)
+    assert code == 0, text
+    assert re.search(r"^points +[━╸╺ ]+ +\d+ of 16 +\d running", text, re.MULTILINE)
+    assert re.search(r"^all +[━╸╺ ]+ +\d+ of 16", text, re.MULTILINE)
+    assert re.search(r"^(a few seconds left|about .* left), \d:\d\d so far", text, re.MULTILINE)
+    assert "16 jobs: points 16" in text
+    assert "files made in results/tiny: points 16" in text
+    assert "Select jobs to execute" not in text
+    # The cursor is given back.
+    assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
+
+
+def test_interrupted_on_a_terminal(study):
+    code, written = on_a_terminal(study.command(), study.folder, until=b"2 running")
+    text = plain(written)
+    assert code != 0
+    assert re.search(r"study tiny: stopped after \d+ s: (\d+ jobs? failed, )?\d+ jobs did not run", text)
+    assert "the same command goes on where this run stopped" in text
+    assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
+
+
+def test_without_a_terminal(finished):
+    lines = finished.output.splitlines()
+    begin, end = (
+        next(n for n, line in enumerate(lines) if words in line) for words in ("jobs: points 16", "study tiny: done")
+    )
+    total, stages = re.fullmatch(r"(\d+) jobs: (.*)", lines[begin]).groups()
+    assert {"points 16", "attractors 3", "basins 10", "claims 1", "report 1"} <= set(stages.split(", "))
+    assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
+    progress = [line for line in lines if re.search(rf"all \d+ of {total} \(\d+ %\)", line)]
+    assert lines[begin + 1 : end] == progress
+    # Of which there is none in the first ten seconds.
+    if int(re.search(r"done in (?:(\d+) min )?(\d+) s", lines[end])[2]) > 20:
+        assert progress
+
+
+def test_last_lines_of_a_study(finished):
+    lines = finished.output.splitlines()
+    made = next(line for line in lines if line.startswith("files made in results/tiny: "))
+    counts = set(made.partition(": ")[2].split(", "))
+    results = finished.folder / "results" / "tiny"
+    folders = {"points": 16} | {name: len(list((results / name).iterdir())) for name in ("summary", "figures")}
+    assert counts == {f"{name} {count}" for name, count in folders.items()} | {
+        *("attractors 2", "basins 9", "solvers 6", "report.html")
+    }
+    assert "points: all 16 completed" in lines
+    with xr.open_dataset(finished.folder / "results" / "tiny" / "summary" / "lyapunov.nc") as lyapunov:
+        undetermined = int((lyapunov["kind"] == -1).sum())
+    path = "results/tiny/summary/lyapunov.nc"
+    assert f"points: kind of motion undetermined at {undetermined} of 16 (kind in {path})" in lines
+
+
+def test_a_single_point_and_nothing_to_do(finished, study):
+    output = study.ok(POINTS[0])
+    assert f"made: {POINTS[0]}" in output.splitlines()
+    assert "completed" not in output
+    output = finished.ok()
+    assert "Nothing to be done (all requested files are present and up to date)." in output
+    assert "study tiny" not in output
+
+
+def test_failed_jobs_are_named_with_their_logs(copy):
+    point = copy.folder / "results" / "tiny" / "points" / "nonlinear" / "minus" / "a0.0500.nc"
+    point.write_bytes(b"")
+    run = copy.run("-R", "mean_distance", "--rerun-triggers", "params", "--until", "figure_mean_distance")
+    lines = run.stderr.splitlines()
+    assert run.returncode != 0
+    end = next(n for n, line in enumerate(lines) if line.startswith("study tiny: stopped"))
+    assert re.fullmatch(r"study tiny: stopped after \d+ s: 1 job failed, 1 job did not run", lines[end])
+    assert lines[end + 1 : end + 4] == [
+        "failed: mean_distance, log results/tiny/logs/mean_distance.log",
+        "made: nothing",
+        "the same command goes on where this run stopped",
+    ]
+    # The log itself, and Snakemake's own words, are there as well.
+    assert "Error in rule mean_distance:" in lines
+    assert "not a readable point file" in run.stderr
+
+
+def test_no_defect_of_the_last_lines_fails_a_run(copy):
+    summary = copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc"
+    times = summary.stat()
+    summary.write_text("damaged")
+    # As old as it was: what depends on it is not made again.
+    os.utime(summary, ns=(times.st_atime_ns, times.st_mtime_ns))
+    output = copy.ok("summary", "figures", "-R", "figure_equilibrium", "--rerun-triggers", "params")
+    assert "study tiny: done in" in output
+    assert "results/tiny/summary/mean_distance.nc: cannot be read" in output
+
+
+def test_without_hooks(study):
+    output = study.ok("--no-hooks", POINTS[0])
+    assert "study tiny" not in output
+    assert (study.folder / POINTS[0]).exists()

@@ -1,0 +1,96 @@
+"""`snakemake --report`: every figure and text with its category and caption, offline."""
+
+import base64
+import json
+import re
+import shutil
+import zipfile
+
+import pytest
+from docutils.core import publish_doctree
+
+CATEGORIES = {
+    "Claims": ["claims.csv"],
+    "Model": ["equilibrium.png", "friction_laws.png"],
+    "Runs": ["distance.png", "motion_minus.png", "motion_plus.png", "stick_slip.png"],
+    "Synchronization": ["bifurcation.png", "lyapunov.png", "mean_distance.png", "orbits.png"],
+    "Attractors": ["attractors.txt", "basin_fractions.png", "basins.png", "basins.txt"],
+    "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],
+}
+
+
+def embedded(page, name):
+    """Return a variable of the page's script."""
+    start = re.search(rf"^ *var {name} = (?=[\"{{])", page, re.MULTILINE)
+    return json.JSONDecoder().raw_decode(page, start.end())[0]
+
+
+@pytest.fixture(scope="module")
+def report(finished, tmp_path_factory):
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    output = finished.ok("--report", str(path))
+    assert "WARNING" not in output
+    assert "study tiny" not in output
+    return path
+
+
+def test_every_figure_and_text_has_its_category_and_caption(report, finished, repository):
+    page = report.read_text()
+    results = embedded(page, "results")
+    listed = {
+        category: sorted(path.rsplit("/", 1)[1] for paths in parts.values() for path in paths)
+        for category, parts in embedded(page, "categories").items()
+    }
+    assert listed == CATEGORIES
+    made = {path.name for path in (finished.folder / "results" / "tiny" / "figures").glob("*.png")}
+    assert made == {name for names in CATEGORIES.values() for name in names if name.endswith(".png")}
+    captions = {entry["caption"] for entry in results.values()}
+    # Both motions have one caption, which names the initial state.
+    assert len(captions) == len(results)
+    for path, entry in results.items():
+        words = re.sub(r"<[^>]+>", "", entry["caption"]).split()
+        assert len(words) > 8, path
+        assert "{{" not in entry["caption"]
+        assert entry["labels"]["result"]
+        content = base64.b64decode(entry["data_uri"].partition("base64,")[2])
+        assert content == (finished.folder / path).read_bytes()
+    assert "Study <strong>tiny</strong>" in embedded(page, "workflow_desc")
+    used = {path.stem for path in (repository / "workflow" / "report").glob("*.rst")}
+    rules = "".join(path.read_text() for path in (repository / "workflow" / "rules").glob("*.smk"))
+    assert used - {name for name in used if f"report/{name}.rst" in rules} == {"workflow"}
+
+
+def test_every_caption_is_sound(repository):
+    """Also those of optional stages."""
+    for path in (repository / "workflow" / "report").glob("*.rst"):
+        assert publish_doctree(path.read_text(), settings_overrides={"halt_level": 2}).astext()
+
+
+def test_the_zip_holds_the_same_files(finished, tmp_path):
+    finished.ok("--report", str(tmp_path / "report.zip"))
+    with zipfile.ZipFile(tmp_path / "report.zip") as archive:
+        names = [name.rsplit("/", 1)[1] for name in archive.namelist()]
+    assert sorted(names) == sorted(["report.html", *(name for names in CATEGORIES.values() for name in names)])
+
+
+def test_a_browser_without_a_network_shows_it(report):
+    browsers = pytest.importorskip("playwright.sync_api", reason="needs playwright")
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        pytest.skip("needs Debian's chromium")
+    with browsers.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        page = browser.new_context(offline=True).new_page()
+        errors = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("requestfailed", lambda request: errors.append(request.url))
+        page.goto(report.as_uri())
+        page.get_by_text("Synchronization", exact=True).click()
+        row = page.get_by_role("row").filter(has_text="Lyapunov exponents")
+        row.locator("a").first.click()
+        picture = page.locator("img[src^='data:image/png']").first
+        picture.wait_for()
+        width = picture.evaluate("image => image.naturalWidth")
+        browser.close()
+    assert errors == []
+    assert width > 1500

@@ -1,0 +1,51 @@
+# Claims: each statement of the paper judged by the summaries.
+
+
+rule claims:
+    input:
+        claims=CLAIMS_FILE,
+        summaries=[
+            f"{SUMMARY}/{name}.nc"
+            for name in (
+                "mean_distance",
+                "bifurcation",
+                "lyapunov",
+                "agreement",
+                "attractors",
+                *(["basins"] if BASIN_MAPS else []),
+                "orbits",
+                "stick_slip",
+                "equilibrium",
+                "solvers",
+                "two_blocks",
+            )
+        ],
+    output:
+        content=f"{SUMMARY}/claims.json",
+        table=report(
+            f"{SUMMARY}/claims.csv",
+            caption="../report/claims.rst",
+            category="Claims",
+            labels={"result": "claims of the paper", "paper": "all"},
+        ),
+        text=f"{SUMMARY}/claims.md",
+    log:
+        f"{RESULTS}/logs/claims.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/claims.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        study=STUDY.name,
+        schema=CLAIMS_SCHEMA,
+        config={
+            key: STUDY.config[key]
+            for key in ("v", "contact", "start", "initial", "motion")
+        },
+        figures=FIGURE_NAMES,
+        sources=source_fingerprint(CLAIM_SOURCES),
+    message:
+        "verdicts on the claims of the paper"
+    script:
+        "../scripts/claims.py"

@@ -1,0 +1,39 @@
+# Report: one HTML file that opens offline, with the verdicts, charts, figures and commands of the study.
+
+DEFAULT_CONFIG = Path(workflow.basedir, "config/paper.yaml").resolve()
+CONFIG_FILE = Path(workflow.configfiles[0]).resolve()
+
+# Results of the optional stage are no inputs: the report must not make them. It shows those that are there.
+OPTIONAL_RESULTS = {
+    path: hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    for path in (f"{SUMMARY}/chains.nc", f"{FIGURES}/chains.png")
+    if Path(path).is_file()
+}
+
+
+rule report:
+    input:
+        claims=rules.claims.output.content,
+        summaries=[path for path in rules.summary.input if path.endswith(".nc")],
+        figures=[path for path in rules.figures.input if path.endswith(".png")],
+    output:
+        f"{RESULTS}/report.html",
+    log:
+        f"{RESULTS}/logs/report.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/report.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        # The report shows the whole config.
+        config=STUDY.config,
+        grid=dict(STUDY.grid),
+        configfile="" if CONFIG_FILE == DEFAULT_CONFIG else os.path.relpath(CONFIG_FILE),
+        optional=OPTIONAL_RESULTS,
+        benchmarks=f"{RESULTS}/benchmarks",
+        sources=source_fingerprint(REPORT_SOURCES),
+    message:
+        f"report: {RESULTS}/report.html"
+    script:
+        "../scripts/report.py"

@@ -1,0 +1,70 @@
+# Solvers: the points of a few values of a once more, by every other solver of each law.
+
+SOLVER_POINT = f"{RESULTS}/solvers/{{law}}/{{solver}}/{{initial}}/a{{a}}.nc"
+SOLVER_GRID = {
+    name: value
+    for name, value in STUDY.grid.items()
+    if value in STUDY.config["solvers"]["a"]
+}
+
+
+rule simulate_solver:
+    output:
+        SOLVER_POINT,
+    log:
+        f"{RESULTS}/logs/simulate_solver/{{law}}/{{solver}}/{{initial}}/a{{a}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate_solver/{{law}}/{{solver}}/{{initial}}/a{{a}}.tsv"
+    wildcard_constraints:
+        solver="|".join(SOLVERS),
+    resources:
+        mem_mb=150,
+        runtime=60,
+    params:
+        options=lambda wildcards: STUDY.options(
+            wildcards.law, wildcards.initial, wildcards.a, wildcards.solver
+        ),
+        sources=source_fingerprint(),
+    message:
+        "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
+    shell:
+        "bk simulate {params.options} --out {output} 2> {log}"
+
+
+rule solvers:
+    input:
+        points=[
+            POINT.format(law=law, initial=initial, a=a)
+            for law in LAWS
+            for initial in STUDY.initial
+            for a in SOLVER_GRID
+        ],
+        others=[
+            SOLVER_POINT.format(law=law, solver=solver, initial=initial, a=a)
+            for law in LAWS
+            for solver in STUDY.other_solvers(law)
+            for initial in STUDY.initial
+            for a in SOLVER_GRID
+        ],
+    output:
+        f"{SUMMARY}/solvers.nc",
+    log:
+        f"{RESULTS}/logs/solvers.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/solvers.tsv"
+    resources:
+        mem_mb=400,
+        runtime=10,
+    params:
+        initial=STUDY.initial,
+        grid=SOLVER_GRID,
+        solvers={
+            law: [STUDY.config["solver"][law], *STUDY.other_solvers(law)]
+            for law in LAWS
+        },
+        step=STUDY.config["solvers"]["step"],
+        sources=source_fingerprint(("summaries/solvers.py", "summaries/event_order.py")),
+    message:
+        "independent solvers of the same equations"
+    script:
+        "../scripts/solvers.py"

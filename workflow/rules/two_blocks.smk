@@ -1,0 +1,54 @@
+# Two blocks under both laws: a statement of the paper on them is judged in every study.
+
+CHAINS = STUDY.config["chains"]
+CHAIN_MODEL = {key: STUDY.config[key] for key in ("v", "contact", "start")}
+
+
+rule two_blocks:
+    output:
+        f"{SUMMARY}/two_blocks.nc",
+    log:
+        f"{RESULTS}/logs/two_blocks.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/two_blocks.tsv"
+    # A long job that waits for nothing: begun early, so that it is not left alone at the end.
+    priority: 5
+    resources:
+        mem_mb=400,
+        runtime=30,
+    params:
+        sample={key: CHAINS[key] for key in ("seed", "position", "velocity")},
+        two_blocks=CHAINS["two_blocks"],
+        settings={
+            key: STUDY.config[key]
+            for key in (*CHAIN_MODEL, "transient", "window", "batches")
+        },
+        threshold=STUDY.config["synchronization_threshold"],
+        motion=STUDY.config["motion"],
+        agreement=STUDY.config["agreement"],
+        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/two_blocks.py")),
+    message:
+        "two blocks: linearized against nonlinear law"
+    script:
+        "../scripts/two_blocks.py"
+
+
+rule figure_two_blocks:
+    input:
+        f"{SUMMARY}/two_blocks.nc",
+    output:
+        f"{FIGURES}/two_blocks.pdf",
+        report(
+            f"{FIGURES}/two_blocks.png",
+            caption="../report/two_blocks.rst",
+            category="Friction laws",
+            labels={"result": "two blocks under both laws", "paper": "none"},
+        ),
+    log:
+        f"{RESULTS}/logs/figure_two_blocks.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure_two_blocks.tsv"
+    message:
+        "figure: two blocks under both laws"
+    script:
+        "../scripts/figure_two_blocks.py"

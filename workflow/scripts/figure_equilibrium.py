@@ -1,0 +1,11 @@
+"""Figure: uniform sliding and the growth of its perturbations."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.figures.equilibrium import draw
+from burridge_knopoff.figures.style import write_figure
+
+write_figure(draw(open_summary(snakemake.input[0])), *snakemake.output)

@@ -1,0 +1,11 @@
+"""Figure: two blocks under both laws."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.figures.style import write_figure
+from burridge_knopoff.figures.two_blocks import draw
+
+write_figure(draw(open_summary(snakemake.input[0])), *snakemake.output)

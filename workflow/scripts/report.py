@@ -1,0 +1,15 @@
+"""Report: everything that a study found, in one HTML file."""
+
+import sys
+from pathlib import Path
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.config import Study
+from burridge_knopoff.report.page import Sources, write_report
+
+params = snakemake.params
+paths = [Path(path) for path in (*snakemake.input.summaries, *snakemake.input.figures, *params.optional)]
+summaries, figures = ({path.stem: path for path in paths if path.suffix == suffix} for suffix in (".nc", ".png"))
+sources = Sources(Path(snakemake.input.claims), summaries, figures, Path(params.benchmarks))
+write_report(Study(params.config, params.grid), sources, params.configfile, snakemake.output[0])
