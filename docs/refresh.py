@@ -1,0 +1,53 @@
+"""Bring the ledger of claims and the figures of the documentation up to date with a finished study: `make docs`."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+
+from PIL import Image
+
+from burridge_knopoff.claims.ledger import as_markdown
+from burridge_knopoff.files import write_text
+
+DOCS = Path(__file__).parent
+PAGE = DOCS / "claims.md"
+LEDGER = DOCS / "claims.json"
+BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
+
+# Enough for a page on a screen, and a third of the bytes of the figures for print.
+WIDTH = 1400
+COLORS = 64
+
+
+def page(text: str, content: dict) -> str:
+    """Return the text of docs/claims.md with its tables replaced by those of a ledger."""
+    before, rest = text.split(BEGIN)
+    after = rest.split(END)[1]
+    return f"{before}{BEGIN}\n{as_markdown(content, 'figures')}{END}{after}"
+
+
+def figure_names() -> set[str]:
+    """Return the names of the study's figures that the pages of docs/ and the README show or link."""
+    pages = [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
+    return {name for text in pages for name in re.findall(r"figures/(\w+)\.png", text.read_text(encoding="utf-8"))}
+
+
+def main(results: Path) -> None:
+    """Copy the ledger and the figures of a study into docs/."""
+    content = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
+    write_text(LEDGER, json.dumps(content, ensure_ascii=False, indent=1) + "\n")
+    write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content))
+    for name in sorted(figure_names()):
+        source = results / f"figures/{name}.png"
+        if source.exists():
+            picture = Image.open(source).convert("RGB")
+            height = round(picture.height * WIDTH / picture.width)
+            small = picture.resize((WIDTH, height), Image.Resampling.LANCZOS) if picture.width > WIDTH else picture
+            small.quantize(COLORS, dither=Image.Dither.NONE).save(DOCS / f"figures/{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

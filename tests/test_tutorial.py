@@ -1,0 +1,28 @@
+"""docs/tutorial.md runs as it stands, prints what it says, and draws the pictures that it shows."""
+
+import re
+
+import numpy as np
+from matplotlib.image import imread
+
+from tests.pages import blocks, outputs
+
+FROM_FILES = "From the files of a study"
+
+
+def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = (repository / "docs" / "tutorial.md").read_text()
+    headings = {block.heading for block in blocks(page)} - {FROM_FILES}
+    results = outputs(page, "docs/tutorial.md", headings)
+    assert len(results) >= 5
+    for _, said, printed in results:
+        assert printed == said
+    shown = re.findall(r"!\[.*?\]\((figures/tutorial_\w+\.png)\)", page)
+    made = sorted(str(path.relative_to(tmp_path / "docs")) for path in tmp_path.rglob("*.png"))
+    assert made == sorted(shown)
+    for name in shown:
+        mine, committed = (imread(folder / "docs" / name) for folder in (tmp_path, repository))
+        assert mine.shape == committed.shape
+        # Another version of the drawing library may shade an edge differently; another curve is seen.
+        assert np.abs(mine - committed).mean() < 0.01, name
