@@ -55,7 +55,12 @@ def git_commit() -> str:
     """Return the commit that is checked out around the package, or "unknown" outside a checkout."""
     git = PACKAGE.parent.parent / ".git"
     try:
-        head = (git / "HEAD").read_text().strip()
+        folder = git
+        if git.is_file():
+            # A worktree: its HEAD is its own, the branches are those of the repository.
+            folder = Path(git.read_text().removeprefix("gitdir:").strip())
+            git = (folder / (folder / "commondir").read_text().strip()).resolve()
+        head = (folder / "HEAD").read_text().strip()
         if not head.startswith("ref: "):
             return head
         reference = head.removeprefix("ref: ")

@@ -100,6 +100,18 @@ def exponent_of(label, count):
     return uncertainty_exponent(*uncertain_counts(label(points), known))
 
 
+def test_without_attractors_nothing_is_determined(known):
+    none = known.sel(a=[0.08]).assign_coords(a=[0.0])
+    none["branch"].values[...] = -1
+    parts = [basins.tile(none, "linearized", 0.0, 0, CONFIG, 1)]
+    merged = basins.merge([("linearized", 0.0, parts, basins.pairs(none, "linearized", 0.0, CONFIG, 1))], CONFIG)
+    assert (merged["branch"] == -1).all()
+    assert merged["undetermined_count"].item() == 16 * 16
+    assert (merged["pair_count"] == 0).all()
+    assert np.isnan(merged["decision_time"]).all()
+    assert np.isnan(merged["uncertainty_exponent"].item())
+
+
 def test_exponent_of_a_straight_boundary():
     """A smooth curve has α = 1."""
     alpha, error = exponent_of(lambda x: (x[:, 0] > 0.4 * x[:, 1] + 0.23).astype(int), 400_000)

@@ -19,7 +19,8 @@ FIGURE_NAMES = [
     "agreement",
     "basin_fractions",
     *(["basins"] if BASIN_MAPS else []),
-    "orbits",
+    # The orbit of three blocks; of other chains there is none.
+    *(["orbits"] if STUDY.blocks == 3 else []),
     "stick_slip",
     "equilibrium",
     "solvers",

@@ -10,6 +10,9 @@ from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure
 # Later blocks lie above earlier ones and are thinner or broken, so that blocks in synchrony are all seen.
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 2.2)), "-.")
 WIDTHS = (2.2, 1.1, 1.4, 1.0)
+# A legend of more blocks than these would take the room of the curves.
+MOST_NAMED = 12
+
 SHADES = ("#7FB2DA", "#D55E00", "#000000")
 
 
@@ -30,8 +33,11 @@ def draw(point: xarray.Dataset) -> Figure:
             )
     panels[0].set_ylabel("$U_i'$")
     panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
-    if len(point["block"]) <= 6:
-        panels[0].legend(ncols=len(point["block"]), loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
+    blocks = len(point["block"])
+    if blocks <= 3:
+        panels[0].legend(ncols=blocks, loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
+    elif blocks <= MOST_NAMED:
+        figure.legend(*panels[0].get_legend_handles_labels(), ncols=min(blocks, 6), loc="outside lower center")
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
     label_panels(panels, [f"velocities: {run}", f"positions relative to the driver: {run}"])
     return figure

@@ -12,7 +12,7 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.provenance import STABILITY_SOURCES
-from burridge_knopoff.stability.basins import known_attractors, label_states, pixel_centres, plane
+from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, label_states, pixel_centres, plane
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 
@@ -55,7 +55,7 @@ def tile(
     state = config["initial"][basins["initial"]]
     position, velocity = plane(state["position"], first, last, state["velocity"])
     time_limit = config["attractors"]["time_limit"]
-    labels, times = label_states(known, position, velocity, config["start"], time_limit, threads)
+    labels, times = _labels(known, position, velocity, config["start"], time_limit, threads)
     shape = (len(last), len(first))
     values = {
         name: np.where(labels == UNDETERMINED, missing, table[labels] if len(table) else missing).reshape(shape)
@@ -79,12 +79,19 @@ def pairs(attractors: xarray.Dataset, law: str, a: float, config: Mapping[str, A
     position[:, 0], position[:, -1] = ends.T
     velocity = np.tile(np.array(state["velocity"], dtype=float), (len(ends), 1))
     time_limit = config["attractors"]["time_limit"]
-    labels, _ = label_states(known, position, velocity, config["start"], time_limit, threads)
+    labels, _ = _labels(known, position, velocity, config["start"], time_limit, threads)
     counts = uncertain_counts(labels[: len(points)], labels[len(points) :].reshape(len(SEPARATIONS), -1))
     values = dict(zip(PAIR_VARIABLES, counts, strict=True))
     attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
     coordinates = {"separation": _separation(basins)}
     return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
+
+
+def _labels(known: KnownAttractors, position: np.ndarray, *others: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return what `label_states` does; where no attractor is known, as at a = 0, nothing is determined."""
+    if not known.attractors:
+        return np.full(len(position), UNDETERMINED, dtype=np.intc), np.zeros(len(position))
+    return label_states(known, position, *others)
 
 
 def _separation(basins: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str, str]]:

@@ -11,7 +11,13 @@ function openPicture(event) {
   viewer.showModal();
 }
 
+// Browsers that do not know how to show a closed part in print are helped.
+function unfoldForPrint() {
+  document.querySelectorAll(".claim-more").forEach((part) => { part.open = true; });
+}
+
 function startPictures() {
+  window.addEventListener("beforeprint", unfoldForPrint);
   document.querySelectorAll(".opens-picture").forEach((link) => link.addEventListener("click", openPicture));
   const viewer = byId("viewer");
   byId("viewer-close").addEventListener("click", () => viewer.close());
