@@ -41,3 +41,12 @@ def test_the_ledger_is_of_the_claims_as_they_stand(content: dict) -> None:
 def test_every_figure_of_the_page_is_there(content: dict) -> None:
     for claim in content["claims"]:
         assert (ROOT / f"docs/figures/{claim['figure']}.png").exists()
+
+
+def test_the_readme_counts_them(content: dict) -> None:
+    counts = content["counts"]
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert (
+        f"Of {sum(counts.values())} statements {counts['holds']} hold, {counts['holds loosely']} hold loosely, "
+        f"{counts['depends on convention']} depend on conventions that the study leaves open, and {counts['fails']} fail"
+    ) in text
