@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, measured_text, read_claims
-from burridge_knopoff.claims.verdict import Range, by_value, spans, with_error
+from burridge_knopoff.claims.verdict import NotTestableError, Range, at_values, by_interval, by_value, with_error
 from burridge_knopoff.config import ConfigError
 from tests.claims.worlds import A, evidence, paper_world
 
@@ -48,7 +48,22 @@ def test_a_claim_knows_its_judge(tmp_path: Path) -> None:
         ("loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, upper"),
         ("tolerance: 0.005", "tolerance: -1", "tolerance: -1 is not allowed"),
         ("upper: true", "upper: 1", "upper: 1 is not allowed"),
-        ("initial: minus", "initial: middle", "initial: 'middle' is not allowed"),
+        ("initial: minus", "initial: middle", "initial: middle is not allowed: minus | plus"),
+        ("initial: minus", "initial: [minus, plus]", "initial: ['minus', 'plus'] is not allowed: one name"),
+        ("claimed: 0.08", "claimed: true", "claimed: True is not allowed"),
+        ("claimed: 0.08", "claimed: .nan", "claimed: nan is not allowed"),
+        ("loose: 0.01", "loose: 0.001", "loose: 0.001 is not allowed: at least tolerance"),
+        (GOOD, "[", "not YAML (line 1)"),
+        (GOOD, "a: &x {b: *x}", "nested too deep"),
+        (GOOD, "a: !!python/object:os.system {}", "not YAML (line 1)"),
+        (GOOD, "? [a, b]\n: 1", "not YAML (line 1)"),
+        (GOOD, "---\na: 1\n---\nb: 2", "not YAML (line 3)"),
+        (GOOD, "a: \0", "not YAML"),
+        (GOOD, "[" * 5000, "not YAML"),
+        (GOOD, "", "is not allowed: named entries"),
+        (GOOD, "- a", "is not allowed: named entries"),
+        ("edge:", '"edge\\n":', "is not allowed as a key"),
+        ("edge:", "1:", "is not allowed as a key"),
         ("  place: Fig. 3\n", "", "place: missing"),
         ("figure: orbits", "figure: ../orbits", "figure: '../orbits' is not allowed"),
         ("  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
@@ -64,6 +79,48 @@ def test_what_is_not_allowed_is_said_in_one_line(tmp_path: Path, old: str, new: 
     assert "\n" not in str(error.value)
 
 
+RANGED = """
+regular:
+  statement: All is regular.
+  place: Fig. 3
+  judge: kinds.all_of_kind
+  parameters: {initial: [minus], laws: [linearized], kinds: [periodic], a: {above: 0}, loose_share: 0.9}
+  figure: lyapunov
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("{above: 0}", "{}", "a: {} is not allowed: at least one end"),
+        ("{above: 0}", "{from: 0, above: 0}", "one of each side"),
+        ("{above: 0}", "{from: 1, to: 0}", "the first end below the last"),
+        ("{above: 0}", "{above: 1, to: 1}", "the first end below the last"),
+        ("{above: 0}", "{over: 0}", "a.over: unknown key"),
+        ("0.9", "90", "loose_share: 90 is not allowed"),
+        ("[minus]", "minus", "initial: 'minus' is not allowed: a list of names"),
+        ("[linearized]", "[cubic]", "laws[0]: 'cubic' is not allowed"),
+        ("[periodic]", "[]", "kinds: [] is not allowed"),
+    ],
+)
+def test_ranges_and_lists_are_checked(tmp_path: Path, old: str, new: str, expected: str) -> None:
+    (claim,) = read(tmp_path, RANGED)
+    assert claim.parameters["a"] == Range(above=0.0)
+    assert old in RANGED
+    with pytest.raises(ConfigError) as error:
+        read(tmp_path, RANGED.replace(old, new))
+    assert expected in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
+        read_claims(tmp_path / "missing.yaml", SCHEMA)
+    (tmp_path / "claims.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ConfigError, match=r"claims.yaml: cannot be read: not UTF-8 text"):
+        read_claims(tmp_path / "claims.yaml", SCHEMA)
+
+
 @pytest.fixture(scope="module")
 def content() -> dict:
     return ledger("test", read_claims(ROOT / "config/claims.yaml", SCHEMA), evidence(paper_world()), ["orbits"])
@@ -74,7 +131,6 @@ def test_json_is_strict_and_whole(content: dict) -> None:
         raise AssertionError(name)
 
     assert json.loads(as_json(content), parse_constant=refuse) == content
-    assert as_json(content) == as_json(content)
 
 
 def test_csv_has_a_line_for_each_figure(content: dict) -> None:
@@ -103,11 +159,19 @@ def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
     assert measured_text({"value": None, "error": None}) == "unknown"
 
 
-def test_spans_join_neighbours_and_count_many() -> None:
-    assert spans(A, (A > 0.0) & (A < 0.025)) == "0.0025 to 0.02"
-    assert spans(A, (A == 0.05) | (A > 0.285)) == "0.05, 0.29 to 0.3"
-    assert spans(A, A < 0.0) == ""
-    assert spans(A, [k % 3 == 0 for k in range(len(A))]) == "21 values from 0 to 0.295"
+def test_values_join_neighbours_and_count_many() -> None:
+    assert at_values(A, (A > 0.0) & (A < 0.025)) == "at a = 0.0025 to 0.02"
+    assert at_values(A, (A == 0.05) | (A > 0.285)) == "at a = 0.05, 0.29 to 0.3"
+    assert at_values(A, [k % 3 == 0 for k in range(len(A))]) == "at 22 values of a from 0 to 0.3"
+
+
+def test_a_coarse_grid_neither_helps_nor_harms_a_claim() -> None:
+    assert by_interval(0.138, 0.142, 0.14, 0.005, 0.01) == "holds"
+    assert by_interval(0.146, 0.148, 0.14, 0.005, 0.01) == "holds loosely"
+    assert by_interval(0.2, math.inf, 0.14, 0.005, 0.01) == by_interval(0.0, 0.1, 0.14, 0.005, 0.01) == "fails"
+    for low, high in ((0.1, 0.2), (0.14, 0.148), (0.146, 0.2), (0.13, math.inf)):
+        with pytest.raises(NotTestableError, match="too coarse"):
+            by_interval(low, high, 0.14, 0.005, 0.01)
 
 
 def test_ranges_have_open_and_closed_ends() -> None:
@@ -121,7 +185,7 @@ def test_ranges_have_open_and_closed_ends() -> None:
     ]
 
 
-def test_a_number_is_granted_its_error() -> None:
-    assert by_value(0.15, 0.14, 0.005, 0.01) == "holds loosely"
-    assert by_value(0.15, 0.14, 0.005, 0.01, error=0.006) == "holds"
+def test_a_number_holds_within_its_tolerance() -> None:
+    assert by_value(0.144, 0.14, 0.005, 0.01) == "holds"
+    assert by_value(0.148, 0.14, 0.005, 0.01) == "holds loosely"
     assert by_value(0.16, 0.14, 0.005, 0.01) == by_value(math.nan, 0.14, 0.005, 0.01) == "fails"

@@ -8,10 +8,11 @@ import xarray
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.stability.motion import CHAOTIC, QUASIPERIODIC, SYNCHRONIZED
+from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED
 from tests.sections import MOTION
 
-A = np.array([0.0, 0.0025, *(round(0.005 * k, 3) for k in range(1, 61))])
+# Fine where the paper's edges of synchrony are.
+A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in range(1, 61))]))
 STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
 SHAPE = (2, 2, len(A))
@@ -21,6 +22,8 @@ CONFIG = {
     "v": 0.1,
     "contact": "one_sided",
     "start": "moving",
+    "transient": 3000,
+    "window": 7000,
     "motion": MOTION,
     "initial": {
         name: {"position": list(state.position), "velocity": list(state.velocity)}
@@ -81,12 +84,13 @@ def _mean_distance() -> xarray.Dataset:
 
 
 def _lyapunov() -> xarray.Dataset:
-    regular = np.where(A > 0.1, CHAOTIC, QUASIPERIODIC)
+    plus = np.where(A > 0.1, CHAOTIC, QUASIPERIODIC)
+    minus = np.where((A > 0.0) & (A < 0.1), SYNCHRONIZED, plus)
     exponent = np.zeros((*SHAPE, 3))
     exponent[..., 0] = np.where(A > 0.1, 0.05, 1e-5)
     return _points(
         {
-            "kind": (POINT, _by_state(np.where(SYNCHRONY, SYNCHRONIZED, regular), regular).astype("i1")),
+            "kind": (POINT, _by_state(minus, plus).astype("i1")),
             "section_period": (POINT, _by_state(np.where(A < 0.1, 1, 0), np.zeros(len(A))).astype("i2")),
             "lyapunov_exponent": ((*POINT, "exponent"), exponent),
             "lyapunov_error": ((*POINT, "exponent"), np.full((*SHAPE, 3), 1e-4)),
@@ -132,23 +136,27 @@ def _agreement() -> xarray.Dataset:
 
 
 def _attractors() -> xarray.Dataset:
-    """Return two attractors at each a: synchrony, and another one; beyond 0.08 minus goes to the other one as well."""
+    """Return three attractors at each a: synchrony, another one, which plus reaches, and a third.
+
+    minus reaches the third where it does not synchronize, and the second beyond 0.1.
+    """
     slots = ("law", "a", "attractor")
-    shape = (2, len(A), 2)
+    shape = (2, len(A), 3)
     kind = np.empty(shape, "i1")
     kind[..., 0] = SYNCHRONIZED
     kind[..., 1] = np.where(A > 0.1, CHAOTIC, QUASIPERIODIC)
+    kind[..., 2] = PERIODIC
     rate = np.full((*shape, 3), 0.17)
     rate[..., 1] = 0.34
     reached = np.zeros((2, 2, 2, 2, len(A)), "i2")
-    reached[...] = np.stack([np.where(SYNCHRONY, 0, 1), np.ones(len(A))])
+    reached[...] = np.stack([np.select([SYNCHRONY, A < 0.1], [0, 2], 1), np.ones(len(A))])
     conventions = ("law", "contact", "start", "initial", "a")
     return _points(
         {
-            "branch": (slots, np.broadcast_to(np.array([0, 1], "i2"), shape)),
+            "branch": (slots, np.broadcast_to(np.array([0, 1, 2], "i2"), shape)),
             "side": (slots, np.zeros(shape, "i1")),
             "kind": (slots, kind),
-            "mean_distance": (slots, np.broadcast_to([0.0, 0.14], shape)),
+            "mean_distance": (slots, np.broadcast_to([0.0, 0.14, 0.1], shape)),
             "basin_count": (slots, np.full(shape, 100, "i4")),
             "basin_fraction": (slots, np.full(shape, 0.5)),
             "stop_rate": ((*slots, "block"), rate),
@@ -210,7 +218,7 @@ def _stick_slip() -> xarray.Dataset:
 def _equilibrium() -> xarray.Dataset:
     slope = A
     eigenvalue = np.zeros((2, len(A), 6, 2))
-    eigenvalue[..., 0] = 0.5 * slope[:, None]
+    eigenvalue[..., 0] = slope[:, None]
     eigenvalue[..., 1] = [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]
     position = -np.outer(1.0 - 0.1 * A, [5 / 6, 2 / 3, 5 / 6])
     return xarray.Dataset(
@@ -218,7 +226,8 @@ def _equilibrium() -> xarray.Dataset:
             "equilibrium_position": (("law", "a", "block"), np.stack([position] * 2)),
             "equilibrium_drift": (("law", "a"), np.full((2, len(A)), 1e-15)),
             "eigenvalue": (("law", "a", "mode", "part"), eigenvalue),
-            "growth_rate": (("law", "a"), np.stack([0.5 * slope] * 2)),
+            # Half the rate in the world as it is.
+            "growth_rate": (("law", "a"), np.stack([slope] * 2)),
         },
         {"law": list(LAWS), "a": A, "block": BLOCKS, "part": ["real", "imaginary"]},
     )
@@ -247,5 +256,5 @@ def _solvers() -> xarray.Dataset:
 
 
 def _two_blocks() -> xarray.Dataset:
-    grid = np.linspace(0.05, 0.4, 8)
-    return xarray.Dataset({"agrees": (("state", "a"), np.ones((4, 8), "i1"))}, {"a": grid})
+    grid = np.linspace(0.02, 0.4, 20).round(2)
+    return xarray.Dataset({"agrees": (("state", "a"), np.ones((4, 20), "i1"))}, {"a": grid})

@@ -25,7 +25,7 @@ def test_nothing_to_do(finished):
 def test_the_same_bytes_on_one_core_and_in_another_folder(finished, study):
     study.ok(cores=1)
     mine, other = (each.files("points", "summary", "figures") for each in (study, finished))
-    assert len(mine) == 16 + 15 + 28
+    assert len(mine) == 16 + 18 + 30
     assert mine.keys() == other.keys()
     assert [name for name in mine if mine[name] != other[name]] == []
 

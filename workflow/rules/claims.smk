@@ -41,7 +41,9 @@ rule claims:
         schema=CLAIMS_SCHEMA,
         config={
             key: STUDY.config[key]
-            for key in ("v", "contact", "start", "initial", "motion")
+            for key in (
+                *("v", "contact", "start", "transient", "window", "initial", "motion"),
+            )
         },
         figures=FIGURE_NAMES,
         sources=source_fingerprint(CLAIM_SOURCES),

@@ -34,7 +34,7 @@ def under_conventions(
 
     A claim depends on convention if it holds, at least loosely, under one and fails under another.
     """
-    verdicts, others = {evidence.own_convention: own}, []
+    verdicts, others, unknown = {evidence.own_convention: own}, [], []
     if "attractors" in evidence.summaries:
         for name, attractors in evidence.conventions():
             if name == evidence.own_convention:
@@ -42,11 +42,15 @@ def under_conventions(
             found, figures = judge(attractors)
             if found:
                 verdicts[name] = found
+            else:
+                unknown.append(name)
             if found and found != own:
                 others.append(f"{name}: {found} ({figures})")
+    if unknown:
+        others.append(f"not judged under {' and '.join(unknown)}")
     fails = [verdict == FAILS for verdict in verdicts.values()]
     verdict = CONVENTION if any(fails) and not all(fails) else own
-    return Verdict(verdict, reason, measured, "; ".join([*exceptions, *others]), dict(sorted(verdicts.items())))
+    return Verdict(verdict, reason, measured, "; ".join([*exceptions, *others]), dict(sorted(verdicts.items())), own)
 
 
 def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -18,8 +18,13 @@ if TYPE_CHECKING:
 #: The paper's friction laws; a study may know more.
 PAPER_LAWS = ("linearized", "nonlinear")
 
-#: The paper's velocity of the driver.
+#: The paper's velocity of the driver, and how long its runs are.
 PAPER_V = 0.1
+PAPER_TRANSIENT = 3000.0
+PAPER_WINDOW = 7000.0
+
+# On fewer values of a than these a statement on a range of a is not judged.
+LEAST_VALUES = 10
 
 _COMPLETED = STATUS.index("completed")
 
@@ -29,7 +34,7 @@ class Evidence:
     """What a study has found.
 
     summaries : Datasets by name: mean_distance, lyapunov, …; those that the study does not make are left out
-    config : the study's config: v, contact, start, initial, and the sections `motion` and `agreement`
+    config : the study's config: v, contact, start, transient, window, initial, and the section `motion`
     """
 
     summaries: Mapping[str, xarray.Dataset]
@@ -39,6 +44,15 @@ class Evidence:
         """Raise NotTestableError if the driver is not as fast as the paper's."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
+
+    def check_runs(self) -> None:
+        """Raise NotTestableError if the runs are shorter than the paper's: what has not settled is no evidence."""
+        transient, window = self.config["transient"], self.config["window"]
+        if transient < PAPER_TRANSIENT or window < PAPER_WINDOW:
+            raise NotTestableError(
+                f"the paper's runs have a transient of {PAPER_TRANSIENT:g} and a window of {PAPER_WINDOW:g}, those of "
+                f"the study {transient:g} and {window:g}"
+            )
 
     def check_blocks(self) -> None:
         """Raise NotTestableError if the chain is not the paper's."""
@@ -57,6 +71,7 @@ class Evidence:
 
         Raises NotTestableError if the study has no such state, or another under its name.
         """
+        self.check_runs()
         self.check_state(initial)
         dataset = self.summary(name).sel(initial=initial)
         if "status" in dataset:
@@ -73,11 +88,11 @@ class Evidence:
         if list(own["position"]) != list(paper.position) or list(own["velocity"]) != list(paper.velocity):
             raise NotTestableError(f"the study's initial state {initial} is not the paper's")
 
-    def choose(self, dataset: xarray.Dataset, a: Range) -> xarray.Dataset:
-        """Return the part of a summary in a range of a; raises NotTestableError if the grid has no value there."""
+    def choose(self, dataset: xarray.Dataset, a: Range, least: int = LEAST_VALUES) -> xarray.Dataset:
+        """Return the part of a summary in a range of a; raises NotTestableError for fewer values than `least`."""
         chosen = a.choose(dataset["a"].values)
-        if not chosen.any():
-            raise NotTestableError(f"the grid has no value {a}")
+        if chosen.sum() < least:
+            raise NotTestableError(f"a statement on all {a} takes {least} values of a; the grid has {chosen.sum()}")
         return dataset.isel(a=chosen)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:
@@ -98,6 +113,11 @@ class Evidence:
         for contact in attractors["contact"].values:
             for start in attractors["start"].values:
                 yield f"{contact}, {start}", attractors.sel(contact=contact, start=start)
+
+    def own_attractors(self) -> xarray.Dataset:
+        """Return the attractors with what the initial states reach under the study's own convention."""
+        self.check_blocks()
+        return self.summary("attractors").sel(contact=self.config["contact"], start=self.config["start"])
 
 
 def finite(values: Any) -> np.ndarray:

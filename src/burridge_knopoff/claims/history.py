@@ -14,26 +14,31 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    at_values,
     by_share,
-    spans,
 )
 
 if TYPE_CHECKING:
     import xarray
 
 
-def coexistence(evidence: Evidence, a: Range, loose: float) -> Verdict:
+def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
     """Judge whether more than one attractor exists at each a of a range, so that history can decide, under both laws.
 
-    An attractor counts if sampled initial states reach it; mirror images count once.
+    An attractor counts if sampled states or initial states of the study reach it; mirror images count once.
+    samples : that one attractor is the only one takes at least so many sampled states
     """
-    evidence.check_blocks()
-    attractors = evidence.choose(evidence.summary("attractors"), a)
+    attractors = evidence.choose(evidence.own_attractors(), a)
     shares, measured, single = {}, [], []
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
         reached = np.where(found["basin_count"].values > 0, found["branch"].values, -1)
-        count = np.array([len(set(row[row >= 0])) for row in reached])
+        started = found["initial_branch"].transpose("a", "initial").values
+        both = np.concatenate([reached, started], axis=1)
+        count = np.array([len(set(row[row >= 0])) for row in both])
+        sampled = found["basin_count"].values.sum(axis=1)
+        if ((count < 2) & (sampled < samples)).any():
+            raise NotTestableError(f"fewer than {samples} sampled states reach an attractor where one alone is seen")
         shares[law] = float((count > 1).mean())
         measured.append(Measured(f"share of a with more than one attractor, {law}", shares[law]))
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
@@ -42,13 +47,13 @@ def coexistence(evidence: Evidence, a: Range, loose: float) -> Verdict:
             measured.append(Measured(f"least basin fraction of synchrony, {law}", float(fraction.min())))
             measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
         if not (count > 1).all():
-            single.append(f"at most one attractor at a = {spans(found['a'].values, count <= 1)} ({law})")
-    verdict, text = judge_shares(shares, loose)
+            single.append(f"at most one attractor {at_values(found['a'].values, count <= 1)} ({law})")
+    verdict, text = judge_shares(shares, loose_share)
     reason = f"More than one attractor is reached at {text} of the values of a with {a}."
     return Verdict(verdict, reason, measured, "; ".join(single))
 
 
-def first_block_decides(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
     """Judge whether one of two initial states leads to synchrony and the other does not, for all a and both laws."""
     first, second = (evidence.choose(evidence.of_state("mean_distance", name), a) for name in initial)
     shares, same = {}, []
@@ -59,15 +64,15 @@ def first_block_decides(evidence: Evidence, initial: Sequence[str], a: Range, lo
             raise NotTestableError(f"no runs under the {law} law completed at {a}")
         shares[law] = float((one != other)[known].mean())
         if shares[law] < 1.0:
-            same.append(f"no difference at a = {spans(first['a'].values, known & (one == other))} ({law})")
+            same.append(f"no difference {at_values(first['a'].values, known & (one == other))} ({law})")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         branch = evidence.choose(attractors, a)["initial_branch"]
         pairs = {law: (branch.sel(law=law, initial=state) for state in initial) for law in PAPER_LAWS}
         differ = {law: _outcomes_differ(*pair) for law, pair in pairs.items()}
-        return judge_shares({law: share for law, share in differ.items() if share is not None}, loose)
+        return judge_shares({law: share for law, share in differ.items() if share is not None}, loose_share)
 
-    own, text = judge_shares(shares, loose)
+    own, text = judge_shares(shares, loose_share)
     reason = (
         f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {text} of the values with {a}."
     )
@@ -75,7 +80,7 @@ def first_block_decides(evidence: Evidence, initial: Sequence[str], a: Range, lo
     return under_conventions(evidence, own, reason, measured, same, labels)
 
 
-def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead from each initial state to the same outcome, synchrony or none, for all a."""
     shares, differing = {}, []
     for name in initial:
@@ -86,17 +91,15 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
             raise NotTestableError(f"no runs from {name} completed at {a}")
         shares[name] = float((one == other)[known].mean())
         if shares[name] < 1.0:
-            differing.append(
-                f"the outcomes from {name} differ at a = {spans(runs['a'].values, known & (one != other))}"
-            )
+            differing.append(f"the outcomes from {name} differ {at_values(runs['a'].values, known & (one != other))}")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         branch = evidence.choose(attractors, a)["initial_branch"]
         pairs = {state: (branch.sel(law=law, initial=state) for law in PAPER_LAWS) for state in initial}
         differ = {state: _outcomes_differ(*pair) for state, pair in pairs.items()}
-        return judge_shares({state: 1.0 - share for state, share in differ.items() if share is not None}, loose)
+        return judge_shares({state: 1.0 - share for state, share in differ.items() if share is not None}, loose_share)
 
-    own, text = judge_shares(shares, loose)
+    own, text = judge_shares(shares, loose_share)
     reason = f"Both laws have the same outcome, synchrony or none, at {text} of the values of a with {a}."
     measured = [Measured(f"share of a with the same outcome, {name}", share) for name, share in shares.items()]
     return under_conventions(evidence, own, reason, measured, differing, labels)
@@ -108,11 +111,11 @@ def _outcomes_differ(one: xarray.DataArray, other: xarray.DataArray) -> float | 
     return float(((one == 0) != (other == 0)).values[known].mean()) if known.any() else None
 
 
-def phases_decide(evidence: Evidence, near: float, far: float, a: Range, share: float, loose: float) -> Verdict:
+def phases_decide(evidence: Evidence, near: float, far: float, a: Range, share: float, loose_share: float) -> Verdict:
     """Judge whether states whose end blocks begin close to each other synchronize and those that begin apart do not.
 
     near, far : largest |U_1(0) − U_3(0)| of close states, and least of those apart, on the maps of basins
-    share, loose : the claim holds if this share of either group behaves so on every map, loosely if that one does
+    share, loose_share : the claim holds if this share of either group behaves so on every map, loosely if that one does
     """
     evidence.check_blocks()
     maps = evidence.summary("basins")
@@ -136,4 +139,4 @@ def phases_decide(evidence: Evidence, near: float, far: float, a: Range, share: 
         f"Share of the states with |U₁ − U₃| ≤ {near:g} that synchronize, and of those with |U₁ − U₃| ≥ {far:g} that "
         f"do not: {'; '.join(texts)}."
     )
-    return Verdict(by_share(1.0 if least >= share else least, loose), reason, measured)
+    return Verdict(by_share(1.0 if least >= share else least, loose_share), reason, measured)

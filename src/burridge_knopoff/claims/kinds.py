@@ -16,9 +16,9 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    at_values,
+    by_interval,
     by_share,
-    by_value,
-    spans,
     worst,
 )
 from burridge_knopoff.stability.motion import CHAOTIC, KINDS, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
@@ -28,21 +28,27 @@ if TYPE_CHECKING:
 
 
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) of the runs from a state whose kind is known."""
+    """Return (a, kind of motion) of the runs from a state; one still on its way to synchrony counts as there."""
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     kind = np.nan_to_num(runs["kind"].values, nan=UNDETERMINED).astype(int)
+    if "attractors" in evidence.summaries:
+        attractors = evidence.choose(evidence.own_attractors(), a)
+        known, branch = reached(attractors, initial, law, "branch")
+        kind[(kind == PERIODIC) & known & (branch == 0)] = SYNCHRONIZED
     return runs["a"].values, kind
 
 
-def all_of_kind(evidence: Evidence, initial: Sequence[str], kinds: Sequence[str], a: Range, loose: float) -> Verdict:
-    """Judge whether all runs from some states and under both laws have one of some kinds of motion in a range of a.
+def all_of_kind(
+    evidence: Evidence, initial: Sequence[str], laws: Sequence[str], kinds: Sequence[str], a: Range, loose_share: float
+) -> Verdict:
+    """Judge whether all runs from some states and under some laws have one of some kinds of motion in a range of a.
 
     kinds : meanings of `kind`: synchronized, periodic, quasiperiodic, chaotic
     """
     allowed = [number for number, name in KINDS.items() if name in kinds]
     what = " or ".join(kinds)
     shares, measured, exceptions = {}, [], []
-    for law in PAPER_LAWS:
+    for law in laws:
         for state in initial:
             grid, kind = _kinds(evidence, state, law, a)
             known = kind != UNDETERMINED
@@ -53,9 +59,9 @@ def all_of_kind(evidence: Evidence, initial: Sequence[str], kinds: Sequence[str]
             shares[name] = float(right[known].mean())
             measured.append(Measured(f"share of a with {what} motion, {name}", shares[name]))
             if not right[known].all():
-                exceptions.append(f"other motion at a = {spans(grid, known & ~right)} ({name})")
+                exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
     if "attractors" in evidence.summaries:
-        attractors = evidence.choose(evidence.summary("attractors"), a)
+        attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
         known = (attractors["branch"] >= 0).values & (attractors["kind"].values != UNDETERMINED)
         if known.any():
             share = float(np.isin(attractors["kind"].values, allowed)[known].mean())
@@ -63,20 +69,20 @@ def all_of_kind(evidence: Evidence, initial: Sequence[str], kinds: Sequence[str]
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
-        for law in PAPER_LAWS:
+        for law in laws:
             for state in initial:
                 known, kind = reached(evidence.choose(attractors, a), state, law, "kind")
                 known &= kind != UNDETERMINED
                 if known.any():
                     found[f"{law}, {state}"] = float(np.isin(kind, allowed)[known].mean())
-        return judge_shares(found, loose)
+        return judge_shares(found, loose_share)
 
-    own, text = judge_shares(shares, loose)
+    own, text = judge_shares(shares, loose_share)
     reason = f"The motion is {what} at {text} of the values of a with {a}."
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
-def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether, in a range of a, runs without synchrony are never periodic: periodic means synchronized."""
     shares, measured, exceptions = {}, [], []
     for law in PAPER_LAWS:
@@ -89,10 +95,10 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
             shares[name] = float((kind == SYNCHRONIZED)[periodic].mean())
             measured.append(Measured(f"share of periodic runs that are synchronized, {name}", shares[name]))
             if shares[name] < 1.0:
-                exceptions.append(f"periodic without synchrony at a = {spans(grid, kind == PERIODIC)} ({name})")
+                exceptions.append(f"periodic without synchrony {at_values(grid, kind == PERIODIC)} ({name})")
     if not shares:
         raise NotTestableError(f"no run is periodic with {a}")
-    verdict, text = judge_shares(shares, loose)
+    verdict, text = judge_shares(shares, loose_share)
     reason = f"Of the periodic runs with {a} these are synchronized: {text}."
     return Verdict(verdict, reason, measured, "; ".join(exceptions))
 
@@ -100,37 +106,48 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
 def onset_of_chaos(
     evidence: Evidence, initial: Sequence[str], claimed: float, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge the a from which on runs are chaotic, under both laws; a_c, where synchrony is lost, stands beside it.
+    """Judge the a from which on there is a chaotic attractor, under both laws.
 
-    The onset lies between the least a with a chaotic run and the value of the grid before it: that is its error.
+    It lies between the least a with one and the value of the grid up to which all attractors are known to be regular.
+    Beside it stand the least a with a chaotic run, whose chaos may be a transient, and a_c, where synchrony is lost.
     """
+    evidence.check_blocks()
+    attractors = evidence.choose(evidence.summary("attractors"), Range(above=0.0))
+    grid = attractors["a"].values
     verdicts, measured, texts, windows = [], [], [], []
     for law in PAPER_LAWS:
-        for state in initial:
-            grid, kind = _kinds(evidence, state, law, Range())
-            chaotic = kind == CHAOTIC
-            if not chaotic.any():
-                verdicts.append(FAILS)
-                texts.append(f"none ({law}, {state})")
-                continue
-            first = int(np.argmax(chaotic))
-            low = grid[first - 1] if first else grid[first]
-            onset, error = 0.5 * (low + grid[first]), 0.5 * (grid[first] - low)
-            verdicts.append(by_value(onset, claimed, tolerance, loose, error))
-            measured.append(Measured(f"least a with chaos, {law}, {state}", float(onset), float(error)))
-            texts.append(f"{grid[first]:g} ({law}, {state})")
-            windows.append(f"chaos at a = {spans(grid, chaotic)} ({law}, {state})")
+        there = attractors["branch"].sel(law=law).values >= 0
+        kind = attractors["kind"].sel(law=law).values
+        chaotic = (there & (kind == CHAOTIC)).any(axis=1)
+        regular = there.any(axis=1) & ~(there & np.isin(kind, (CHAOTIC, UNDETERMINED))).any(axis=1)
+        known = int(np.argmin(regular)) if not regular.all() else len(grid)
+        low = grid[known - 1] if known else 0.0
+        high = grid[np.argmax(chaotic)] if chaotic.any() else np.inf
+        verdicts.append(by_interval(low, high, claimed, tolerance, loose))
+        if np.isfinite(high):
+            middle, half = 0.5 * (low + high), 0.5 * (high - low)
+            measured.append(Measured(f"least a with a chaotic attractor, {law}", middle, half))
+            windows.append(f"chaotic attractors {at_values(grid, chaotic)} ({law})")
+            texts.append(f"at a = {high:g}, and none up to {low:g} ({law})")
+        else:
+            texts.append(f"nowhere up to {grid[-1]:g} ({law})")
+    for state in initial:
+        for law in PAPER_LAWS:
+            values, kind = _kinds(evidence, state, law, Range())
+            if (kind == CHAOTIC).any():
+                first = values[np.argmax(kind == CHAOTIC)]
+                measured.append(Measured(f"least a with a chaotic run, {law}, {state}", float(first)))
     if "orbits" in evidence.summaries:
         orbits = evidence.summary("orbits")
         for law in PAPER_LAWS:
             critical, error = (orbits[name].sel(law=law).item() for name in ("critical_a", "critical_a_error"))
             if np.isfinite(critical):
                 measured.append(Measured(f"a at which synchrony loses stability, {law}", critical, error))
-    reason = f"Chaos is first seen at a = {', '.join(texts)}, against {claimed:g}."
+    reason = f"A chaotic attractor is first found {'; '.join(texts)}; claimed is a transition near {claimed:g}."
     return Verdict(worst(verdicts), reason, measured, "; ".join(windows))
 
 
-def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Range, loose: float) -> Verdict:
+def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether the largest Lyapunov exponent cannot be told from 0 at all a of a range.
 
     By the study's own thresholds: `motion.zero_exponent` and `motion.standard_errors`.
@@ -154,15 +171,15 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
         f"The largest exponent from {initial} ({law}) cannot be told from 0 at {100 * share:.1f} % of the values of a "
         f"with {a}."
     )
-    changes = f"not 0 at a = {spans(runs['a'].values, known & ~zero)}" if share < 1.0 else ""
-    return Verdict(by_share(share, loose), reason, measured, changes)
+    changes = f"not 0 {at_values(runs['a'].values, known & ~zero)}" if share < 1.0 else ""
+    return Verdict(by_share(share, loose_share), reason, measured, changes)
 
 
-def aperiodic(evidence: Evidence, initial: str, at: float) -> Verdict:
-    """Judge whether the motion from a state at one a is aperiodic, under both laws."""
+def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) -> Verdict:
+    """Judge whether the motion from a state at one a is aperiodic, under some laws."""
     verdicts, measured, texts, elsewhere = [], [], [], []
-    runs = evidence.of_state("lyapunov", initial)
-    for law in PAPER_LAWS:
+    runs = evidence.choose(evidence.of_state("lyapunov", initial), Range(above=0.0))
+    for law in laws:
         run = evidence.at(runs, at).sel(law=law)
         kind = UNDETERMINED if np.isnan(run["kind"].item()) else int(run["kind"].item())
         if kind == UNDETERMINED:
@@ -176,11 +193,11 @@ def aperiodic(evidence: Evidence, initial: str, at: float) -> Verdict:
         texts.append(f"{KINDS[kind]}{f' with {period} section points' if period else ''} ({law})")
         others = np.isin(runs["kind"].sel(law=law).values, (QUASIPERIODIC, CHAOTIC))
         if others.any():
-            elsewhere.append(f"aperiodic at a = {spans(runs['a'].values, others)} ({law})")
+            elsewhere.append(f"aperiodic {at_values(runs['a'].values, others)} ({law})")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
-        for law in PAPER_LAWS:
+        for law in laws:
             known, kind = reached(attractors.sel(a=[at]), initial, law, "kind")
             if known[0] and kind[0] != UNDETERMINED:
                 found[law] = int(kind[0])
@@ -193,25 +210,29 @@ def aperiodic(evidence: Evidence, initial: str, at: float) -> Verdict:
     return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, labels)
 
 
-def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loose: float) -> Verdict:
-    """Judge whether the section W = 0, crossed upward, shows one point at each a of a range."""
+def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
+    """Judge whether the section W = 0, crossed upward, shows one point at each a of a range.
+
+    Closed motion whose section points do not repeat yet has not settled, and is left out.
+    """
+    grid, kind = _kinds(evidence, initial, law, a)
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     period = runs["section_period"].values
-    known = np.isfinite(period)
+    known = (period > 0) | np.isin(kind, (QUASIPERIODIC, CHAOTIC))
     if not known.any():
-        raise NotTestableError(f"no run from {initial} completed with {a}")
+        raise NotTestableError(f"no section of a run from {initial} is known with {a}")
     one = period == 1
     share = float(one[known].mean())
     measured = [Measured("share of a with one section point", share)]
     reason = (
         f"The section of runs from {initial} ({law}) is one point at {100 * share:.1f} % of the values of a with {a}."
     )
-    changes = f"more than one at a = {spans(runs['a'].values, known & ~one)}" if share < 1.0 else ""
-    return Verdict(by_share(share, loose), reason, measured, changes)
+    changes = f"more than one {at_values(grid, known & ~one)}" if share < 1.0 else ""
+    return Verdict(by_share(share, loose_share), reason, measured, changes)
 
 
 def cloud_at_lower_velocities(
-    evidence: Evidence, initial: Sequence[str], law: str, a: Range, points: int, loose: float
+    evidence: Evidence, initial: tuple[str, str], law: str, a: Range, points: int, loose_share: float
 ) -> Verdict:
     """Judge whether one state has a cloud of section points where the other has one, and at lower velocities W'.
 
@@ -221,20 +242,20 @@ def cloud_at_lower_velocities(
     """
     from burridge_knopoff.summaries.bifurcation import section_points
 
-    for name in initial:
-        evidence.check_state(name)
+    completed = [evidence.of_state("lyapunov", name).sel(law=law)["kind"].notnull() for name in initial]
     bifurcation = evidence.summary("bifurcation")
     line, cloud = (section_points(bifurcation, law, name, 1) for name in initial)
     grid = np.unique(np.concatenate([line[0], cloud[0]]))
-    grid = grid[a.choose(grid)]
+    grid = np.array([one for one in grid[a.choose(grid)] if all(run.sel(a=one).item() for run in completed)])
     if not len(grid):
-        raise NotTestableError(f"no run crosses the section with {a}")
+        raise NotTestableError(f"no run that completed crosses the section with {a}")
     chosen = [[velocity[value == one] for value, velocity in (line, cloud)] for one in grid]
     both = np.array([bool(len(one) and len(other)) for one, other in chosen])
     many = np.array([_distinct(other) > points for _, other in chosen])
     lower = np.array([len(one) and len(other) and other.mean() < one.mean() for one, other in chosen], dtype=bool)
-    # In a ragged array runs that crossed nothing, or did not complete, leave no points.
-    share = float((many & lower)[both].mean()) if both.any() else 0.0
+    if not both.any():
+        raise NotTestableError(f"at no a with {a} do runs from {' and '.join(initial)} both cross the section")
+    share = float((many & lower)[both].mean())
     entirely = np.array([len(one) and len(other) and other.max() < one.min() for one, other in chosen], dtype=bool)
     measured = [
         Measured(f"share of a with more than {points} section points from {initial[1]}", float(many[both].mean())),
@@ -245,8 +266,8 @@ def cloud_at_lower_velocities(
         f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at "
         f"{100 * share:.1f} % of the values of a with {a}."
     )
-    changes = f"no cloud, or none lower, at a = {spans(grid, both & ~(many & lower))}" if share < 1.0 else ""
-    return Verdict(by_share(share, loose), reason, measured, changes)
+    changes = f"no cloud, or none lower, {at_values(grid, both & ~(many & lower))}" if share < 1.0 else ""
+    return Verdict(by_share(share, loose_share), reason, measured, changes)
 
 
 def _distinct(velocity: np.ndarray, tolerance: float = 1e-6) -> int:

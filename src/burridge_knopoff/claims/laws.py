@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares
-from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -16,12 +16,16 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    at_values,
     by_share,
-    spans,
 )
+from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
+
+# What the paper calls a result, of each kind of motion.
+_RESULT = {SYNCHRONIZED: "synchrony", PERIODIC: "regular", QUASIPERIODIC: "regular", CHAOTIC: "chaos"}
 
 
-def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose: float) -> Verdict:
+def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same kind of motion and ⟨J⟩ at all a of a range, by the study's criterion."""
     shares, measured, apart = {}, [], []
     for state in initial:
@@ -42,14 +46,15 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose: floa
                 Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference[agrees == 1])))
             )
         if shares[state] < 1.0:
-            apart.append(f"they disagree at a = {spans(found['a'].values, agrees == 0)} ({state})")
-    verdict, text = judge_shares(shares, loose)
+            apart.append(f"they disagree {at_values(found['a'].values, agrees == 0)} ({state})")
+    verdict, text = judge_shares(shares, loose_share)
     reason = f"The laws agree in ⟨J⟩ and kind of motion at {text} of the values of a with {a}."
     return Verdict(verdict, reason, measured, "; ".join(apart))
 
 
-def two_blocks_agree(evidence: Evidence, a: Range, loose: float) -> Verdict:
+def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """Judge whether two blocks move alike under both laws, from all sampled states, at all a of a range."""
+    evidence.check_runs()
     found = evidence.choose(evidence.summary("two_blocks"), a)
     agrees = found["agrees"].transpose("state", "a").values
     # One state that parts them is enough; that none does takes all states.
@@ -69,24 +74,25 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose: float) -> Verdict:
         ]
     states = found.sizes["state"]
     reason = f"From all {states} sampled states the laws agree at {100 * share:.1f} % of the values of a with {a}."
-    changes = f"they disagree at a = {spans(grid, known & ~right)}" if len(wrong) else ""
-    return Verdict(by_share(share, loose), reason, measured, changes)
+    changes = f"they disagree {at_values(grid, known & ~right)}" if len(wrong) else ""
+    return Verdict(by_share(share, loose_share), reason, measured, changes)
 
 
-def solutions_agree(evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose: float) -> Verdict:
-    """Judge whether the map, the numerical solution of the linearized law, and that of the nonlinear law agree on ⟨J⟩.
+def solutions_agree(
+    evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose_share: float
+) -> Verdict:
+    """Judge whether the map, the numerical solution of the linearized law, and that of the nonlinear law agree.
 
-    relative : they agree at a point if each solver's ⟨J⟩ under its law is within this share of that of the study's own
-    solver, or three standard errors, and the laws agree there; points at which synchrony is reached agree below the
-    threshold of synchronization
-    loose : share of points from which on the claim holds loosely
+    Solvers of one law agree at a point if their ⟨J⟩ differ from that of the study's own solver by no more than the
+    share `relative`, three standard errors, or the threshold of synchronization. The laws agree there if both lead to
+    synchrony, or both to other regular motion, or both to chaos: the paper's results are these.
+    loose_share : share of points from which on the claim holds loosely
     """
     solved, compared, measured, apart = [], [], [], []
     for state in initial:
-        evidence.check_state(state)
-        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a)
-        agreement = evidence.of_state("agreement", state)
-        threshold = agreement.attrs["synchronization_threshold"]
+        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a, least=1)
+        runs = evidence.of_state("lyapunov", state)
+        threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
         for value in solvers["a"].values:
             found = solvers.sel(a=value)
             mean, difference, error = (
@@ -96,26 +102,26 @@ def solutions_agree(evidence: Evidence, initial: Sequence[str], a: Range, relati
             allowed = np.maximum.reduce(
                 [relative * np.abs(mean), 3.0 * np.nan_to_num(error), np.full_like(mean, threshold)]
             )
-            within = bool((np.abs(difference) <= allowed)[there].all()) and bool(there.any())
-            laws = evidence.at(agreement, value)["agrees"].item() == 1
+            within = bool((np.abs(difference) <= allowed)[there].all())
+            kinds = evidence.at(runs, value)["kind"].sel(law=list(PAPER_LAWS)).values
+            if np.isnan(kinds).any() or (kinds == UNDETERMINED).any() or not there.any():
+                continue
+            laws = len({_RESULT[int(kind)] for kind in kinds}) == 1
             solved.append(within)
             compared.append(laws)
-            if there.any():
-                measured.append(
-                    Measured(
-                        f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}",
-                        float(np.abs(difference[there]).max()),
-                    )
-                )
+            largest = float(np.abs(difference[there]).max())
+            measured.append(Measured(f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}", largest))
             if not (within and laws):
                 what = "the laws" if within else "the solvers" if laws else "solvers and laws"
                 apart.append(f"{what} differ at a = {value:g} ({state})")
+    if not solved:
+        raise NotTestableError("there is no point at which all solvers completed and the kinds of motion are known")
     share = float(np.mean(np.logical_and(solved, compared)))
     reason = (
         f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (states and a), and the laws "
-        f"at {sum(compared)} of them."
+        f"have the same result, synchrony, other regular motion or chaos, at {sum(compared)} of them."
     )
-    return Verdict(by_share(share, loose), reason, measured, "; ".join(apart))
+    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(apart))
 
 
 def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
@@ -125,6 +131,7 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
     much, loose : the claim holds if they are this many times the steps of the map, loosely if that many
     A step of the map is a solution between two events or part of one; it costs some tens of Runge-Kutta steps.
     """
+    evidence.check_blocks()
     found = evidence.summary("solvers").sel(law="linearized")
     if "map" not in found["solver"].values:
         raise NotTestableError("the study has no run with the solver map")
@@ -145,7 +152,7 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         measured.append(Measured("largest |Δ⟨J⟩| of rk4 at that step", float(np.nanmax(error))))
     verdict = HOLDS if ratio >= much else LOOSELY if ratio >= loose else FAILS
     reason = (
-        f"The map takes at most {own.max():.2f} steps in a unit of time, the paper's stepping {steps:g}: {ratio:.3g} "
-        f"times as many."
+        f"The map takes at most {own.max():.2f} steps in a unit of time, the paper's stepping {steps:,.0f}: "
+        f"{ratio:,.0f} times as many."
     )
     return Verdict(verdict, reason, measured)

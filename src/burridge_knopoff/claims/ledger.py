@@ -7,17 +7,20 @@ import inspect
 import io
 import json
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
+
+import numpy as np
 
 from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, with_error
 from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.config.study import check_file, check_schema, read_schema
+from burridge_knopoff.config.study import check_names, check_schema, read_schema, read_yaml
 from burridge_knopoff.files import display_path
+from burridge_knopoff.initial import PAPER_STATES
 from burridge_knopoff.provenance import CLAIM_SOURCES, provenance
 
 TOPICS = {
@@ -55,11 +58,9 @@ def read_claims(path: str | Path, schema: str | Path) -> list[Claim]:
     Raises ConfigError, one line, for what the schema forbids, for a judge that does not exist, and for parameters that
     are not its.
     """
-    import yaml
-
     file = display_path(path)
-    check_file(path)
-    content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    content = read_yaml(path)
+    check_names(content, file)
     check_schema(content, read_schema(schema), file)
     return [_claim(name, item, f"{file}: {name}") for name, item in content.items()]
 
@@ -70,17 +71,46 @@ def _claim(name: str, item: Mapping[str, Any], place: str) -> Claim:
     if function not in judges:
         raise ConfigError(f"{place}.judge: {item['judge']!r} is not allowed: one of {', '.join(judges)} of {topic}")
     parameters = dict(item["parameters"])
-    expected = list(inspect.signature(judges[function]).parameters)[1:]
+    expected = get_type_hints(judges[function])
+    del expected["evidence"], expected["return"]
     for key in parameters:
         if key not in expected:
             raise ConfigError(f"{place}.parameters.{key}: unknown key; allowed here: {', '.join(expected)}")
-    for key in expected:
+    for key, kind in expected.items():
         if key not in parameters:
             raise ConfigError(f"{place}.parameters.{key}: missing; needed by {item['judge']}")
-    if "a" in parameters:
-        parameters["a"] = Range(**{_RANGE[key]: float(value) for key, value in parameters["a"].items()})
-    statement = " ".join(item["statement"].split())
-    return Claim(name, statement, item["place"], topic, judges[function], parameters, item["figure"])
+        parameters[key] = _parameter(parameters[key], kind, f"{place}.parameters.{key}")
+    for state in np.atleast_1d(parameters.get("initial", [])):
+        if state not in PAPER_STATES:
+            raise ConfigError(f"{place}.parameters.initial: {state!s} is not allowed: {' | '.join(PAPER_STATES)}")
+    if parameters.get("loose", np.inf) < parameters.get("tolerance", 0.0):
+        raise ConfigError(f"{place}.parameters.loose: {parameters['loose']!r} is not allowed: at least tolerance")
+    statement, where = (" ".join(item[key].split()) for key in ("statement", "place"))
+    return Claim(name, statement, where, topic, judges[function], parameters, item["figure"])
+
+
+def _parameter(value: Any, kind: Any, place: str) -> Any:
+    """Return a parameter as the judge takes it, whose annotation is `kind`."""
+    if kind is Range:
+        if not value or ("from" in value and "above" in value) or ("to" in value and "below" in value):
+            raise ConfigError(f"{place}: {value!r} is not allowed: at least one end, and one of each side")
+        ends = Range(**{_RANGE[key]: float(number) for key, number in value.items()})
+        if ends.empty:
+            raise ConfigError(f"{place}: {value!r} is not allowed: the first end below the last")
+        return ends
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    right, allowed = {
+        str: (isinstance(value, str), "one name"),
+        bool: (isinstance(value, bool), "true | false"),
+        int: (number and value == int(value) and value > 0, "a whole number > 0"),
+        float: (number, "a number"),
+        Sequence[str]: (isinstance(value, list), "a list of names"),
+        tuple[str, str]: (isinstance(value, list) and len(value) == 2, "two names"),
+        Sequence[float]: (isinstance(value, list), "a list of numbers"),
+    }[kind]
+    if not right:
+        raise ConfigError(f"{place}: {value!r} is not allowed: {allowed}")
+    return int(value) if kind is int else value
 
 
 def _judges(topic: str) -> dict[str, Callable[..., Verdict]]:
@@ -120,6 +150,7 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                 "statement": claim.statement,
                 "place": claim.place,
                 "verdict": verdict.verdict,
+                "own": verdict.own or verdict.verdict,
                 "reason": verdict.reason,
                 "measured": [
                     {"quantity": item.quantity, "value": _number(item.value), "error": _number(item.error)}
@@ -148,14 +179,13 @@ def as_csv(content: Mapping[str, Any]) -> str:
     """Return the ledger as CSV, a line for each measured figure; a claim without figures has one line."""
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(
-        ["claim", "topic", "statement", "place", "verdict", "quantity", "value", "error", "reason", "changes", "figure"]
-    )
+    texts = ("name", "topic", "statement", "place", "verdict", "own")
+    writer.writerow(["claim", *texts[1:], "quantity", "value", "error", "reason", "changes", "figure"])
     for claim in content["claims"]:
         for item in claim["measured"] or [{"quantity": "", "value": None, "error": None}]:
             writer.writerow(
                 [
-                    *(claim[key] for key in ("name", "topic", "statement", "place", "verdict")),
+                    *(claim[key] for key in texts),
                     *(item["quantity"], _text(item["value"]), _text(item["error"])),
                     *(claim[key] for key in ("reason", "changes", "figure")),
                 ]
@@ -184,12 +214,9 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
         ]
         for claim in claims:
             figure = f"[{claim['figure']}]({figures}/{claim['figure']}.png)" if claim["figure"] else ""
-            cells = [
-                f"{claim['statement']} *{claim['place']}*",
-                f"**{claim['verdict']}**",
-                claim["reason"],
-                claim["changes"],
-            ]
+            own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
+            judged = f"**{claim['verdict']}**{own}"
+            cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"]]
             lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
     return "\n".join(lines) + "\n"
 

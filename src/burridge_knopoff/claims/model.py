@@ -15,7 +15,9 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    spans,
+    at_values,
+    by_value,
+    with_error,
     worst,
 )
 from burridge_knopoff.initial import PAPER_STATES
@@ -60,12 +62,32 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
     reason = f"With {a} the largest real part is at least {min(m.value for m in measured[::2]):.3g}."
     whole = evidence.summary("equilibrium")
     stable = (whole["eigenvalue"].sel(part="real").max(dim="mode") <= 0.0).any(dim="law").values
-    changes = f"no growth at a = {spans(whole['a'].values, stable)}" if stable.any() else ""
+    changes = f"no growth {at_values(whole['a'].values, stable)}" if stable.any() else ""
     return Verdict(worst(verdicts), reason, measured, changes)
 
 
+def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, loose: float, a: Range) -> Verdict:
+    """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of the friction there.
+
+    −F'(v) is a under the linearized law and a/(1 + av)² under the nonlinear one.
+    """
+    evidence.check_blocks()
+    found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
+    values = found["a"].values
+    slope = values if law == "linearized" else values / (1.0 + values * evidence.config["v"]) ** 2
+    ratio = found["growth_rate"].values / slope
+    measured = [
+        Measured("least growth rate over −F'(v), in simulations", float(ratio.min())),
+        Measured("largest growth rate over −F'(v), in simulations", float(ratio.max())),
+    ]
+    verdict = worst(by_value(float(value), claimed, tolerance, loose) for value in (ratio.min(), ratio.max()))
+    rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))
+    reason = f"Perturbations of uniform sliding grow at {rate} times −F'(v) with {a} ({law}), against {claimed:g}."
+    return Verdict(verdict, reason, measured)
+
+
 def near_equilibrium(
-    evidence: Evidence, initial: Sequence[str], law: str, at: float, near: float, loose: float
+    evidence: Evidence, initial: tuple[str, str], law: str, at: float, near: float, loose: float
 ) -> Verdict:
     """Judge whether the first block of one state begins close to the equilibrium, measured by where another begins.
 
@@ -89,7 +111,7 @@ def near_equilibrium(
 
 
 def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a: Range) -> Verdict:
-    """Judge whether the friction on a slipping block stays positive in every run; loosely if in those with a < 0.1."""
+    """Judge whether the friction on a slipping block stays positive in every run."""
     least, where = np.inf, ""
     negative = []
     for state in initial:
@@ -101,7 +123,7 @@ def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a:
         if friction[lowest] < least:
             least, where = float(friction[lowest]), f"{state}, a = {runs['a'].values[lowest]:g}"
         if (friction <= 0.0).any():
-            negative.append(f"not positive at a = {spans(runs['a'].values, friction <= 0.0)} ({state})")
+            negative.append(f"not positive {at_values(runs['a'].values, friction <= 0.0)} ({state})")
     reason = f"The least friction on a slipping block with {a} ({law}) is {least:.3f}, in the run {where}."
     return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("least Φ(aU')", least)], "; ".join(negative))
 
@@ -127,7 +149,6 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
     right = {*counts} == {claimed}
     verdict = HOLDS if right else LOOSELY if {*pairs} == {claimed} else FAILS
     reason = (
-        f"With {a} a position has {min(counts)} to {max(counts)} exponentials, {max(pairs)} complex pairs at most, "
-        f"against {claimed}."
+        f"With {a} a position has {max(counts)} exponentials at most, in {max(pairs)} complex pairs, against {claimed}."
     )
     return Verdict(verdict, reason, measured)

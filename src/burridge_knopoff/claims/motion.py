@@ -17,10 +17,10 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    at_values,
     by_share,
     by_value,
     shares_text,
-    spans,
     with_error,
     worst,
 )
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     import xarray
 
 
-def every_block_stops(evidence: Evidence, initial: Sequence[str], at: float) -> Verdict:
-    """Judge whether each block stops again and again at one a, from each state and under both laws."""
+def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], at: float) -> Verdict:
+    """Judge whether each block stops again and again at one a, from each state and under some laws."""
     verdicts, measured, never = [], [], []
     for state in initial:
-        runs = evidence.of_state("stick_slip", state)
-        for law in PAPER_LAWS:
+        runs = evidence.choose(evidence.of_state("stick_slip", state), Range(above=0.0))
+        for law in laws:
             rate = evidence.at(runs, at)["stop_rate"].sel(law=law).values
             if not np.isfinite(rate).all():
                 raise NotTestableError(f"the run from {state} at a = {at:g} under the {law} law did not complete")
@@ -47,14 +47,14 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], at: float) -> 
             known = np.isfinite(everywhere).all(axis=-1)
             some = known & ~(everywhere > 0.0).all(axis=-1)
             if some.any():
-                never.append(f"a block never stops at a = {spans(runs['a'].values, some)} ({law}, {state})")
+                never.append(f"a block never stops {at_values(runs['a'].values, some)} ({law}, {state})")
     right = sum(verdict == HOLDS for verdict in verdicts)
     reason = f"At a = {at:g} all three blocks stop again and again in {right} of {len(verdicts)} runs."
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
         for state in initial:
-            for law in PAPER_LAWS:
+            for law in laws:
                 known, rate = reached(attractors.sel(a=[at]), state, law, "stop_rate")
                 if known[0]:
                     found[f"{law}, {state}"] = float((rate[0] > 0.0).all())
@@ -98,8 +98,8 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
     verdict = HOLDS if value <= correlation else LOOSELY if value < 0.0 else FAILS
     everywhere = runs["velocity_correlation"].values
     negative = np.isfinite(everywhere) & (everywhere < 0.0)
-    reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {value:.2f}."
-    exceptions = [f"negative at a = {spans(runs['a'].values, negative)}, not elsewhere"] if negative.any() else []
+    reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {with_error(round(value, 2))}."
+    exceptions = [f"negative {at_values(runs['a'].values, negative)}, not elsewhere"] if negative.any() else []
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         # Only of synchrony is the correlation known: 1.
@@ -154,11 +154,11 @@ def half_frequency(
 
 
 def cycle_time(
-    evidence: Evidence, initial: Sequence[str], a: Range, low: float, high: float, share: float, loose: float
+    evidence: Evidence, initial: Sequence[str], a: Range, low: float, high: float, share: float, loose_share: float
 ) -> Verdict:
     """Judge whether the time from stop to stop of a block lies between two values, in runs of both laws.
 
-    share : the claim holds if this share of all blocks and runs lies between, loosely if the share `loose` does
+    share : the claim holds if this share of all blocks and runs lies between, loosely if the share `loose_share` does
     """
     times, within = {}, []
     for state in initial:
@@ -166,9 +166,11 @@ def cycle_time(
         for block in runs["block"].values:
             time = runs["cycle_time"].sel(block=block)
             times[f"block {block}, {state}"] = finite(time)
-            right = ((time >= low) & (time <= high)).any(dim="law").values
-            if right.any():
-                within.append(f"within for block {block} from {state} at a = {spans(runs['a'].values, right)}")
+            for law in PAPER_LAWS:
+                right = ((time >= low) & (time <= high)).sel(law=law).values
+                if right.any():
+                    where = at_values(runs["a"].values, right)
+                    within.append(f"within for block {block} from {state} {where} ({law})")
     every = np.concatenate(list(times.values()))
     if not len(every):
         raise NotTestableError(f"no block stops twice in a run with {a}")
@@ -181,5 +183,5 @@ def cycle_time(
         f"The time from stop to stop lies between {low:g} and {high:g} in {100 * inside:.0f} % of the blocks and runs "
         f"with {a}; its median is {shortest[1]:.2f} ({shortest[0]}) to {longest[1]:.2f} ({longest[0]})."
     )
-    verdict = by_share(1.0 if inside >= share else inside, loose)
+    verdict = by_share(1.0 if inside >= share else inside, loose_share)
     return Verdict(verdict, reason, measured, "; ".join(within) if inside < 1.0 else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +17,9 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    at_values,
+    by_interval,
     by_value,
-    spans,
     with_error,
     worst,
 )
@@ -26,10 +28,10 @@ if TYPE_CHECKING:
     import xarray
 
 
-def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose: float) -> Verdict:
+def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose_share: float) -> Verdict:
     """Judge whether an initial state leads to synchrony, or never does, for all a of a range and both laws.
 
-    loose : share of the values of a from which on the claim holds loosely
+    loose_share : share of the values of a from which on the claim holds loosely
     """
     runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
     outcome = {True: "synchrony", False: "no synchrony"}
@@ -46,8 +48,8 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
             extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "least")
             measured.append(Measured(f"{name} ⟨J⟩ there, {law}", float(extreme)))
         if not right[known].all():
-            where = spans(runs["a"].values, known & ~right)
-            exceptions.append(f"{outcome[not synchronized]} at a = {where} ({law})")
+            where = at_values(runs["a"].values, known & ~right)
+            exceptions.append(f"{outcome[not synchronized]} {where} ({law})")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
@@ -55,9 +57,9 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
             branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
             if (branch >= 0).any():
                 found[law] = float(((branch[branch >= 0] == 0) == synchronized).mean())
-        return judge_shares(found, loose)
+        return judge_shares(found, loose_share)
 
-    own, text = judge_shares(shares, loose)
+    own, text = judge_shares(shares, loose_share)
     reason = f"There is {outcome[synchronized]} from {initial} at {text} of the values of a with {a}."
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
@@ -67,27 +69,28 @@ def edge_of_synchrony(
 ) -> Verdict:
     """Judge the least or the largest a at which an initial state synchronizes, under both laws.
 
-    An edge of the runs lies between two neighbours of the grid, a = 0 left out. The upper one is judged by the loss of
-    stability a_c of the synchronized orbit as well: near it synchrony takes longer than a run.
+    It lies between two neighbours of the grid, a = 0 left out. The attractor reached tells synchrony, since near its
+    loss it takes longer than a run. Where the synchronized orbit loses stability between them, that a_c is the edge.
     """
-    runs = evidence.choose(evidence.of_state("mean_distance", initial), Range(above=0.0))
+    evidence.check_state(initial)
+    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
     side = "largest" if upper else "least"
     verdicts, measured, texts = [], [], []
     for law in PAPER_LAWS:
-        low, high = _edge(runs["a"].values, runs["synchronized"].sel(law=law).values == 1.0, upper)
-        edge, error = 0.5 * (low + high), 0.5 * (high - low)
-        if not np.isfinite(edge):
+        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
+        low, high = _edge(attractors["a"].values[branch >= 0], branch[branch >= 0] == 0, upper)
+        if not np.isfinite(low + high):
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
-        verdicts.append(by_value(edge, claimed, tolerance, loose, error))
-        measured.append(Measured(f"{side} a with synchrony in the runs, {law}", float(edge), float(error)))
+        measured.append(Measured(f"{side} a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
-        if upper and "orbits" in evidence.summaries:
-            orbits = evidence.summary("orbits").sel(law=law)
-            critical, error = orbits["critical_a"].item(), orbits["critical_a_error"].item()
+        critical, error = _critical_a(evidence, law)
+        if upper and low <= critical <= high:
             verdicts.append(by_value(critical, claimed, tolerance, loose))
             measured.append(Measured(f"a_c, at which the synchronized orbit loses stability, {law}", critical, error))
-            texts[-1] += f", where the orbit loses stability at a_c = {critical:.5g}"
-    reason = f"The {side} a with synchrony in runs from {initial} lies {'; '.join(texts)}; claimed is {claimed:g}."
+            texts[-1] = f"at a_c = {critical:.5g}, where the synchronized orbit loses stability ({law})"
+        else:
+            verdicts.append(by_interval(low, high, claimed, tolerance, loose))
+    reason = f"The {side} a with synchrony from {initial} lies {'; '.join(texts)}; claimed is {claimed:g}."
     if upper or "orbits" not in evidence.summaries:
         return Verdict(worst(verdicts), reason, measured)
     multipliers = _multipliers_near_zero(evidence)
@@ -109,6 +112,14 @@ def _edge(grid: np.ndarray, synchronized: np.ndarray, upper: bool) -> tuple[floa
     return (grid[index[0] - 1] if index[0] else 0.0), grid[index[0]]
 
 
+def _critical_a(evidence: Evidence, law: str) -> tuple[float, float]:
+    """Return a_c and its error; NaN if the study has no orbits."""
+    if "orbits" not in evidence.summaries:
+        return np.nan, np.nan
+    orbits = evidence.summary("orbits").sel(law=law)
+    return orbits["critical_a"].item(), orbits["critical_a_error"].item()
+
+
 def _multipliers_near_zero(evidence: Evidence) -> list[Measured]:
     """Return the transverse multipliers of synchrony at the least positive a of the grid, if there is an orbit."""
     orbits = evidence.summary("orbits")
@@ -122,12 +133,12 @@ def _multipliers_near_zero(evidence: Evidence) -> list[Measured]:
 
 
 def mean_distance_at(
-    evidence: Evidence, initial: str, at: float, claimed: float, tolerance: float, loose: float
+    evidence: Evidence, initial: str, laws: Sequence[str], at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge ⟨J⟩ of an initial state at one a, under both laws, and under each convention by the attractor reached."""
+    """Judge ⟨J⟩ of an initial state at one a, under some laws, and under each convention by the attractor reached."""
     runs = evidence.at(evidence.of_state("mean_distance", initial), at)
     verdicts, measured, texts = [], [], []
-    for law in PAPER_LAWS:
+    for law in laws:
         value, error = (runs[name].sel(law=law).item() for name in ("mean_distance", "mean_distance_error"))
         if not np.isfinite(value):
             raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
@@ -136,7 +147,7 @@ def mean_distance_at(
         texts.append(f"{with_error(value, error)} ({law})")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {law: reached(attractors.sel(a=[at]), initial, law, "mean_distance") for law in PAPER_LAWS}
+        found = {law: reached(attractors.sel(a=[at]), initial, law, "mean_distance") for law in laws}
         means = {law: mean[0] for law, (known, mean) in found.items() if known[0]}
         if not means:
             return "", ""
@@ -154,6 +165,8 @@ def distance_vanishes(
     runs = evidence.at(evidence.of_state("mean_distance", initial), at).sel(law=law)
     if level not in runs["level"].values:
         raise NotTestableError(f"mean_distance.nc has no settling time for J < {level:g}")
+    if not np.isfinite(runs["mean_distance"].item()):
+        raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
     measured = [
         Measured(f"time τ from which on J < {height:g}", float(value))
         for height, value in zip(runs["level"].values, runs["settling_time"].values, strict=True)

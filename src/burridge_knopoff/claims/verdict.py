@@ -43,6 +43,7 @@ class Verdict:
 
     changes : ranges of a, or conventions, for which the verdict changes; empty where there is none
     conventions : verdict under each convention «contact, start», where the claim can be judged under each
+    own : verdict under the study's own convention
     """
 
     verdict: str
@@ -50,6 +51,7 @@ class Verdict:
     measured: Sequence[Measured] = ()
     changes: str = ""
     conventions: Mapping[str, str] = field(default_factory=dict)
+    own: str = ""
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,15 @@ class Range:
         low = f"{self.first:g} ≤ " if self.first is not None else f"{self.above:g} < " if self.above is not None else ""
         high = f" ≤ {self.last:g}" if self.last is not None else f" < {self.below:g}" if self.below is not None else ""
         return f"{low}a{high}"
+
+    @property
+    def empty(self) -> bool:
+        """Whether no number lies in the range."""
+        low = self.first if self.first is not None else self.above
+        high = self.last if self.last is not None else self.below
+        return (
+            low is not None and high is not None and (low > high or (low == high and None in (self.first, self.last)))
+        )
 
     def choose(self, a: np.ndarray) -> np.ndarray:
         """Return which values lie in the range, shape of a."""
@@ -97,15 +108,30 @@ def shares_text(shares: Mapping[str, float]) -> str:
     return ", ".join(f"{100 * share:.1f} % ({name})" for name, share in shares.items())
 
 
-def by_value(value: float, claimed: float, tolerance: float, loose: float, error: float = 0.0) -> str:
-    """Judge a number: it holds within `tolerance` of what is claimed, loosely within `loose`, the error granted.
-
-    A value that is not finite fails.
-    """
-    distance = abs(value - claimed) - error
+def by_value(value: float, claimed: float, tolerance: float, loose: float) -> str:
+    """Judge a number: it holds within `tolerance` of what is claimed, loosely within `loose`; fails if not finite."""
+    distance = abs(value - claimed)
     if not math.isfinite(distance):
         return FAILS
     return HOLDS if distance <= tolerance else LOOSELY if distance <= loose else FAILS
+
+
+def by_interval(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
+    """Judge a number that is only known to lie in (low, high]: what holds there for every value of the interval.
+
+    Raises NotTestableError where the interval reaches into and out of what is claimed: the grid of a is too coarse.
+    """
+    # Decimals of a grid and of a claim may differ in their last bit.
+    tolerance, loose = tolerance * (1.0 + 1e-9), loose * (1.0 + 1e-9)
+    nearest = max(low - claimed, claimed - high, 0.0)
+    farthest = max(abs(low - claimed), abs(high - claimed))
+    if farthest <= tolerance:
+        return HOLDS
+    if nearest > loose:
+        return FAILS
+    if tolerance < nearest and farthest <= loose:
+        return LOOSELY
+    raise NotTestableError(f"between {low:g} and {high:g} the grid of a is too coarse to tell")
 
 
 def with_error(value: float, error: float | None = None) -> str:
@@ -113,17 +139,17 @@ def with_error(value: float, error: float | None = None) -> str:
     if not math.isfinite(value):
         return str(value)
     if error is None or not math.isfinite(error) or error <= 0.0:
-        return f"{value:.6g}"
+        return f"{value:.6g}".replace("-", "−")
     digits = max(0, 1 - math.floor(math.log10(error)))
     if digits > 12:
-        return f"{value:.12g}"
-    return f"{value:.{digits}f} ± {error:.{digits}f}"
+        return f"{value:.12g}".replace("-", "−")
+    return f"{value:.{digits}f} ± {error:.{digits}f}".replace("-", "−")
 
 
-def spans(a: np.ndarray, chosen: np.ndarray) -> str:
-    """Return the chosen values of a grid as text, neighbours of the grid joined: «0.0025 to 0.02, 0.0475».
+def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
+    """Return where the chosen values of a grid lie, neighbours of the grid joined: «at a = 0.0025 to 0.02, 0.0475».
 
-    More than MOST_SPANS of them are counted: «44 values from 0.1025 to 0.3».
+    More than MOST_SPANS of them are counted: «at 44 values of a from 0.1025 to 0.3».
 
     a : ascending, shape (n,)
     chosen : which of them, shape (n,)
@@ -136,5 +162,5 @@ def spans(a: np.ndarray, chosen: np.ndarray) -> str:
             f"{first:g}" if len(run) == 1 else f"{first:g}, {last:g}" if len(run) == 2 else f"{first:g} to {last:g}"
         )
     if len(parts) > MOST_SPANS:
-        return f"{len(index)} values from {a[index[0]]:g} to {a[index[-1]]:g}"
-    return ", ".join(parts)
+        return f"at {len(index)} values of a from {a[index[0]]:g} to {a[index[-1]]:g}"
+    return f"at a = {', '.join(parts)}"

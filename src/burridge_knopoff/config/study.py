@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -25,6 +25,9 @@ from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
 
 LARGEST = 1e300
+
+# A file of ours has a few levels; more are a mistake.
+MOST_LEVELS = 20
 
 #: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
 PAPER_A = 0.08
@@ -105,7 +108,7 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     file : name of the config file, for messages
     Raises ConfigError.
     """
-    _check_names(config, file)
+    check_names(config, file)
     filled = _with_defaults(copy.deepcopy(dict(config)), schema)
     check_schema(filled, schema, file)
     grid = grid_of(filled, file)
@@ -126,7 +129,13 @@ def check_file(path: str | Path) -> None:
     """Raise ConfigError if a key stands twice in one place of a YAML file: the first would be dropped in silence."""
     import yaml
 
+    walked = set()
+
     def walk(node: Any) -> None:
+        # An alias is its anchor's node once more.
+        if id(node) in walked:
+            return
+        walked.add(id(node))
         if isinstance(node, yaml.MappingNode):
             seen = set()
             for key, value in node.value:
@@ -139,8 +148,47 @@ def check_file(path: str | Path) -> None:
             for item in node.value:
                 walk(item)
 
-    # Without aliases resolved: an anchor's content is walked where it is written.
-    walk(yaml.compose(Path(path).read_text(encoding="utf-8"), Loader=yaml.SafeLoader))
+    root = _parse(path, lambda text: yaml.compose(text, Loader=yaml.SafeLoader))
+    try:
+        walk(root)
+    except RecursionError:
+        raise ConfigError(_too_deep(display_path(path))) from None
+
+
+def read_yaml(path: str | Path) -> Any:
+    """Return the content of a YAML file; raises ConfigError, one line, if it cannot be read or a key stands twice."""
+    import yaml
+
+    content = _parse(path, yaml.safe_load)
+    check_file(path)
+    _check_depth(content, display_path(path))
+    return content
+
+
+def _check_depth(content: Any, file: str, levels: int = MOST_LEVELS) -> None:
+    """Raise ConfigError for content that is too deep: an alias inside its own anchor makes it endless."""
+    if not levels:
+        raise ConfigError(_too_deep(file))
+    for item in content.values() if isinstance(content, dict) else content if isinstance(content, list) else ():
+        _check_depth(item, file, levels - 1)
+
+
+def _too_deep(file: str) -> str:
+    return f"{file}: nested too deep; at most {MOST_LEVELS} levels are allowed"
+
+
+def _parse(path: str | Path, parse: Callable[[str], Any]) -> Any:
+    import yaml
+
+    file = display_path(path)
+    try:
+        return parse(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{file}: cannot be read: {getattr(error, 'strerror', None) or 'not UTF-8 text'}") from None
+    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
+        mark = getattr(error, "problem_mark", None)
+        problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
+        raise ConfigError(f"{file}: not YAML{f' (line {mark.line + 1})' if mark else ''}: {problem}") from None
 
 
 def read_schema(path: str | Path) -> dict[str, Any]:
@@ -186,13 +234,13 @@ def check_schema(config: Any, schema: Mapping[str, Any], file: str) -> None:
     raise ConfigError(f"{file}: {explain(errors[0])}")
 
 
-def _check_names(config: Any, file: str, place: str = "") -> None:
-    """Refuse keys that are not text, and names that end in a line break, which a pattern does not see."""
+def check_names(config: Any, file: str, place: str = "") -> None:
+    """Raise ConfigError for keys that are not text, and for line breaks at an end, which a pattern does not see."""
     if isinstance(config, Mapping):
         for key, value in config.items():
             if not isinstance(key, str) or key != key.strip():
                 raise ConfigError(f"{file}: {place}{key!r} is not allowed as a key: text without spaces around it")
-            _check_names(value, file, f"{place}{key}.")
+            check_names(value, file, f"{place}{key}.")
     if place == "study." and isinstance(config, str) and config != config.strip():
         raise ConfigError(f"{file}: study: {config!r} is not allowed: text without spaces or line breaks around it")
 
