@@ -23,12 +23,23 @@ def write_flags(path, name, meanings, values):
     xr.Dataset({name: ("a", values, flag("i1", meanings))}).to_netcdf(path)
 
 
-def claim(name, verdict):
-    return {"name": name, "verdict": verdict}
+def claim(name, verdict, reason="It is so."):
+    return {"name": name, "verdict": verdict, "reason": reason}
 
 
 def summaries(results):
     return [str(results / "summary" / name) for name in ("claims.json", "mean_distance.nc", "lyapunov.nc")]
+
+
+def test_claims_that_a_study_cannot_judge_at_all(results):
+    reason = "Not testable here: the paper's driver has v = 0.1, that of the study v = 0.2."
+    claims = [claim(f"claim_{n}", "not testable", reason) for n in range(5)]
+    path = results / "summary" / "claims.json"
+    path.write_text(json.dumps({"counts": {"holds": 0, "not testable": 5}, "claims": claims}))
+    lines = closing_lines(results, 1.0, success=True, made=[str(path)], wanted=[str(path)])
+    assert f"claims of the paper: none is judged ({results}/summary/claims.md)" in lines
+    assert f"  {reason}" in lines
+    assert not any("holds" in line for line in lines)
 
 
 @pytest.mark.parametrize(

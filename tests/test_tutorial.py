@@ -24,5 +24,5 @@ def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
     for name in shown:
         mine, committed = (imread(folder / "docs" / name) for folder in (tmp_path, repository))
         assert mine.shape == committed.shape
-        # Another version of the drawing library may shade an edge differently; another curve is seen.
-        assert np.abs(mine - committed).mean() < 0.01, name
+        # Another version of the drawing library may shade an edge differently; a curve that is missing makes 0.003.
+        assert np.abs(mine - committed).mean() < 0.001, name

@@ -98,6 +98,9 @@ def _claims(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
     counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
     lines = [f"claims of the paper: {counts} ({path.with_suffix('.md')})"]
+    reasons = {claim["reason"] for claim in read["claims"]}
+    if read["counts"]["not testable"] == len(read["claims"]) and len(reasons) == 1:
+        return [f"claims of the paper: none is judged ({path.with_suffix('.md')})", f"  {reasons.pop()}"]
     for verdict in NAMED_VERDICTS:
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         if names:

@@ -76,7 +76,9 @@ def poor(tmp_path_factory, repository) -> Poor:
     claims.write_text(
         '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"not testable": 1},'
         ' "claims": [{"name": "none", "topic": "chaos", "statement": "It </script><img src=x onerror=alert(1)>.",'
-        ' "place": "Sec. 1", "verdict": "not testable", "reason": "No run."}]}'
+        ' "place": "Sec. <b onclick=x>1</b>", "verdict": "not testable", "reason": "No run.",'
+        ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null}],'
+        ' "conventions": {"<u onfocus=x>any</u>": "not testable"}}]}'
     )
     summaries, figures = (
         {path.stem: path for path in (folder / place).glob(f"*{suffix}")}

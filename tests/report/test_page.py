@@ -71,7 +71,10 @@ def test_a_failed_run_stands_with_its_file_and_command(page):
 
 def test_texts_of_others_are_escaped(page):
     assert "It </script><img src=x onerror=alert(1)>." in page.text
-    assert all("onerror" not in attributes for _, attributes in page.elements)
+    for text in ("Sec. <b onclick=x>1</b>", "<i onmouseover=x>rate</i>", "<u onfocus=x>any</u>"):
+        assert text in page.text
+    forbidden = {"onerror", "onclick", "onmouseover", "onfocus"}
+    assert all(not forbidden & set(attributes) for _, attributes in page.elements)
 
 
 def test_the_html_is_sound(page):

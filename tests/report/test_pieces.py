@@ -84,9 +84,24 @@ def test_verdicts_are_counted_and_put_by_topic():
     assert verdicts.setting["contact"] == "one_sided"
 
 
+def test_one_reason_for_all_is_said_once(tmp_path):
+    content = json.loads(CLAIMS.read_text())
+    assert read_verdicts(CLAIMS).one_reason == ""
+    content["counts"] = {"not testable": len(content["claims"])}
+    for claim in content["claims"]:
+        claim.update(verdict="not testable", reason="Not testable here: short runs.", conventions={})
+    path = tmp_path / "claims.json"
+    path.write_text(json.dumps(content))
+    assert read_verdicts(path).one_reason == "Not testable here: short runs."
+    content["claims"][0]["reason"] = "Another."
+    path.write_text(json.dumps(content))
+    assert read_verdicts(path).one_reason == ""
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
+        (lambda content: content["claims"][0].update(own="maybe"), "'maybe' is not allowed"),
         (lambda content: content["claims"].pop(), "counts"),
         (lambda content: content["claims"][0].update(verdict="true"), "holds loosely"),
         (lambda content: content["claims"][0].update(conventions={"x": "maybe"}), "'maybe' is not allowed"),

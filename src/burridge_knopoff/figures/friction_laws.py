@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray
@@ -11,6 +12,9 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
 from burridge_knopoff.friction import Friction
+
+# A legend that hides the line behind it.
+BEHIND: dict[str, Any] = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 1.0}
 
 DASHES = {"linearized": "--", "nonlinear": "-"}
 
@@ -33,7 +37,7 @@ def _laws(panel: Axes, a_values: Sequence[float]) -> None:
             panel.plot(speed, Friction(law, a)(speed), dashes, color=color(index), label=f"$a={a:g}$, {law}")
     panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
     panel.set(xlabel=r"velocity $U'$", ylabel=r"friction $\Phi(aU')$", xlim=(-0.15, 3.0), ylim=(-0.15, 1.08))
-    panel.legend(loc="lower left", bbox_to_anchor=(0.07, 0.24))
+    panel.legend(loc="lower left", bbox_to_anchor=(0.07, 0.03), **BEHIND)
 
 
 def _least(panel: Axes, runs: xarray.Dataset) -> None:
@@ -43,4 +47,4 @@ def _least(panel: Axes, runs: xarray.Dataset) -> None:
             panel.plot(runs["a"], least, dashes, color=color(index), label=f"{initial}, {law}")
     panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
     panel.set(xlabel="$a$", ylabel=r"least $\Phi(aU')$", ylim=(min(-0.15, panel.get_ylim()[0]), 1.08))
-    panel.legend(loc="lower left", bbox_to_anchor=(0.0, 0.24))
+    panel.legend(loc="lower left", bbox_to_anchor=(0.02, 0.03), **BEHIND)

@@ -29,7 +29,7 @@ def draw(solvers: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩, how far it is from that of the study's solver, and the steps per unit time, of every solver at each a.
 
     A column for each law. The points at one a are set apart: first by initial state, then by solver. Short lines in the
-    middle row are the standard errors of the differences, as of independent runs.
+    middle row are the standard errors of the differences, as of independent runs; differences of 0 lie at its foot.
     """
     laws, states = solvers["law"].values, solvers["initial"].values
     figure, panels = new_figure(PAGE, 6.2, rows=3, columns=len(laws))
@@ -60,8 +60,9 @@ def draw(solvers: xarray.Dataset) -> Figure:
     panels[2 * len(laws)].set_ylim(top=4.0 * PAPER_STEPS)
     handles = [Line2D([], [], **_look(n, 0), label=name) for n, name in enumerate(names)]
     handles += [Line2D([], [], **_look(0, j, "0.3"), label=f"from {initial}") for j, initial in enumerate(states)]
+    handles.append(Line2D([], [], color="0.3", marker="_", linestyle="", markersize=6, label="standard error"))
     handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's steps"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(7, len(handles)))
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(8, len(handles)))
     titles = [[r"$\langle J\rangle$" for _ in laws]]
     titles.append([f"difference to {solvers.attrs[f'solver_{law}']}" for law in laws])
     titles.append(["steps" for _ in laws])

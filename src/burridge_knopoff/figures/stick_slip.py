@@ -91,8 +91,9 @@ def _legend(shown: list[int]) -> list[Line2D | Patch]:
     gray: dict[str, Any] = {**_look(0), "color": "0.3"}
     return [
         *(Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)),
-        Line2D([], [], **gray, label="of the velocity"),
-        Line2D([], [], **gray, markerfacecolor="none", label="of the stops"),
+        Line2D([], [], **gray, label="frequency of the velocity"),
+        Line2D([], [], **gray, markerfacecolor="none", label="frequency of the stops"),
+        Patch(facecolor=color(0), alpha=0.12, label="resolution of the spectra"),
         Patch(facecolor="0.88", label="the paper's 2 to 3"),
         Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's 1/2"),
     ]

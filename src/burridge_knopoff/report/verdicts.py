@@ -24,11 +24,13 @@ class Verdicts:
     counts : {verdict: number of statements}, every verdict in the order of SIGNS
     topics : {topic: its claims}, each claim a mapping as in the file
     setting : v, contact and start for which they were judged, with the provenance
+    one_reason : why none can be judged, where that is the same for all; else empty
     """
 
     counts: dict[str, int]
     topics: dict[str, list[dict[str, Any]]]
     setting: dict[str, Any]
+    one_reason: str = ""
 
 
 _TEXTS = ("name", "topic", "statement", "place", "verdict", "reason")
@@ -53,16 +55,18 @@ def read_verdicts(path: str | Path) -> Verdicts:
     for claim in claims:
         topics.setdefault(claim["topic"], []).append(claim)
     setting = {key: value for key, value in content.items() if key not in ("claims", "counts")}
-    return Verdicts(counts, topics, setting)
+    reasons = {claim["reason"] for claim in claims}
+    common = counts["not testable"] == len(claims) > 1 == len(reasons)
+    return Verdicts(counts, topics, setting, reasons.pop() if common else "")
 
 
 def _claim(claim: dict[str, Any]) -> dict[str, Any]:
     for key in _TEXTS:
         if not isinstance(claim[key], str):
             raise ValueError(f"{key}: {claim[key]!r} is not allowed: text")
-    verdicts = [claim["verdict"], *claim.get("conventions", {}).values()]
+    verdicts = [claim["verdict"], claim.get("own") or claim["verdict"], *claim.get("conventions", {}).values()]
     for verdict in verdicts:
         if verdict not in SIGNS:
             raise ValueError(f"verdict: {verdict!r} is not allowed: {' | '.join(SIGNS)}")
-    optional: dict[str, Any] = {"measured": [], "changes": "", "conventions": {}, "figure": ""}
+    optional: dict[str, Any] = {"measured": [], "changes": "", "conventions": {}, "figure": "", "own": ""}
     return {**optional, **claim}

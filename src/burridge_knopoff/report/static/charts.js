@@ -9,6 +9,8 @@ const config = {
   displaylogo: false,
   // A page that stays offline has no button that uploads its numbers.
   showSendToCloud: false,
+  // Its hints would lie over the next chart.
+  showTips: false,
   plotlyServerURL: "",
   displayModeBar: coarse ? false : "hover",
   modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],

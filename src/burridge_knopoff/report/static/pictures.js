@@ -5,7 +5,7 @@ function openPicture(event) {
   const viewer = byId("viewer");
   if (!source || !viewer.showModal) return;
   event.preventDefault();
-  byId("viewer-title").textContent = source.nextElementSibling.textContent;
+  byId("viewer-title").textContent = source.nextElementSibling.querySelector("strong").textContent;
   byId("viewer-picture").replaceChildren(element("img", { src: source.src, alt: source.alt }));
   byId("viewer-pdf").href = `figures/${name}.pdf`;
   viewer.showModal();

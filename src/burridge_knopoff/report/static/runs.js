@@ -31,8 +31,14 @@ function rowsOf({ law, initial, a }) {
 }
 
 const subscript = (number) => String.fromCodePoint(...[...String(number)].map((digit) => 0x2080 + Number(digit)));
-const withError = (value, error) =>
-  typeof value === "number" && typeof error === "number" ? `${shown(value)} ± ${shown(error)}` : shown(value);
+// As many digits as the error leaves; the file has them all.
+const withError = (value, error) => {
+  if (typeof value !== "number" || typeof error !== "number") return shown(value);
+  if (!(error > 0)) return shown(value);
+  const digits = Math.max(0, 1 - Math.floor(Math.log10(error)));
+  if (digits > 9 || error >= 100) return `${shown(Number(value.toPrecision(6)))} ± ${shown(Number(error.toPrecision(2)))}`;
+  return `${shown(value.toFixed(digits))} ± ${shown(error.toFixed(digits))}`;
+};
 
 function pick(law, initial, a) {
   Object.assign(picked, { law, initial, a });
