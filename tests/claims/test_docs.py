@@ -6,9 +6,12 @@ import importlib.util
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.figures.branches import COLORS
 
 ROOT = Path(__file__).parents[2]
 
@@ -41,6 +44,13 @@ def test_the_ledger_is_of_the_claims_as_they_stand(content: dict) -> None:
 def test_every_figure_of_the_page_is_there(content: dict) -> None:
     for claim in content["claims"]:
         assert (ROOT / f"docs/figures/{claim['figure']}.png").exists()
+
+
+def test_the_colours_of_the_branches_survive() -> None:
+    picture = np.asarray(Image.open(ROOT / "docs/figures/basin_fractions.png").convert("RGB"), dtype=int).reshape(-1, 3)
+    for name in COLORS:
+        wanted = np.array([int(name[k : k + 2], 16) for k in (1, 3, 5)])
+        assert (np.abs(picture - wanted).sum(axis=1) <= 24).sum() > 100, name
 
 
 def test_the_readme_counts_them(content: dict) -> None:
