@@ -13,6 +13,7 @@ from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.continuation import branches, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, label
+from burridge_knopoff.stability.motion import CHAOTIC, QUASIPERIODIC
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.steady import lies_on, measure, visit
 from tests.sections import MOTION
@@ -211,3 +212,18 @@ def test_branches_of_two_laws_that_look_alike_carry_one_number():
     assert same_numbers(first, second, 0.01) == {0: 0, 1: 2, 2: 1, 3: 3}
     assert same_numbers(first, first, 0.01) == {0: 0, 1: 1, 2: 2}
     assert same_numbers({}, second, 0.01) == {0: 0, 1: 1, 2: 2, 3: 3}
+
+
+def test_weak_chaos_is_told_from_a_torus():
+    """λ1 is 0.0019 at a = 0.1325: in the usual window its error hides it, and the motion looks like one on a torus."""
+    model = Model(Chain(3), Friction("linearized", 0.1325), 0.1, "one_sided")
+    start = begin(model, PAPER_STATES["minus"], "moving")
+    steady = measure(model, start, 20_000.0, 3000.0, 1e-6, MOTION)
+    run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
+    assert steady.kind == CHAOTIC
+    assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
+    assert steady.exponent[0] == pytest.approx(run.lyapunov_exponent[0], abs=6e-4)
+    assert abs(steady.mean_distance - run.mean_distance) < 2e-4
+    torus = Model(Chain(3), Friction("linearized", 0.05), 0.1, "one_sided")
+    steady = measure(torus, begin(torus, PAPER_STATES["plus"], "moving"), 20_000.0, 3000.0, 1e-6, MOTION)
+    assert steady.kind == QUASIPERIODIC

@@ -56,6 +56,9 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
         # Above the threshold but not above its error, or the other way round: no chaos.
         (0.1, 0, (2e-3, -0.01), 1e-3, PERIODIC),
         (0.1, 0, (9e-4, -0.01), 1e-5, UNDETERMINED),
+        # Weak chaos or a torus: the error leaves both.
+        (0.1, 0, (2e-3, 0.0), 1e-3, UNDETERMINED),
+        (0.1, 0, (9e-4, 0.0), 1e-3, QUASIPERIODIC),
         (0.1, 0, (-0.01, -0.02), 1e-5, UNDETERMINED),
         # Without exponents only a repetition of the section points says something.
         (0.1, 5, (), 1e-5, PERIODIC),

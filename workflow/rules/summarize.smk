@@ -86,6 +86,7 @@ rule lyapunov:
         exponents=STUDY.config["lyapunov_exponents"],
         threshold=STUDY.config["synchronization_threshold"],
         motion=STUDY.config["motion"],
+        sources=source_fingerprint(("stability/motion.py", "summaries/lyapunov.py")),
     message:
         "Lyapunov exponents and kinds of motion"
     script:

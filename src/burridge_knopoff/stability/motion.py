@@ -70,7 +70,8 @@ def motion_kind(
 
     Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
     that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
-    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined.
+    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined, among it what is
+    above `chaotic_exponent` and not above its error.
     """
     known = np.flatnonzero(~np.isnan(exponent))
     if len(known) and exponent[0] > max(motion["chaotic_exponent"], motion["standard_errors"] * error[0]):
@@ -86,4 +87,4 @@ def motion_kind(
         return UNDETERMINED
     if len(known) > 1 and not zero[1]:
         return closed
-    return QUASIPERIODIC if len(known) > 1 else UNDETERMINED
+    return QUASIPERIODIC if len(known) > 1 and exponent[0] <= motion["chaotic_exponent"] else UNDETERMINED
