@@ -1,6 +1,11 @@
 """Shared fixtures and settings of the tests."""
 
 import os
+import signal
+
+# Begun in the background of a shell, the tests would hand on to the programs they interrupt that Ctrl-C is ignored.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # As in a point job: the tests use both cores already.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
