@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from burridge_knopoff.claims.ledger import as_markdown
+from burridge_knopoff.claims.ledger import as_json, as_markdown
 from burridge_knopoff.files import write_text
 
 DOCS = Path(__file__).parent
@@ -38,7 +38,7 @@ def figure_names() -> set[str]:
 def main(results: Path) -> None:
     """Copy the ledger and the figures of a study into docs/."""
     content = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
-    write_text(LEDGER, json.dumps(content, ensure_ascii=False, indent=1) + "\n")
+    write_text(LEDGER, as_json(content))
     write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content))
     for name in sorted(figure_names()):
         source = results / f"figures/{name}.png"

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
+
 #: Verdicts whose claims are named, not only counted.
-NAMED_VERDICTS = ("fails", "depends on convention")
+NAMED_VERDICTS = (FAILS, CONVENTION)
 #: Names in a line, and failed jobs with a line each, at most.
 MOST_NAMES, MOST_FAILED = 8, 10
 #: So few files are named one by one.
@@ -98,9 +100,8 @@ def _claims(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
     counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
     lines = [f"claims of the paper: {counts} ({path.with_suffix('.md')})"]
-    reasons = {claim["reason"] for claim in read["claims"]}
-    if read["counts"]["not testable"] == len(read["claims"]) and len(reasons) == 1:
-        return [f"claims of the paper: none is judged ({path.with_suffix('.md')})", f"  {reasons.pop()}"]
+    if reason := one_reason(read["claims"]):
+        return [f"claims of the paper: none is judged ({path.with_suffix('.md')})", f"  {reason}"]
     for verdict in NAMED_VERDICTS:
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         if names:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, measured_text, read_claims
+from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
 from burridge_knopoff.claims.verdict import NotTestableError, Range, at_values, by_interval, by_value, with_error
 from burridge_knopoff.config import ConfigError
 from tests.claims.worlds import A, evidence, paper_world
@@ -156,7 +156,6 @@ def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
     assert with_error(123.4, 20.0) == "123 ± 20"
     assert with_error(0.25) == with_error(0.25, 0.0) == with_error(0.25, math.nan) == "0.25"
     assert with_error(math.nan) == "nan"
-    assert measured_text({"value": None, "error": None}) == "unknown"
 
 
 def test_values_join_neighbours_and_count_many() -> None:

@@ -10,18 +10,11 @@ import numpy as np
 
 from burridge_knopoff.claims.verdict import NotTestableError, Range
 from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.paper import PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
 from burridge_knopoff.simulation import STATUS
 
 if TYPE_CHECKING:
     import xarray
-
-#: The paper's friction laws; a study may know more.
-PAPER_LAWS = ("linearized", "nonlinear")
-
-#: The paper's velocity of the driver, and how long its runs are.
-PAPER_V = 0.1
-PAPER_TRANSIENT = 3000.0
-PAPER_WINDOW = 7000.0
 
 # On fewer values of a than these a statement on a range of a is not judged.
 LEAST_VALUES = 10
@@ -118,6 +111,13 @@ class Evidence:
         """Return the attractors with what the initial states reach under the study's own convention."""
         self.check_blocks()
         return self.summary("attractors").sel(contact=self.config["contact"], start=self.config["start"])
+
+    def critical_a(self, law: str) -> tuple[float, float]:
+        """Return a_c, at which synchrony loses stability, and its error; NaN if the study has no orbits."""
+        if "orbits" not in self.summaries:
+            return np.nan, np.nan
+        orbits = self.summary("orbits").sel(law=law)
+        return orbits["critical_a"].item(), orbits["critical_a_error"].item()
 
 
 def finite(values: Any) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
-from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
@@ -17,6 +17,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
 )
+from burridge_knopoff.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray

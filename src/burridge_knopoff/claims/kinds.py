@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
-from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -21,7 +21,16 @@ from burridge_knopoff.claims.verdict import (
     by_share,
     worst,
 )
-from burridge_knopoff.stability.motion import CHAOTIC, KINDS, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
+from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.stability.motion import (
+    CHAOTIC,
+    KINDS,
+    PERIODIC,
+    QUASIPERIODIC,
+    SYNCHRONIZED,
+    UNDETERMINED,
+    zero_exponents,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -137,12 +146,10 @@ def onset_of_chaos(
             if (kind == CHAOTIC).any():
                 first = values[np.argmax(kind == CHAOTIC)]
                 measured.append(Measured(f"least a with a chaotic run, {law}, {state}", float(first)))
-    if "orbits" in evidence.summaries:
-        orbits = evidence.summary("orbits")
-        for law in PAPER_LAWS:
-            critical, error = (orbits[name].sel(law=law).item() for name in ("critical_a", "critical_a_error"))
-            if np.isfinite(critical):
-                measured.append(Measured(f"a at which synchrony loses stability, {law}", critical, error))
+    for law in PAPER_LAWS:
+        critical, error = evidence.critical_a(law)
+        if np.isfinite(critical):
+            measured.append(Measured(f"a at which synchrony loses stability, {law}", critical, error))
     reason = f"A chaotic attractor is first found {'; '.join(texts)}; claimed is a transition near {claimed:g}."
     return Verdict(worst(verdicts), reason, measured, "; ".join(windows))
 
@@ -159,8 +166,7 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     known = np.isfinite(exponent) & np.isfinite(error)
     if not known.any():
         raise NotTestableError(f"no Lyapunov exponent of a run from {initial} is known with {a}")
-    motion = evidence.config["motion"]
-    zero = np.abs(exponent) <= np.maximum(motion["zero_exponent"], motion["standard_errors"] * error)
+    zero = zero_exponents(exponent, error, evidence.config["motion"])
     share = float(zero[known].mean())
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares
-from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -19,6 +19,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
 )
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
 
 # What the paper calls a result, of each kind of motion.

@@ -16,7 +16,7 @@ import numpy as np
 
 from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, with_error
+from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
 from burridge_knopoff.config.message import ConfigError
 from burridge_knopoff.config.study import check_names, check_schema, read_schema, read_yaml
 from burridge_knopoff.files import display_path
@@ -223,8 +223,3 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
 
 def _text(value: float | None) -> str:
     return "" if value is None else repr(value)
-
-
-def measured_text(item: Mapping[str, Any]) -> str:
-    """Return a measured figure of the ledger as text, with its error."""
-    return "unknown" if item["value"] is None else with_error(item["value"], item["error"])

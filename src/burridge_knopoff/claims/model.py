@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence, finite
+from burridge_knopoff.claims.evidence import Evidence, finite
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -21,6 +21,7 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.paper import PAPER_LAWS
 
 
 def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:

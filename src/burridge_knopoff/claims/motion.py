@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
-from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence, finite
+from burridge_knopoff.claims.evidence import Evidence, finite
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -24,6 +24,7 @@ from burridge_knopoff.claims.verdict import (
     with_error,
     worst,
 )
+from burridge_knopoff.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
-from burridge_knopoff.claims.evidence import PAPER_LAWS, Evidence
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -23,6 +23,7 @@ from burridge_knopoff.claims.verdict import (
     with_error,
     worst,
 )
+from burridge_knopoff.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray
@@ -83,7 +84,7 @@ def edge_of_synchrony(
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
         measured.append(Measured(f"{side} a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
-        critical, error = _critical_a(evidence, law)
+        critical, error = evidence.critical_a(law)
         if upper and low <= critical <= high:
             verdicts.append(by_value(critical, claimed, tolerance, loose))
             measured.append(Measured(f"a_c, at which the synchronized orbit loses stability, {law}", critical, error))
@@ -110,14 +111,6 @@ def _edge(grid: np.ndarray, synchronized: np.ndarray, upper: bool) -> tuple[floa
         return (grid[index[-1]], grid[index[-1] + 1]) if index[-1] + 1 < len(grid) else (np.nan, np.nan)
     # There is no a below 0.
     return (grid[index[0] - 1] if index[0] else 0.0), grid[index[0]]
-
-
-def _critical_a(evidence: Evidence, law: str) -> tuple[float, float]:
-    """Return a_c and its error; NaN if the study has no orbits."""
-    if "orbits" not in evidence.summaries:
-        return np.nan, np.nan
-    orbits = evidence.summary("orbits").sel(law=law)
-    return orbits["critical_a"].item(), orbits["critical_a_error"].item()
 
 
 def _multipliers_near_zero(evidence: Evidence) -> list[Measured]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -91,6 +92,13 @@ class Range:
         if self.below is not None:
             chosen &= a < self.below
         return chosen
+
+
+def one_reason(claims: Sequence[Mapping[str, Any]]) -> str:
+    """Return why none of the claims of a ledger can be judged, where that is the same for all; else empty."""
+    reasons = {claim["reason"] for claim in claims}
+    untestable = all(claim["verdict"] == NOT_TESTABLE for claim in claims)
+    return reasons.pop() if untestable and len(reasons) == 1 else ""
 
 
 def worst(verdicts: Iterable[str]) -> str:

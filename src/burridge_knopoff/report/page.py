@@ -82,7 +82,7 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
     environment.globals.update(with_error=with_error)
     return environment.get_template("report.html.jinja").render(
         study=study.name,
-        blocks=len(next(iter(study.config["initial"].values()))["position"]),
+        blocks=study.blocks,
         setting=verdicts.setting,
         verdicts=verdicts,
         signs=SIGNS,

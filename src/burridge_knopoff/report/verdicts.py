@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, one_reason
+
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
-SIGNS = {
-    "holds": "✓",
-    "holds loosely": "≈",
-    "depends on convention": "⇄",
-    "fails": "✗",
-    "not testable": "–",
-}
+SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", FAILS: "✗", NOT_TESTABLE: "–"}
 
 
 @dataclass(frozen=True)
@@ -55,9 +51,7 @@ def read_verdicts(path: str | Path) -> Verdicts:
     for claim in claims:
         topics.setdefault(claim["topic"], []).append(claim)
     setting = {key: value for key, value in content.items() if key not in ("claims", "counts")}
-    reasons = {claim["reason"] for claim in claims}
-    common = counts["not testable"] == len(claims) > 1 == len(reasons)
-    return Verdicts(counts, topics, setting, reasons.pop() if common else "")
+    return Verdicts(counts, topics, setting, one_reason(claims) if len(claims) > 1 else "")
 
 
 def _claim(claim: dict[str, Any]) -> dict[str, Any]:

@@ -12,15 +12,13 @@ from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 _POINT = ("law", "initial", "a")
 _PAIR = ("initial", "a")
-#: The laws that are compared: the paper's.
-COMPARED = ("linearized", "nonlinear")
-
 _VERDICT = {-1: "undetermined", 0: "no", 1: "yes"}
 _YES_NO = flag("i1", _VERDICT)
 VARIABLES = {
@@ -38,11 +36,9 @@ VARIABLES = {
     "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _YES_NO),
     "parting_a": Variable(("initial",), "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
 }
-_EVENT = ("time", "block", "kind")
 _READ = [
     *("end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
-    *(f"earlier_event_{name}" for name in _EVENT),
-    *(f"event_{name}" for name in _EVENT),
+    *EVENTS,
 ]
 
 
@@ -55,35 +51,30 @@ def summarize(
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
     values = {}
+    shapes = {_POINT: (len(PAPER_LAWS), *grid.shape[1:]), _PAIR: grid.shape[1:]}
     for name, item in VARIABLES.items():
-        shape = {_POINT: (len(COMPARED), *grid.shape[1:]), _PAIR: grid.shape[1:]}.get(item.dimensions, grid.shape[1:2])
+        shape = shapes.get(item.dimensions, grid.shape[1:2])
         values[name] = np.zeros(shape, dtype=item.dtype)
     for j, initial in enumerate(grid.initial):
         for k, a in enumerate(grid.a):
-            pair = [read_point(grid, law, initial, a, _READ) for law in COMPARED]
+            pair = [read_point(grid, law, initial, a, _READ) for law in PAPER_LAWS]
             upward = [point["crossing_velocity"][point["crossing_direction"] > 0] for point in pair]
             for i, point in enumerate(pair):
                 values["mean_distance"][i, j, k] = point["mean_distance"]
                 values["mean_distance_error"][i, j, k] = point["mean_distance_error"]
             values["section_distance"][j, k] = wasserstein_distance(*upward) if all(map(len, upward)) else np.nan
-            count, until = common_order(*(_sequence(point) for point in pair))
+            count, until = common_order(*(all_events(point) for point in pair))
             values["event_order_count"][j, k] = count
             values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
-    values["kind"][...] = lyapunov["kind"].sel(law=list(COMPARED)).values
+    values["kind"][...] = lyapunov["kind"].sel(law=list(PAPER_LAWS)).values
     judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
     return summary(
         "Agreement of the linearized and the nonlinear friction law",
         VARIABLES,
         values,
-        axes(grid.initial, list(grid.a.values()), COMPARED),
+        axes(grid.initial, list(grid.a.values()), PAPER_LAWS),
         {"synchronization_threshold": synchronization_threshold, **agreement},
     )
-
-
-def _sequence(point: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, block and kind of all events of a run."""
-    time, block, kind = (np.concatenate([point[f"earlier_event_{name}"], point[f"event_{name}"]]) for name in _EVENT)
-    return time, block, kind
 
 
 def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,12 @@ from burridge_knopoff.friction import LAWS
 
 class PointError(ValueError):
     """A point file that cannot be used; the message is one line that names the file and the reason."""
+
+
+_EVENT = ("time", "block", "kind")
+
+#: The variables of a point file that hold all its events.
+EVENTS = tuple(f"{part}event_{name}" for part in ("earlier_", "") for name in _EVENT)
 
 
 @dataclass(frozen=True)
@@ -77,3 +83,9 @@ def read_run(
             f"{path}: was made by solver {found_solver} instead of {solver}; delete it and run snakemake again"
         )
     return values
+
+
+def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, block and kind of all events of a run, of which EVENTS were read."""
+    time, block, kind = (np.concatenate([run[f"earlier_event_{name}"], run[f"event_{name}"]]) for name in _EVENT)
+    return time, block, kind

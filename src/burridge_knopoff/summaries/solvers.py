@@ -14,7 +14,7 @@ from burridge_knopoff.friction import LAWS
 from burridge_knopoff.settings import SOLVERS
 from burridge_knopoff.simulation import STATUS
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.points import Grid, read_run
+from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_run
 
 NO_RUN = -1
 
@@ -46,8 +46,7 @@ VARIABLES = {
 }
 SOLVER = Variable(("solver",), "O", "solver", coordinate=True)
 _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_time")
-_EVENT = ("time", "block", "kind")
-_READ = [*_COPIED, *(f"{part}event_{name}" for part in ("earlier_", "") for name in _EVENT)]
+_READ = [*_COPIED, *EVENTS]
 
 
 def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], step: float) -> xarray.Dataset:
@@ -72,7 +71,7 @@ def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], st
             values["difference"][index] = run["mean_distance"] - reference["mean_distance"]
             error = np.hypot(run["mean_distance_error"], reference["mean_distance_error"])
             values["difference_error"][index] = error if run is not reference else 0.0 * error
-            count, until = common_order(_sequence(run), _sequence(reference))
+            count, until = common_order(all_events(run), all_events(reference))
             values["event_order_count"][index] = count
             values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
     shared = axes(grid.initial, list(grid.a.values()))
@@ -85,9 +84,3 @@ def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], st
         {"law": shared["law"], "solver": ("solver", np.array(SOLVERS, dtype=object), attributes), **shared},
         {**{f"solver_{law}": solvers[law][0] for law in LAWS}, "step": step},
     )
-
-
-def _sequence(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, block and kind of all events of a run."""
-    time, block, kind = (np.concatenate([run[f"earlier_event_{name}"], run[f"event_{name}"]]) for name in _EVENT)
-    return time, block, kind

@@ -11,7 +11,7 @@ from scipy.signal import find_peaks, periodogram
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.simulation import STATUS
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 STOP, START = 0, 1
 
@@ -48,12 +48,7 @@ VARIABLES = {
     "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
 }
 BLOCK = Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True)
-_EVENT = ("time", "block", "kind")
-_READ = [
-    *("status", "velocity", "trajectory_time"),
-    *(f"earlier_event_{name}" for name in _EVENT),
-    *(f"event_{name}" for name in _EVENT),
-]
+_READ = ["status", "velocity", "trajectory_time", *EVENTS]
 
 
 def summarize(grid: Grid, blocks: int, transient: float, window: float, batches: int) -> xarray.Dataset:
@@ -67,7 +62,7 @@ def summarize(grid: Grid, blocks: int, transient: float, window: float, batches:
         read = read_point(grid, *point, _READ)
         if STATUS[int(read["status"])] != "completed":
             continue
-        time, block, kind = (np.concatenate([read[f"earlier_event_{name}"], read[f"event_{name}"]]) for name in _EVENT)
+        time, block, kind = all_events(read)
         velocity, duration = read["velocity"], np.ptp(read["trajectory_time"])
         for n in range(blocks):
             own = block == n + 1

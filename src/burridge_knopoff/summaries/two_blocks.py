@@ -16,11 +16,12 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import InitialState
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import Trajectory, run
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED, motion_kind, section_period
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.summaries.agreement import COMPARED, judge
+from burridge_knopoff.summaries.agreement import judge
 from burridge_knopoff.summaries.event_order import common_order
 
 BLOCKS = 2
@@ -72,7 +73,7 @@ def summarize(
     settings : of the runs, see `run_settings`
     motion, agreement : the config's sections of that name
     """
-    sizes = {"law": len(COMPARED), "state": len(initial), "a": len(grid), "block": BLOCKS}
+    sizes = {"law": len(PAPER_LAWS), "state": len(initial), "a": len(grid), "block": BLOCKS}
     values = {
         name: np.zeros([sizes[dimension] for dimension in item.dimensions], dtype=item.dtype)
         for name, item in VARIABLES.items()
@@ -80,7 +81,7 @@ def summarize(
     for j, state in enumerate(initial):
         values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
         for k, a in enumerate(grid):
-            pair = [run(Chain(BLOCKS), Friction(law, a), state, settings) for law in COMPARED]
+            pair = [run(Chain(BLOCKS), Friction(law, a), state, settings) for law in PAPER_LAWS]
             for i, trajectory in enumerate(pair):
                 section = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
                 period = section_period(section, motion["period_tolerance"], motion["longest_period"])
@@ -105,7 +106,7 @@ def summarize(
         interval = fraction_interval(int((column == 1).sum()), int((column >= 0).sum()))
         for name, value in zip(("agreeing_fraction", "agreeing_low", "agreeing_high"), interval, strict=True):
             values[name][k] = value
-    shared = axes([], grid, COMPARED)
+    shared = axes([], grid, PAPER_LAWS)
     return summary(
         "Two blocks under the linearized and the nonlinear friction law",
         VARIABLES,

@@ -1,0 +1,242 @@
+"""What is altered in the world in which the paper is right, and the verdict that follows, for each claim."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
+from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, UNDETERMINED
+from tests.claims.worlds import Summaries
+
+ONE_OF_MANY = 0.03
+Alteration = Callable[[Summaries], None]
+
+
+def at(dataset: xarray.Dataset, name: str, value: object, **where: object) -> None:
+    """Set a variable where its coordinates are those given; `a` may be a predicate."""
+    predicate = where.pop("a", None)
+    if callable(predicate):
+        where["a"] = dataset["a"].values[predicate(dataset["a"].values)]
+    elif predicate is not None:
+        where["a"] = predicate
+    dataset[name].loc[where] = value
+
+
+def alter(summary: str, name: str, value: object, **where: object) -> Alteration:
+    return lambda world: at(world[summary], name, value, **where)
+
+
+def both(*alterations: Alteration) -> Alteration:
+    def all_of(world: Summaries) -> None:
+        for alteration in alterations:
+            alteration(world)
+
+    return all_of
+
+
+def reached(branch: int, **where: object) -> Alteration:
+    return alter("attractors", "initial_branch", branch, **where)
+
+
+def synchronized(value: int, **where: object) -> Alteration:
+    return alter("mean_distance", "synchronized", value, **where)
+
+
+def narrow_cloud(world: Summaries) -> None:
+    bifurcation = world["bifurcation"]
+    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
+    bifurcation["crossing_velocity"].values[of_plus] = 0.3
+
+
+def faster_cloud(world: Summaries) -> None:
+    bifurcation = world["bifurcation"]
+    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
+    bifurcation["crossing_velocity"].values[of_plus] += 0.5
+
+
+def all_synchronize(world: Summaries) -> None:
+    world["basins"]["branch"].values[...] = 0
+
+
+def far_as_near(share: float) -> Alteration:
+    def mix(world: Summaries) -> None:
+        branch = world["basins"]["branch"].values
+        apart = np.flatnonzero(branch == 1)
+        branch.ravel()[np.random.default_rng(1).permutation(apart)[: int(share * len(apart))]] = 0
+
+    return mix
+
+
+def exponents(value: float, error: float) -> Alteration:
+    return both(
+        alter("lyapunov", "lyapunov_exponent", value, exponent=0),
+        alter("lyapunov", "lyapunov_error", error, exponent=0),
+    )
+
+
+def one_attractor(world: Summaries) -> None:
+    at(world["attractors"], "branch", 0, a=ONE_OF_MANY)
+    at(world["attractors"], "initial_branch", 0, a=ONE_OF_MANY)
+
+
+def chaos_from(first: float) -> Alteration:
+    def set_kinds(world: Summaries) -> None:
+        at(world["attractors"], "kind", QUASIPERIODIC, attractor=1)
+        at(world["attractors"], "kind", CHAOTIC, attractor=1, a=lambda a: a >= first)
+
+    return set_kinds
+
+
+def halve(values: xarray.DataArray) -> None:
+    values.values[...] *= 0.5
+
+
+OTHER = {"contact": "symmetric"}
+CASES: list[tuple[str, str, Alteration]] = [
+    ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
+    ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus", law="nonlinear"), reached(1, initial="minus"))),
+    ("minus_synchronizes", CONVENTION, reached(1, initial="minus", **OTHER)),
+    ("minus_synchronizes", CONVENTION, synchronized(0, initial="minus")),
+    ("lower_edge", FAILS, reached(0, initial="minus", a=lambda a: a <= 0.0025)),
+    ("lower_edge", FAILS, reached(1, initial="minus", a=lambda a: a < 0.015)),
+    ("lower_edge", NOT_TESTABLE, reached(-1, initial="minus", a=lambda a: a < 0.005)),
+    (
+        "upper_edge",
+        LOOSELY,
+        both(reached(0, initial="minus", a=lambda a: a < 0.087), alter("orbits", "critical_a", 0.0887)),
+    ),
+    # A loss of stability elsewhere is not where synchrony ends.
+    ("upper_edge", HOLDS, alter("orbits", "critical_a", 0.12)),
+    ("upper_edge", HOLDS, alter("orbits", "critical_a", np.nan)),
+    ("upper_edge", FAILS, reached(0, initial="minus", a=lambda a: a < 0.145)),
+    (
+        "upper_edge",
+        NOT_TESTABLE,
+        both(
+            reached(-1, initial="minus", a=lambda a: (a > 0.081) & (a < 0.145)), alter("orbits", "critical_a", np.nan)
+        ),
+    ),
+    ("upper_edge", NOT_TESTABLE, reached(0, initial="minus")),
+    ("plus_does_not_synchronize", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
+    ("plus_does_not_synchronize", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("plus_does_not_synchronize", LOOSELY, synchronized(1, initial="plus", a=0.005)),
+    ("plus_mean_distance", FAILS, both(alter("mean_distance", "mean_distance", 0.2), reached(0, initial="plus"))),
+    ("plus_mean_distance", LOOSELY, alter("mean_distance", "mean_distance", 0.147)),
+    ("plus_mean_distance", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", 8000.0)),
+    ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", np.nan)),
+    ("minus_distance_vanishes", NOT_TESTABLE, alter("mean_distance", "status", 1)),
+    ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
+    ("history_decides", HOLDS, alter("attractors", "basin_count", 0, attractor=[1, 2])),
+    ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),
+    ("history_decides", LOOSELY, one_attractor),
+    ("history_decides", NOT_TESTABLE, both(one_attractor, alter("attractors", "basin_count", 20))),
+    ("first_block_decides", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
+    ("first_block_decides", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("first_block_decides", HOLDS, reached(-1, initial="minus", **OTHER)),
+    ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
+    ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
+    ("phases_decide", FAILS, all_synchronize),
+    ("phases_decide", LOOSELY, far_as_near(0.15)),
+    ("regular_below", FAILS, both(alter("lyapunov", "kind", CHAOTIC), alter("attractors", "kind", CHAOTIC))),
+    ("regular_below", CONVENTION, alter("lyapunov", "kind", CHAOTIC)),
+    ("regular_below", LOOSELY, alter("lyapunov", "kind", CHAOTIC, a=ONE_OF_MANY)),
+    ("chaotic_above", FAILS, both(alter("lyapunov", "kind", PERIODIC), alter("attractors", "kind", PERIODIC))),
+    ("chaotic_above", LOOSELY, alter("lyapunov", "kind", PERIODIC, a=0.2)),
+    ("chaotic_above", HOLDS, alter("lyapunov", "kind", UNDETERMINED, a=0.2)),
+    ("transition", FAILS, chaos_from(0.135)),
+    ("transition", FAILS, chaos_from(0.05)),
+    ("transition", FAILS, chaos_from(9.0)),
+    ("transition", LOOSELY, chaos_from(0.12)),
+    ("transition", NOT_TESTABLE, alter("attractors", "kind", UNDETERMINED, a=lambda a: a < 0.105)),
+    # Chaos of a run may be a transient.
+    ("transition", HOLDS, alter("lyapunov", "kind", CHAOTIC)),
+    ("periodic_is_synchronized", FAILS, alter("lyapunov", "kind", PERIODIC, initial="plus")),
+    # A run that leads to synchrony and is not there yet is not another motion.
+    ("periodic_is_synchronized", HOLDS, alter("lyapunov", "kind", PERIODIC, a=ONE_OF_MANY, initial="minus")),
+    (
+        "periodic_is_synchronized",
+        LOOSELY,
+        both(
+            alter("lyapunov", "kind", PERIODIC, a=ONE_OF_MANY, initial="minus"),
+            reached(1, a=ONE_OF_MANY, initial="minus"),
+        ),
+    ),
+    ("minus_one_section_point", FAILS, alter("lyapunov", "section_period", 2)),
+    (
+        "minus_one_section_point",
+        LOOSELY,
+        both(
+            alter("lyapunov", "section_period", 0, a=ONE_OF_MANY),
+            alter("lyapunov", "kind", QUASIPERIODIC, a=ONE_OF_MANY),
+        ),
+    ),
+    # Closed motion whose section points do not repeat yet has not settled.
+    ("minus_one_section_point", HOLDS, alter("lyapunov", "section_period", 0, a=ONE_OF_MANY)),
+    ("plus_cloud", FAILS, narrow_cloud),
+    ("plus_cloud", FAILS, faster_cloud),
+    ("plus_largest_exponent", FAILS, alter("lyapunov", "lyapunov_exponent", 0.02, exponent=0)),
+    ("plus_largest_exponent", FAILS, alter("lyapunov", "lyapunov_exponent", -0.02, exponent=0)),
+    ("plus_largest_exponent", LOOSELY, alter("lyapunov", "lyapunov_exponent", 0.02, exponent=0, a=ONE_OF_MANY)),
+    # Three standard errors, and no more, are granted.
+    ("plus_largest_exponent", HOLDS, exponents(0.002, 0.001)),
+    ("plus_largest_exponent", FAILS, exponents(0.002, 0.0005)),
+    ("plus_aperiodic", FAILS, both(alter("lyapunov", "kind", PERIODIC), alter("attractors", "kind", PERIODIC))),
+    ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("plus_not_periodic", FAILS, both(alter("lyapunov", "kind", PERIODIC), alter("attractors", "kind", PERIODIC))),
+    ("plus_not_periodic", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("minus_periodic", FAILS, both(alter("lyapunov", "kind", CHAOTIC), alter("attractors", "kind", CHAOTIC))),
+    (
+        "velocities_touch_zero",
+        FAILS,
+        both(alter("stick_slip", "stop_rate", 0.0, block=2), alter("attractors", "stop_rate", 0.0, block=2)),
+    ),
+    ("velocities_touch_zero", NOT_TESTABLE, alter("stick_slip", "stop_rate", np.nan, a=0.08)),
+    ("velocities_touch_zero", CONVENTION, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
+    ("sticks_unavoidable", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("antiphase", LOOSELY, alter("stick_slip", "velocity_correlation", -0.2)),
+    ("antiphase", FAILS, alter("stick_slip", "velocity_correlation", 0.9)),
+    ("antiphase", CONVENTION, reached(0, initial="plus", **OTHER)),
+    (
+        "half_frequency",
+        FAILS,
+        both(alter("stick_slip", "stop_rate", 0.34), alter("attractors", "stop_rate", 0.34)),
+    ),
+    ("half_frequency", LOOSELY, alter("stick_slip", "velocity_frequency", 0.22, block=1)),
+    ("half_frequency", CONVENTION, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("cycle_time", FAILS, alter("stick_slip", "cycle_time", 5.7)),
+    ("cycle_time", LOOSELY, alter("stick_slip", "cycle_time", 5.7, a=lambda a: a > 0.245)),
+    ("equilibrium", FAILS, alter("equilibrium", "equilibrium_position", -0.8, block=1)),
+    ("equilibrium", FAILS, alter("equilibrium", "equilibrium_drift", 0.1)),
+    ("equilibrium_unstable", FAILS, alter("equilibrium", "eigenvalue", -0.1, part="real", law="nonlinear")),
+    ("growth", FAILS, lambda world: halve(world["equilibrium"]["growth_rate"])),
+    ("minus_near_equilibrium", FAILS, alter("equilibrium", "equilibrium_position", 0.5, block=1)),
+    ("minus_near_equilibrium", LOOSELY, alter("equilibrium", "equilibrium_position", -0.7, block=1)),
+    ("friction_keeps_sign", FAILS, alter("mean_distance", "least_friction", -0.1, a=0.3)),
+    ("exponentials", FAILS, alter("equilibrium", "eigenvalue", 1.0, part="imaginary")),
+    ("laws_agree", FAILS, alter("agreement", "agrees", 0, a=lambda a: a > 0.055)),
+    ("laws_agree", LOOSELY, alter("agreement", "agrees", 0, a=ONE_OF_MANY, initial="plus")),
+    ("laws_agree", HOLDS, alter("agreement", "agrees", -1, a=ONE_OF_MANY)),
+    ("two_blocks_agree", FAILS, alter("two_blocks", "agrees", 0, state=0)),
+    (
+        "two_blocks_agree",
+        FAILS,
+        both(alter("two_blocks", "agrees", 0, state=0), alter("two_blocks", "agrees", -1, state=1)),
+    ),
+    ("two_blocks_agree", HOLDS, alter("two_blocks", "agrees", -1, state=1, a=0.1)),
+    ("solutions_agree", FAILS, alter("solvers", "difference", 0.05, solver="rk4")),
+    ("solutions_agree", FAILS, alter("solvers", "difference", 0.001, solver="rk4")),
+    ("solutions_agree", FAILS, alter("lyapunov", "kind", CHAOTIC, law="nonlinear")),
+    ("solutions_agree", FAILS, alter("lyapunov", "kind", PERIODIC, law="nonlinear", initial="minus")),
+    # Whether other regular motion is periodic or not is no other result.
+    ("solutions_agree", HOLDS, alter("lyapunov", "kind", PERIODIC, law="nonlinear", initial="plus")),
+    ("solutions_agree", NOT_TESTABLE, alter("lyapunov", "kind", UNDETERMINED)),
+    ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", np.nan)),
+    ("solutions_agree", HOLDS, alter("lyapunov", "kind", UNDETERMINED, a=0.02)),
+    ("map_is_cheaper", FAILS, alter("solvers", "step_count", 10**9)),
+    ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 3 * 10**7)),
+]
