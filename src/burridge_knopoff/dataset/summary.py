@@ -24,7 +24,7 @@ AXES: dict[str, Variable] = {
 def axes(initial: Sequence[str], a: Sequence[float], laws: Sequence[str] = LAWS) -> dict[str, Any]:
     """Return the coordinates of a summary over (law, initial, a)."""
     values = {"law": np.array(laws, dtype=object), "initial": np.array(initial, dtype=object), "a": np.asarray(a)}
-    return {name: (name, values[name], _attributes(item)) for name, item in AXES.items()}
+    return {name: (name, values[name], item.all_attributes()) for name, item in AXES.items()}
 
 
 def summary(
@@ -40,7 +40,7 @@ def summary(
     sources : files whose text decides the values
     """
     data = {
-        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), _attributes(item))
+        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
         for name, item in variables.items()
     }
     head = {
@@ -72,10 +72,3 @@ def open_summary(path: str | Path) -> xarray.Dataset:
         return xarray.load_dataset(path, engine="netcdf4")
     except (OSError, RuntimeError) as error:
         raise ValueError(f"{path}: not a readable file ({error}); delete it and run snakemake again") from None
-
-
-def _attributes(item: Variable) -> dict[str, Any]:
-    attributes = item.all_attributes()
-    if item.dtype == "O":
-        attributes.pop("units", None)
-    return attributes

@@ -29,7 +29,8 @@ class Variable:
     def all_attributes(self) -> dict[str, Any]:
         """Return the attributes in the order in which they are written."""
         attributes: dict[str, Any] = {"long_name": self.long_name}
-        if "flag_values" not in self.attributes:
+        # Neither flags nor texts have a unit.
+        if "flag_values" not in self.attributes and self.dtype != "O":
             attributes["units"] = "1"
         attributes.update(self.attributes)
         return attributes

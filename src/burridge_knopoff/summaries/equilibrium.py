@@ -71,10 +71,7 @@ def summarize(blocks: int, grid: Sequence[float], v: float) -> xarray.Dataset:
     coordinates = {"law": shared["law"], "a": shared["a"]}
     labels = {"block": np.arange(1, blocks + 1), "mode": np.arange(1, 2 * blocks + 1), "part": PARTS}
     for name, item in _COORDINATES.items():
-        attributes = item.all_attributes()
-        if item.dtype == "O":
-            del attributes["units"]
-        coordinates[name] = (name, np.array(labels[name], dtype=item.dtype), attributes)
+        coordinates[name] = (name, np.array(labels[name], dtype=item.dtype), item.all_attributes())
     return summary(
         "Uniform sliding and the growth of its perturbations",
         VARIABLES,

@@ -133,10 +133,7 @@ def _coordinates(grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]
     named = axes((), grid)
     del named["initial"]
     for name, item in _COORDINATES.items():
-        attributes = item.all_attributes()
-        if item.dtype == "O":
-            del attributes["units"]
-        named[name] = (name, np.array(values[name], dtype=item.dtype), attributes)
+        named[name] = (name, np.array(values[name], dtype=item.dtype), item.all_attributes())
     return named
 
 

@@ -75,12 +75,11 @@ def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], st
             values["event_order_count"][index] = count
             values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
     shared = axes(grid.initial, list(grid.a.values()))
-    attributes = SOLVER.all_attributes()
-    del attributes["units"]
+    names = ("solver", np.array(SOLVERS, dtype=object), SOLVER.all_attributes())
     return summary(
         "Independent solvers of the same equations",
         VARIABLES,
         values,
-        {"law": shared["law"], "solver": ("solver", np.array(SOLVERS, dtype=object), attributes), **shared},
+        {"law": shared["law"], "solver": names, **shared},
         {**{f"solver_{law}": solvers[law][0] for law in LAWS}, "step": step},
     )
