@@ -4,6 +4,7 @@ import os
 import shlex
 import sys
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 from snakemake.utils import min_version
@@ -21,22 +22,21 @@ from burridge_knopoff.config import (
 )
 from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import (
-    CLAIM_SOURCES,
-    REPORT_SOURCES,
-    STABILITY_SOURCES,
-    source_fingerprint,
-)
+from burridge_knopoff.kernel_build import KernelError, check_kernel
 from burridge_knopoff.settings import SOLVERS
+from burridge_knopoff.sources import source_fingerprint
+from burridge_knopoff.study_record import write_study_record
 from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plan import announce
 
+SNAKEFILE = Path(workflow.main_snakefile).resolve()
 BEGIN = time.monotonic()
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
+DEFAULT_CONFIG = Path(workflow.basedir, "config/paper.yaml")
 if not workflow.configfiles:
 
-    configfile: str(Path(workflow.basedir, "config/paper.yaml"))
+    configfile: str(DEFAULT_CONFIG)
 
 
 if len(workflow.configfiles) > 1:
@@ -50,6 +50,7 @@ CLAIMS_FILE = str(Path(workflow.basedir, "config/claims.yaml"))
 CLAIMS_SCHEMA = str(Path(workflow.basedir, "workflow/schemas/claims.schema.yaml"))
 
 try:
+    check_kernel(compiled=True)
     read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
     check_file(workflow.configfiles[0])
     STUDY = load_study(
@@ -57,8 +58,19 @@ try:
         read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),
         display_path(workflow.configfiles[0]),
     )
-except ConfigError as error:
+except (ConfigError, KernelError) as error:
     sys.exit(f"{error}")
+
+# How the study is named to `snakemake`: its config file, empty for the default one, and all arguments.
+CONFIG_FILE = os.path.relpath(workflow.configfiles[0])
+if Path(CONFIG_FILE).resolve() == DEFAULT_CONFIG.resolve():
+    CONFIG_FILE = ""
+ARGUMENTS = [
+    *(["-s", os.path.relpath(SNAKEFILE)] if SNAKEFILE != Path("Snakefile").resolve() else []),
+    *(["--configfile", CONFIG_FILE] if CONFIG_FILE else []),
+    *(["--config"] if workflow.config_settings.config else []),
+    *(f"{key}={value}" for key, value in workflow.config_settings.config.items()),
+]
 
 RESULTS = f"results/{STUDY.name}"
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
@@ -68,6 +80,11 @@ POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 shell.prefix(
     f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
 )
+
+
+def script_sources(name):
+    """Return the fingerprint of a script and of all that it imports: what a rule does, comments left out."""
+    return source_fingerprint(Path(workflow.basedir, f"workflow/scripts/{name}.py"))
 
 
 # The least in which `make setup` works: Python, a C compiler and make. Used only if jobs are to run in containers.
@@ -111,6 +128,7 @@ rule all:
 
 
 onstart:
+    write_study_record(RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS))
     announce(workflow)
 
 
