@@ -11,6 +11,14 @@ from snakemake.utils import min_version
 
 min_version("9.0")
 
+from burridge_knopoff.kernel_build import KernelError, check_kernel
+
+# Before anything imports the kernel. What is to run can be seen without one.
+try:
+    check_kernel(compiled=not workflow.output_settings.dryrun)
+except KernelError as error:
+    sys.exit(f"{error}")
+
 from burridge_knopoff.claims.ledger import read_claims
 from burridge_knopoff.closing import closing_lines
 from burridge_knopoff.config import (
@@ -22,7 +30,6 @@ from burridge_knopoff.config import (
 )
 from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.kernel_build import KernelError, check_kernel
 from burridge_knopoff.settings import SOLVERS
 from burridge_knopoff.sources import source_fingerprint
 from burridge_knopoff.study_record import write_study_record
@@ -30,6 +37,9 @@ from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plan import announce
 
 SNAKEFILE = Path(workflow.main_snakefile).resolve()
+# One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 BEGIN = time.monotonic()
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
@@ -50,7 +60,6 @@ CLAIMS_FILE = str(Path(workflow.basedir, "config/claims.yaml"))
 CLAIMS_SCHEMA = str(Path(workflow.basedir, "workflow/schemas/claims.schema.yaml"))
 
 try:
-    check_kernel(compiled=True)
     read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
     check_file(workflow.configfiles[0])
     STUDY = load_study(
@@ -58,7 +67,7 @@ try:
         read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),
         display_path(workflow.configfiles[0]),
     )
-except (ConfigError, KernelError) as error:
+except ConfigError as error:
     sys.exit(f"{error}")
 
 # How the study is named to `snakemake`: its config file, empty for the default one, and all arguments.

@@ -53,6 +53,7 @@ class LogHandler(LogHandlerBase):
         self._text.addFilter(
             DefaultFilter(quiet, settings.debug_dag, settings.verbose, settings.dryrun, settings.printshellcmds)
         )
+        self._whole_logs = settings.show_failed_logs
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
         self._silent = settings.dryrun or is_quiet_about(quiet, "progress")
         self._tally = Tally()
@@ -92,8 +93,9 @@ class LogHandler(LogHandlerBase):
 
     def _short(self, record: LogRecord) -> bool:
         """Tell whether a line is enough for a failed job: its block lists all input, which may be 10,000 files."""
-        known = getattr(record, "jobid", None) in self._names
-        return known and getattr(record, "event", None) == LogEvent.JOB_ERROR and not self._everything
+        if self._everything or self._whole_logs or getattr(record, "event", None) != LogEvent.JOB_ERROR:
+            return False
+        return getattr(record, "jobid", None) in self._names
 
     def _in_a_line(self, record: Any) -> LogRecord:
         """Return the record of a failed job as one line: job, reason, log."""
