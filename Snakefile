@@ -75,7 +75,11 @@ CONFIG_FILE = os.path.relpath(workflow.configfiles[0])
 if Path(CONFIG_FILE).resolve() == DEFAULT_CONFIG.resolve():
     CONFIG_FILE = ""
 ARGUMENTS = [
-    *(["-s", os.path.relpath(SNAKEFILE)] if SNAKEFILE != Path("Snakefile").resolve() else []),
+    *(
+        ["-s", os.path.relpath(SNAKEFILE)]
+        if SNAKEFILE != Path("Snakefile").resolve()
+        else []
+    ),
     *(["--configfile", CONFIG_FILE] if CONFIG_FILE else []),
     *(["--config"] if workflow.config_settings.config else []),
     *(f"{key}={value}" for key, value in workflow.config_settings.config.items()),
@@ -137,7 +141,9 @@ rule all:
 
 
 onstart:
-    write_study_record(RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS))
+    write_study_record(
+        RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS)
+    )
     announce(workflow)
 
 
