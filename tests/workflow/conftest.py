@@ -26,26 +26,29 @@ chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 
 
 class Study:
-    """A folder in which Snakemake runs a config through the repository's Snakefile."""
+    """A folder in which Snakemake runs a config through the Snakefile, and with the package, of a checkout."""
 
-    def __init__(self, folder: Path, config: str = TINY) -> None:
+    def __init__(self, folder: Path, config: str = TINY, repository: Path = REPOSITORY) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
         self.config = folder / "study.yaml"
         self.config.write_text(config)
+        self.repository = repository
         self.output = ""
 
     def command(self, *arguments: str, cores: int = 2) -> list[str]:
         """Return the command line; arguments follow the usual ones."""
         snakemake = str(Path(sys.executable).parent / "snakemake")
         return [
-            *(snakemake, f"-c{cores}", "-s", str(REPOSITORY / "Snakefile")),
+            *(snakemake, f"-c{cores}", "-s", str(self.repository / "Snakefile")),
             *("--configfile", str(self.config), "--nocolor", *arguments),
         ]
 
     def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
         """Run Snakemake to its end; standard output and error are captured."""
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+        if self.repository != REPOSITORY:
+            environment["PYTHONPATH"] = str(self.repository / "src")
         return subprocess.run(
             self.command(*arguments, cores=cores), cwd=self.folder, capture_output=True, text=True, env=environment
         )
