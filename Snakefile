@@ -85,6 +85,7 @@ wildcard_constraints:
     blocks=r"\d+",
 
 
+include: "workflow/rules/groups.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/summarize.smk"
 include: "workflow/rules/attractors.smk"
