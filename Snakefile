@@ -63,6 +63,9 @@ except ConfigError as error:
 RESULTS = f"results/{STUDY.name}"
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 
+# Programs that submit jobs tell the studies of a folder apart by it.
+os.environ["BK_RESULTS"] = RESULTS
+
 
 # Jobs find the `bk` of this environment, activated or not.
 shell.prefix(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import os
@@ -10,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -88,17 +90,20 @@ class Run:
             self.process = subprocess.Popen(
                 command, cwd=study.folder, start_new_session=True, stdout=log, stderr=log, env=environment
             )
+        threading.Thread(target=self._note, daemon=True).start()
+
+    def _note(self) -> None:
+        while self.process.poll() is None:
+            for path in self.study.folder.glob(".snakemake/slurm/*/record.json"):
+                # It may be half written, or removed meanwhile.
+                with contextlib.suppress(OSError, ValueError):
+                    self.makes[path.parent.name] = json.loads(path.read_text())["targets"]
+            time.sleep(0.1)
 
     def until(self, reached: Callable[[], object], seconds: float = 120.0) -> None:
         """Wait until something is true."""
         end = time.monotonic() + seconds
         while not reached():
-            for path in self.study.folder.glob(".snakemake/slurm/*/record.json"):
-                try:
-                    self.makes[path.parent.name] = json.loads(path.read_text())["targets"]
-                except (OSError, ValueError):
-                    # Being written, or removed.
-                    continue
             assert time.monotonic() < end, self.log.read_text()
             time.sleep(0.1)
 
@@ -193,3 +198,50 @@ def test_a_job_that_slurm_refuses_is_told(cluster, tmp_path):
     assert run.process.returncode != 0
     assert "submit.py: sbatch: error: Batch job submission failed: Invalid partition name" in run.log.read_text()
     assert not (study.folder / target).exists()
+
+
+def test_submit_finds_what_another_snakemake_submitted(cluster, tmp_path):
+    """The same script is not submitted again while its job runs or has ended well, unless its input is newer."""
+    (tmp_path / "input.txt").touch()
+    script = tmp_path / "script.sh"
+    script.write_text(
+        '# properties = {"type": "single", "rule": "wait", "threads": 1, "resources": {"mem_mb": 10, "runtime": 1}}\n'
+        "sh -c 'until [ -e ready ]; do sleep 0.1; done; exit $(cat ready)' --wait-for-files input.txt --attempt 1 "
+        f"--target-jobs wait:a=1 wait:a=2 --snakefile {REPOSITORY}/Snakefile"
+    )
+
+    def call(program: str, argument: object, study: str = "tiny") -> str:
+        command = ["env", f"BK_RESULTS=results/{study}", PROFILE / program, str(argument)]
+        return subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout.strip()
+
+    def wait_for(job: str, status: str) -> None:
+        end = time.monotonic() + 60.0
+        while call("status.py", job) != status:
+            assert time.monotonic() < end
+            time.sleep(0.2)
+
+    first = call("submit.py", script)
+    assert call("submit.py", script) == first
+    # The other study is another matter.
+    other = call("submit.py", script, study="other")
+    assert other != first
+    assert [call("status.py", job) for job in (first, other)] == ["running"] * 2
+    # With newer input the old job is of no use.
+    (tmp_path / "input.txt").touch()
+    second = call("submit.py", script)
+    assert second.partition(":")[2] != first.partition(":")[2]
+    wait_for(first, "failed")
+    (tmp_path / "ready").write_text("1")
+    wait_for(second, "failed")
+    wait_for(other, "failed")
+    third = call("submit.py", script)
+    assert third not in (first, second)
+    (tmp_path / "ready").write_text("0")
+    name = third.partition(":")[2]
+    while name in cluster.queue():
+        time.sleep(0.1)
+    # It ended well, and no Snakemake knows.
+    assert call("submit.py", script) == f"0:{name}"
+    assert call("status.py", f"0:{name}") == "success"
+    # Now one does: whoever asks for it again wants it made again.
+    assert call("submit.py", script).partition(":")[2] != name

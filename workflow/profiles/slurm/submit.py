@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Submits a job script of Snakemake to Slurm and prints `<Slurm's number>:<name>`; makes nothing twice.
 
-    submit.py JOBSCRIPT
+    BK_RESULTS=results/STUDY submit.py JOBSCRIPT
 
 A job of an earlier run that makes the same files from the same study, and runs or has ended well without a Snakemake
 to take note, is returned instead. One that would make some of the files from something else is cancelled, and the new
@@ -12,6 +12,7 @@ Exit code 1, with one line on stderr, if Slurm refuses the job.
 
 import hashlib
 import json
+import os
 import re
 import secrets
 import shlex
@@ -27,6 +28,7 @@ STUDY_OPTIONS = ("", "--snakefile", "--configfiles", "--config")
 WAIT_OPTIONS = ("--wait-for-files", "--wait-for-files-file")
 #: Below the folder of the Snakefile: what decides a result, given the config.
 SOURCES = ("Snakefile", "config/claims.yaml", "src", "workflow")
+DEFAULT_CONFIG = "config/paper.yaml"
 #: What the Snakemake inside a job takes beside the job: MB, and minutes to start on a slow file system.
 SNAKEMAKE_MB, SNAKEMAKE_MINUTES = 250, 5
 
@@ -46,7 +48,8 @@ def main():
     script = Path(sys.argv[1]).read_text()
     properties = json.loads(re.search("^# properties = (.*)$", script, re.MULTILINE).group(1))
     options = read_options(script)
-    targets = sorted(options["--target-jobs"])
+    # Two studies may run in one folder; their jobs have the same names.
+    targets = sorted(f"{os.environ['BK_RESULTS']} {target}" for target in options["--target-jobs"])
     study = study_digest(options)
     try:
         live = live_jobs()
@@ -87,7 +90,7 @@ def study_digest(options):
     digest = hashlib.sha256()
     digest.update(json.dumps([options.get(name) for name in STUDY_OPTIONS]).encode())
     root = Path(options["--snakefile"][0]).parent
-    files = [Path(path) for path in options.get("--configfiles", [])]
+    files = [Path(path) for path in options.get("--configfiles", [root / DEFAULT_CONFIG])]
     for name in SOURCES:
         path = root / name
         files += [path] if path.is_file() else sorted(path.rglob("*"))
