@@ -21,11 +21,7 @@ import pytest
 from tests.workflow.conftest import REPOSITORY, TINY, Study
 
 MISSING = [program for program in ("sbatch", "slurmctld", "slurmd", "munged") if shutil.which(program) is None]
-pytestmark = [
-    pytest.mark.skipif(bool(MISSING), reason=f"Slurm is not installed: {', '.join(MISSING)}"),
-    # One cluster and one queue for all of them.
-    pytest.mark.xdist_group("slurm"),
-]
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"Slurm is not installed: {', '.join(MISSING)}")
 
 SCRIPT = REPOSITORY / "tests" / "slurm" / "cluster.sh"
 PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm"
@@ -100,7 +96,7 @@ class Run:
                     self.makes[path.parent.name] = json.loads(path.read_text())["targets"]
             time.sleep(0.1)
 
-    def until(self, reached: Callable[[], object], seconds: float = 120.0) -> None:
+    def until(self, reached: Callable[[], object], seconds: float = 600.0) -> None:
         """Wait until something is true."""
         end = time.monotonic() + seconds
         while not reached():
@@ -115,7 +111,7 @@ class Run:
 
     def end(self) -> str:
         """Wait for the end, require success, and return the log."""
-        self.until(lambda: self.process.poll() is not None, 300.0)
+        self.until(lambda: self.process.poll() is not None, 1800.0)
         assert self.process.returncode == 0, self.log.read_text()
         return self.log.read_text()
 
