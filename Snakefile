@@ -88,6 +88,9 @@ ARGUMENTS = [
 RESULTS = f"results/{STUDY.name}"
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 
+# Programs that submit jobs tell the studies of a folder apart by it.
+os.environ["BK_RESULTS"] = RESULTS
+
 
 # Jobs find the `bk` of this environment, activated or not.
 shell.prefix(
@@ -115,6 +118,7 @@ wildcard_constraints:
     blocks=r"\d+",
 
 
+include: "workflow/rules/groups.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/summarize.smk"
 include: "workflow/rules/attractors.smk"
