@@ -24,13 +24,13 @@ rule basin_tile:
     benchmark:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/tile{{tile}}.tsv"
     wildcard_constraints:
-        tile=r"\d+",
+        tile="|".join(map(str, range(STUDY.config["basins"]["tiles"]))),
     threads: STUDY.config["basins"]["threads"]
     resources:
         mem_mb=400,
         runtime=240,
     params:
-        a=lambda wildcards: STUDY.grid[wildcards.a],
+        a=lambda wildcards: STUDY.value(wildcards.a),
         config=BASIN_CONFIG,
         sources=source_fingerprint((*STABILITY_SOURCES, "summaries/basins.py")),
     message:
@@ -53,7 +53,7 @@ rule basin_pairs:
         mem_mb=400,
         runtime=240,
     params:
-        a=lambda wildcards: STUDY.grid[wildcards.a],
+        a=lambda wildcards: STUDY.value(wildcards.a),
         config=BASIN_CONFIG,
         sources=source_fingerprint((*STABILITY_SOURCES, "summaries/basins.py")),
     message:
