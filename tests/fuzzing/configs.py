@@ -239,8 +239,8 @@ def _check_options(study: Study) -> None:
     for law in ("linearized", "nonlinear"):
         for solver in (None, *study.other_solvers(law)):
             for initial, a in ((study.initial[0], min(study.grid)), (study.initial[-1], max(study.grid))):
-                line = shlex.split(study.options(law, initial, a, solver))
-                options = build_parser().parse_args(["simulate", *line, "--out", "x.nc"])
+                line = shlex.split(study.command(law, initial, a, solver))
+                options = build_parser().parse_args([*line[1:], "--out", "x.nc"])
                 state = study.config["initial"][initial]
                 assert options.a == study.grid[a]
                 assert options.initial == initial

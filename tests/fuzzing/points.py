@@ -6,13 +6,20 @@ from pathlib import Path
 
 import numpy as np
 
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.command import simulate_command
 from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
-from burridge_knopoff.simulation import simulate
-from burridge_knopoff.summaries.points import PointError, read_run
+from burridge_knopoff.dataset.seal import BadFile
+from burridge_knopoff.friction import Friction
+from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.settings import Settings
+from burridge_knopoff.simulation import run
+from burridge_knopoff.summaries.points import read_run
 from tests.fuzzing.source import Source
 
 NAMES = tuple(POINT_VARIABLES)
-SETTINGS = {"transient": 10.0, "window": 20.0, "batches": 2, "event_window": 5.0, "trajectory": 1.0}
+SETTINGS = Settings(transient=10.0, window=20.0, batches=2, event_window=5.0, trajectory=1.0)
+STATE = PAPER_STATES["plus"]
 
 
 class Points:
@@ -22,13 +29,14 @@ class Points:
         self.path = folder / "fuzzed.nc"
         self.content = []
         for a in (0.08, 0.2):
-            write_point(simulate("linearized", a, "plus", **SETTINGS), self.path)
+            write_point(run(Chain(3), Friction("linearized", a), STATE, SETTINGS), self.path)
             self.content.append(self.path.read_bytes())
         self.path.write_bytes(self.content[0])
+        self.command = simulate_command("linearized", 0.08, STATE, SETTINGS)
         self.values = self._read()
 
     def _read(self) -> dict[str, np.ndarray]:
-        return read_run(self.path, "linearized", "plus", 0.08, NAMES)
+        return read_run(self.path, self.command, NAMES)
 
     def damaged(self, data: bytes) -> bytes:
         """Return the first point with a few bits, bytes or stretches changed, moved, cut out or put in."""
@@ -68,7 +76,7 @@ class Points:
         self.path.write_bytes(content)
         try:
             values = self._read()
-        except PointError as error:
+        except BadFile as error:
             message = str(error)
             assert message.startswith(f"{self.path}: "), message
             assert "\n" not in message, message

@@ -21,12 +21,15 @@ rule two_blocks:
         two_blocks=CHAINS["two_blocks"],
         settings={
             key: STUDY.config[key]
-            for key in (*CHAIN_MODEL, "transient", "window", "batches")
+            for key in (
+                *CHAIN_MODEL,
+                *("transient", "window", "batches", "lyapunov_alignment"),
+            )
         },
         threshold=STUDY.config["synchronization_threshold"],
         motion=STUDY.config["motion"],
         agreement=STUDY.config["agreement"],
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/two_blocks.py")),
+        sources=script_sources("two_blocks"),
     message:
         "two blocks: linearized against nonlinear law"
     script:
@@ -48,6 +51,8 @@ rule figure_two_blocks:
         f"{RESULTS}/logs/figure_two_blocks.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_two_blocks.tsv"
+    params:
+        sources=script_sources("figure_two_blocks"),
     message:
         "figure: two blocks under both laws"
     script:
