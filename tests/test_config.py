@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from burridge_knopoff.config import ConfigError, all_points, load_study, read_config, read_schema
 from burridge_knopoff.config.checks import LAW_SOLVERS
+from tests.bad_configs import BAD_FILES
 
 NAN = float("nan")
 INFINITE = float("inf")
@@ -173,6 +174,20 @@ def test_bad_configs_get_one_line(schema, changes, words):
         load(schema, **changes)
     message = str(caught.value)
     assert message.startswith("config/test.yaml: ")
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+@pytest.mark.parametrize("case", [name for name in BAD_FILES if name != "template"])
+def test_bad_files_get_one_line(tmp_path, schema, case):
+    content, words = BAD_FILES[case]
+    path = tmp_path / "study.yaml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(ConfigError) as caught:
+        load_study(read_config(path), schema, str(path))
+    message = str(caught.value)
+    assert "study.yaml: " in message
     assert "\n" not in message
     for word in words:
         assert word in message

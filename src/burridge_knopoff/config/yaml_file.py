@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MOST_LEVELS = 20
 
 #: Keys, values and lists of a file, those of an alias counted wherever it stands: ten lines of them make 10^9.
-MOST_VALUES = 200_000
+MOST_VALUES = 50_000
 
 #: Characters of a number.
 LONGEST_NUMBER = 100
