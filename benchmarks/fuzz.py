@@ -45,7 +45,7 @@ def checks(target: str, folder: Path):
         from tests.fuzzing import configs
 
         def config(data: bytes) -> bool:
-            content = data[1:] if data[:1] < b"\x80" else configs.mutated(data[1:])
+            content = data[1:] if data[:1] < b"\x30" else configs.mutated(data[1:])
             return configs.check_config(content, folder)
 
         return config, [b"\0" + seed for seed in configs.SEEDS] + [b"\xff" + bytes(range(40))]

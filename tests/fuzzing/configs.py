@@ -22,6 +22,7 @@ from tests.fuzzing.source import Source
 REPOSITORY = Path(__file__).parent.parent.parent
 SCHEMA = read_schema(REPOSITORY / "workflow" / "schemas" / "config.schema.yaml")
 VALID = [path.read_text() for path in sorted((REPOSITORY / "config").rglob("*.yaml")) if path.name != "claims.yaml"]
+VALID += 3 * [(Path(__file__).parent / "every_key.yaml").read_text()]
 VALID.append((REPOSITORY / "config" / "README.md").read_text().split("```yaml\n")[1].split("```")[0])
 SEEDS = [text.encode() for text in VALID]
 SEEDS += [text.encode() if isinstance(text, str) else text for text, _ in BAD_FILES.values() if len(text) < 5000]
