@@ -1,12 +1,13 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
 # `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
+# `make fuzz`: an hour of broken configs, points and runs.
 
 PYTHON ?= python3
 BIN := .venv/bin
 KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup test benchmark docs lock clean
+.PHONY: study setup test benchmark fuzz docs lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -55,6 +56,10 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/study.py
 	.venv-benchmark/bin/python benchmarks/stages.py
 	.venv-benchmark/bin/python benchmarks/stages.py --target chains
+
+# An hour on one core; bad inputs lie in fuzzed/.
+fuzz: .venv/kernel .venv-benchmark/ready
+	.venv-benchmark/bin/python benchmarks/fuzz.py
 
 # The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains.
 docs: setup

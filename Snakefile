@@ -7,7 +7,7 @@ import time
 from dataclasses import asdict
 from pathlib import Path
 
-from snakemake.utils import min_version
+from snakemake.utils import min_version, update_config
 
 min_version("9.0")
 
@@ -24,8 +24,8 @@ from burridge_knopoff.closing import closing_lines
 from burridge_knopoff.config import (
     ConfigError,
     all_points,
-    check_file,
     load_study,
+    read_config,
     read_schema,
 )
 from burridge_knopoff.files import display_path
@@ -33,6 +33,7 @@ from burridge_knopoff.friction import LAWS
 from burridge_knopoff.settings import SOLVERS
 from burridge_knopoff.sources import source_fingerprint
 from burridge_knopoff.study_record import write_study_record
+from snakemake_logger_plugin_study.command_line import SEVERAL_FILES
 from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plan import announce
 
@@ -50,7 +51,7 @@ if not workflow.configfiles:
 
 
 if len(workflow.configfiles) > 1:
-    sys.exit("--configfile: several files are not allowed: one file is one study")
+    sys.exit(SEVERAL_FILES)
 if " " in sys.executable:
     sys.exit(
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
@@ -61,9 +62,11 @@ CLAIMS_SCHEMA = str(Path(workflow.basedir, "workflow/schemas/claims.schema.yaml"
 
 try:
     read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
-    check_file(workflow.configfiles[0])
+    # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
+    STUDY_CONFIG = read_config(workflow.configfiles[0])
+    update_config(STUDY_CONFIG, workflow.config_settings.config)
     STUDY = load_study(
-        config,
+        STUDY_CONFIG,
         read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),
         display_path(workflow.configfiles[0]),
     )
@@ -115,7 +118,6 @@ wildcard_constraints:
     law="|".join(LAWS),
     initial="|".join(STUDY.initial),
     a=r"\d+\.\d+",
-    blocks=r"\d+",
 
 
 include: "workflow/rules/groups.smk"

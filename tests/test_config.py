@@ -4,12 +4,12 @@ import copy
 import re
 
 import pytest
-import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.config import ConfigError, all_points, check_file, load_study, read_schema
+from burridge_knopoff.config import ConfigError, all_points, load_study, read_config, read_schema
 from burridge_knopoff.config.checks import LAW_SOLVERS
+from tests.bad_configs import BAD_FILES
 
 NAN = float("nan")
 INFINITE = float("inf")
@@ -50,7 +50,7 @@ BAD = [
     ({"a": [{"from": 0, "to": 0.3, "step": 0.007}]}, ["a[0].step: 0.007", "divide"]),
     ({"a": [{"from": 0, "to": 0.3, "step": 0}]}, ["a[0].step: 0", "> 0"]),
     ({"a": [{"from": 0, "to": 0.3, "step": -0.1}]}, ["a[0].step: -0.1"]),
-    ({"a": [{"from": 0, "to": 0.3, "step": 1e-9}]}, ["a[0].step: 1e-09", "1000000"]),
+    ({"a": [{"from": 0, "to": 0.3, "step": 1e-9}]}, ["a[0].step: 1e-09", "100000"]),
     ({"a": [{"from": 0.3, "to": 0.1, "step": 0.1}]}, ["a[0].to: 0.1"]),
     ({"a": [{"from": 0, "to": INFINITE, "step": 0.1}]}, ["a[0].to: inf"]),
     ({"a": [{"from": NAN, "to": 1, "step": 0.1}]}, ["a[0].from: nan"]),
@@ -88,6 +88,14 @@ BAD = [
     ({"batches": 7.0}, ["batches: 7.0", "whole number"]),
     ({"window": 10**400}, ["window: 1000"]),
     ({"sampling": 1e-5}, ["sampling: 1e-05", "samples"]),
+    ({"window": 1e8, "sampling": 1e3}, ["window: 100000000.0", "numbers"]),
+    ({"transient": 1e8, "sampling": 1e3}, ["transient: 100000000.0", "numbers"]),
+    ({"window": 1e7, "events": "all", "sampling": 1e3}, ["events: 'all'", "numbers"]),
+    ({"window": 1e7, "event_window": 1e7, "sampling": 1e3}, ["event_window: 10000000.0", "numbers"]),
+    ({"solver": {"nonlinear": "rk4"}, "step": 1e-9}, ["step: 1e-09", "3.33e+09 steps"]),
+    ({"basins": {"pixels": 16384, "nonlinear": [0.1]}}, ["basins.pixels: 16384", "numbers"]),
+    ({"basins": {"pixels": 9000, "tiles": 1, "linearized": [0.1], "nonlinear": []}}, ["basins.tiles: 1", "numbers"]),
+    ({"basins": {"pairs": 10**7}}, ["basins.pairs: 10000000", "numbers"]),
     ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "samples"]),
     ({"study": "x\n"}, ["study: 'x\\n'"]),
     ({"initial": {1: PAIR}}, ["initial.1 is not allowed as a key"]),
@@ -171,6 +179,20 @@ def test_bad_configs_get_one_line(schema, changes, words):
         assert word in message
 
 
+@pytest.mark.parametrize("case", [name for name in BAD_FILES if name != "template"])
+def test_bad_files_get_one_line(tmp_path, schema, case):
+    content, words = BAD_FILES[case]
+    path = tmp_path / "study.yaml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(ConfigError) as caught:
+        load_study(read_config(path), schema, str(path))
+    message = str(caught.value)
+    assert "study.yaml: " in message
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
 @pytest.mark.parametrize(
     ("text", "key"),
     [
@@ -184,14 +206,13 @@ def test_a_key_that_stands_twice_is_refused(tmp_path, text, key):
     path = tmp_path / "twice.yaml"
     path.write_text(text)
     with pytest.raises(ConfigError, match=rf"twice\.yaml: {key}: stands twice \(line \d\)"):
-        check_file(path)
+        read_config(path)
 
 
 @pytest.mark.parametrize("name", ["paper", "smoke"])
 def test_the_shipped_configs_are_valid(repository, schema, name):
     path = repository / "config" / f"{name}.yaml"
-    check_file(path)
-    study = load_study(yaml.safe_load(path.read_text()), schema, str(path))
+    study = load_study(read_config(path), schema, str(path))
     assert study.name == name
     if name == "paper":
         assert len(all_points(study)) == 484
@@ -228,7 +249,7 @@ def test_command_of_a_point(schema):
     assert "--lyapunov-exponents 6" in options
     assert "--lyapunov-alignment 250.0" in options
     assert "--position=-0.989,-0.993,-0.991" in study.command("nonlinear", "minus", "0.0800")
-    with pytest.raises(ConfigError, match=re.escape("a0.0801.nc")):
+    with pytest.raises(ConfigError, match=re.escape("a0.0801: not a point of study test")):
         study.command("linearized", "plus", "0.0801")
 
 

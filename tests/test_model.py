@@ -65,7 +65,16 @@ def test_bad_friction(a):
 
 
 @pytest.mark.parametrize(
-    ("position", "velocity"), [((0.0, float("nan")), (0.1, 0.1)), ((0.0, 1e7), (0.1, 0.1)), ((0.0, 0.0), (0.1,))]
+    ("position", "velocity"),
+    [
+        ((0.0, float("nan")), (0.1, 0.1)),
+        ((0.0, 1e7), (0.1, 0.1)),
+        ((0.0, 0.0), (0.1,)),
+        ((0.0, 10**400), (0.1, 0.1)),
+        ((0.0, "1"), (0.1, 0.1)),
+        ((0.0, 0.0), (0.1, True)),
+        ((0.0, None), (0.1, 0.1)),
+    ],
 )
 def test_bad_states(position, velocity):
     with pytest.raises(ValueError, match=r"position|velocity"):

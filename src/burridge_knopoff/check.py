@@ -10,7 +10,7 @@ from pathlib import Path
 import netCDF4
 
 from burridge_knopoff.config import ConfigError, Study, all_points
-from burridge_knopoff.config.study import read_yaml
+from burridge_knopoff.config.yaml_file import read_yaml
 from burridge_knopoff.dataset.point import point_identity
 from burridge_knopoff.dataset.seal import BadFile, read_seal
 from burridge_knopoff.friction import LAWS

@@ -36,10 +36,26 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}\n")
 
 
+def _number(text: str) -> float:
+    # Python also takes 1_0 for ten, and the digits of every script.
+    if not re.fullmatch(r"[-+.0-9a-zA-Z]+", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: a number")
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: a number") from None
+
+
+def _count(text: str) -> int:
+    if not re.fullmatch(r"[-+]?[0-9]{1,9}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: a whole number")
+    return int(text)
+
+
 def _numbers(text: str) -> tuple[float, ...]:
     try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
+        return tuple(_number(part) for part in text.split(","))
+    except argparse.ArgumentTypeError:
         raise argparse.ArgumentTypeError(f"{text!r} is not allowed: numbers with commas between them") from None
 
 
@@ -76,8 +92,8 @@ def build_parser() -> argparse.ArgumentParser:
     )
     model = simulate.add_argument_group("model")
     model.add_argument("--law", required=True, metavar="LAW", help="friction law: linearized | nonlinear")
-    model.add_argument("--a", required=True, type=float, help="friction parameter, 0 <= a < 2")
-    model.add_argument("--v", type=float, default=0.1, help="driver velocity (default: %(default)s)")
+    model.add_argument("--a", required=True, type=_number, help="friction parameter, 0 <= a < 2")
+    model.add_argument("--v", type=_number, default=0.1, help="driver velocity (default: %(default)s)")
     model.add_argument("--contact", default="one_sided", help="one_sided | symmetric (default: %(default)s)")
     state = simulate.add_argument_group("initial state")
     state.add_argument(
@@ -87,7 +103,7 @@ def build_parser() -> argparse.ArgumentParser:
         metavar="NAME",
         help="minus | plus, or a name for the numbers given below (default: %(default)s)",
     )
-    state.add_argument("--blocks", type=int, help="number of blocks N (default: as many as positions)")
+    state.add_argument("--blocks", type=_count, help="number of blocks N (default: as many as positions)")
     state.add_argument("--position", type=_numbers, metavar="U1,U2,...", help="initial positions U(0)")
     state.add_argument("--velocity", type=_numbers, metavar="U1',U2',...", help="initial velocities U'(0)")
     state.add_argument(
@@ -101,34 +117,39 @@ def build_parser() -> argparse.ArgumentParser:
         default="",
         help="map (linearized law) | series | rk4 (default: map for linearized, series for nonlinear)",
     )
-    run.add_argument("--step", type=float, default=1e-3, help="step of rk4 (default: %(default)s)")
-    run.add_argument("--transient", type=float, default=3000.0, help="time before the window (default: %(default)s)")
-    run.add_argument("--window", type=float, default=7000.0, help="averaging time of J (default: %(default)s)")
-    run.add_argument("--batches", type=int, default=7, help="batches for the error of <J> (default: %(default)s)")
+    run.add_argument("--step", type=_number, default=1e-3, help="step of rk4 (default: %(default)s)")
+    run.add_argument("--transient", type=_number, default=3000.0, help="time before the window (default: %(default)s)")
+    run.add_argument("--window", type=_number, default=7000.0, help="averaging time of J (default: %(default)s)")
+    run.add_argument("--batches", type=_count, default=7, help="batches for the error of <J> (default: %(default)s)")
     run.add_argument(
-        "--lyapunov-exponents", type=int, default=3, help="Lyapunov exponents, largest first (default: %(default)s)"
+        "--lyapunov-exponents", type=_count, default=3, help="Lyapunov exponents, largest first (default: %(default)s)"
     )
     run.add_argument(
         "--lyapunov-alignment",
-        type=float,
+        type=_number,
         default=1000.0,
         help="time before the window in which their directions settle (default: %(default)s)",
     )
     kept = simulate.add_argument_group("what is kept")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
-    kept.add_argument("--sampling", type=float, default=5.0, help="interval of the samples of J (default: %(default)s)")
+    kept.add_argument(
+        "--sampling", type=_number, default=5.0, help="interval of the samples of J (default: %(default)s)"
+    )
     kept.add_argument(
         "--events",
         default="window",
         help="window: states of the last ones | all: of all | none: no events (default: %(default)s)",
     )
     kept.add_argument(
-        "--event-window", type=float, default=1500.0, help="length of the part with states (default: %(default)s)"
+        "--event-window", type=_number, default=1500.0, help="length of the part with states (default: %(default)s)"
     )
     kept.add_argument(
-        "--trajectory", type=float, default=30.0, help="length of the kept last part of the run (default: %(default)s)"
+        "--trajectory",
+        type=_number,
+        default=30.0,
+        help="length of the kept last part of the run (default: %(default)s)",
     )
-    kept.add_argument("--trajectory-sampling", type=float, default=0.05, help="its interval (default: %(default)s)")
+    kept.add_argument("--trajectory-sampling", type=_number, default=0.05, help="its interval (default: %(default)s)")
     check = commands.add_parser(
         "check",
         help="look for points that are missing, corrupt, stale or failed",

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 CONTACTS = ("one_sided", "symmetric")
 STARTS = ("moving", "tested")
@@ -23,11 +24,12 @@ class InitialState:
 
     def __post_init__(self) -> None:
         for key in ("position", "velocity"):
-            values = tuple(float(value) for value in getattr(self, key))
-            object.__setattr__(self, key, values)
+            values = tuple(getattr(self, key))
             for value in values:
-                if not math.isfinite(value) or abs(value) > 1e6:
+                number = isinstance(value, int | float | np.floating | np.integer) and not isinstance(value, bool)
+                if not number or not -1e6 <= value <= 1e6:
                     raise ValueError(f"{key}: {value!r} is not allowed: finite numbers within ±1e6")
+            object.__setattr__(self, key, tuple(float(value) for value in values))
         if len(self.velocity) != len(self.position):
             raise ValueError(
                 f"velocity: {len(self.velocity)} numbers for {len(self.position)} positions; one a block is needed"

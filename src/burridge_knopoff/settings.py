@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from burridge_knopoff.chain import MAXIMUM_BLOCKS
@@ -10,6 +9,15 @@ from burridge_knopoff.initial import CONTACTS, STARTS
 
 SOLVERS = ("map", "series", "rk4")
 EVENTS = ("none", "window", "all")
+
+#: Numbers that a run keeps of one kind at most: 800 MB.
+MOST_NUMBERS = 1e8
+
+#: Stops and starts of a block in a unit of time, as usual; runs with more take more memory than is reckoned here.
+USUAL_EVENTS = 0.5
+
+#: Steps of rk4 times blocks, at most: an hour of work.
+MOST_STEPS = 1e10
 
 
 @dataclass(frozen=True)
@@ -53,7 +61,7 @@ class Settings:
         for key, allowed in (("contact", CONTACTS), ("start", STARTS), ("events", EVENTS)):
             if getattr(self, key) not in allowed:
                 raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: {' | '.join(allowed)}")
-        if self.solver and self.solver not in SOLVERS:
+        if self.solver not in ("", *SOLVERS):
             raise ValueError(f"solver: {self.solver!r} is not allowed: {' | '.join(SOLVERS)}")
         _check_range("v", self.v, 1e-6, 1e3)
         _check_range("step", self.step, 1e-9, 10.0)
@@ -69,18 +77,41 @@ class Settings:
             if isinstance(count, bool) or not isinstance(count, int) or not low <= count <= high:
                 raise ValueError(f"{key}: {count!r} is not allowed: {low} to {high}")
         for key, samples in (
-            ("sampling", (self.transient + self.window) / self.sampling),
+            ("sampling", self.duration / self.sampling),
             ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
         ):
             if samples > 1e7:
                 raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: it asks for more than 1e7 samples")
 
     def check_blocks(self, blocks: int) -> None:
-        """Raise ValueError if the settings do not fit a chain of that many blocks."""
+        """Raise ValueError if the settings do not fit a chain of that many blocks, or ask for more than it can do."""
         if self.lyapunov_exponents > 2 * blocks:
             raise ValueError(
                 f"lyapunov_exponents: {self.lyapunov_exponents!r} is not allowed: at most {2 * blocks}, two a block"
             )
+        if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
+            raise ValueError(
+                f"step: {self.step!r} is not allowed: transient and window in at most {MOST_STEPS / blocks:.3g} steps"
+            )
+        for key, numbers in self._kept(blocks).items():
+            if numbers > MOST_NUMBERS:
+                raise ValueError(
+                    f"{key}: {getattr(self, key)!r} is not allowed: the run would keep {numbers:.1e} numbers for it, "
+                    f"at most {MOST_NUMBERS:.0e}"
+                )
+
+    def _kept(self, blocks: int) -> dict[str, float]:
+        """Return how many numbers the run keeps, by the setting that decides it; those of events are an estimate."""
+        rate = 0.0 if self.events == "none" else USUAL_EVENTS * blocks
+        events = rate * self.duration
+        with_states = events if self.events == "all" else rate * min(self.event_window, self.window)
+        return {
+            "trajectory_sampling": (2.0 * blocks + 1.0)
+            * min(self.trajectory, self.duration)
+            / self.trajectory_sampling,
+            "events" if self.events == "all" else "event_window": (2.0 * blocks + 3.0) * with_states,
+            "window" if self.window > self.transient else "transient": 3.0 * events,
+        }
 
     @property
     def duration(self) -> float:
@@ -89,5 +120,5 @@ class Settings:
 
 
 def _check_range(key: str, value: float, low: float, high: float) -> None:
-    if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
         raise ValueError(f"{key}: {value!r} is not allowed: {low:g} to {high:g}")

@@ -24,12 +24,12 @@ def write_study_record(results: str | Path, study: Study, config_file: str | Pat
     arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
     Raises OSError, one line, if the folder cannot be written to.
     """
-    from burridge_knopoff.config.study import read_yaml
+    from burridge_knopoff.config.yaml_file import read_yaml
 
     path = Path(results, NAME)
     values = (arguments, display_path(config_file), read_yaml(config_file), study.config, study.grid)
     text = json.dumps(dict(zip(_KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
-    if not (path.is_file() and path.read_text(encoding="utf-8") == text):
+    if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
 
 
@@ -47,9 +47,11 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not readable ({error}); run snakemake again, it writes it") from None
-    if not isinstance(record, dict) or tuple(record) != _KEYS:
+    types = (str, str, dict, dict, dict)
+    right = isinstance(record, dict) and tuple(record) == _KEYS
+    if not right or not all(isinstance(value, kind) for value, kind in zip(record.values(), types, strict=True)):
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record
 

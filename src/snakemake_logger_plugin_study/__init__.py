@@ -15,7 +15,10 @@ from typing import Any
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
+from burridge_knopoff.config import ConfigError
 from burridge_knopoff.job_log import failure
+from snakemake_logger_plugin_study.command_line import check_command_line
+from snakemake_logger_plugin_study.refusal import one_line
 from snakemake_logger_plugin_study.tally import Tally
 from snakemake_logger_plugin_study.wording import job_name
 
@@ -40,6 +43,10 @@ class LogHandler(LogHandlerBase):
     """Counts what the log tells of jobs, shows it, and hands the rest to Snakemake's own handler."""
 
     def __post_init__(self) -> None:
+        try:
+            check_command_line(sys.argv[1:])
+        except ConfigError as error:
+            sys.exit(str(error))
         from snakemake.logging import ColorizingTextHandler, DefaultFilter, DefaultFormatter, is_quiet_about
 
         settings: Any = self.common_settings
@@ -78,7 +85,7 @@ class LogHandler(LogHandlerBase):
             # A defect of the display must neither end the thread of the log nor hide a message.
             self.handleError(record)
         if not self._replaced(record):
-            self._text.handle(self._in_a_line(record) if self._short(record) else record)
+            self._text.handle(self._in_a_line(record) if self._short(record) else one_line(record))
 
     def _replaced(self, record: LogRecord) -> bool:
         if self._everything:

@@ -1,4 +1,4 @@
-"""How a study runs: targets, reruns, the same bytes, kill and resume, damaged files, bad configs."""
+"""How a study runs: targets, reruns, the same bytes, kill and resume, damaged files."""
 
 import os
 import re
@@ -8,8 +8,7 @@ import time
 
 import pytest
 
-from tests.test_config import BAD
-from tests.workflow.conftest import TINY, Study
+from tests.workflow.conftest import TINY
 
 
 def jobs(output):
@@ -110,28 +109,6 @@ def test_a_damaged_point_stops_its_summaries(copy, damage):
     path.unlink()
     copy.ok()
     assert path.read_bytes() == content
-
-
-@pytest.mark.parametrize(("changes", "words"), BAD[::6])
-def test_bad_configs_stop_before_any_job(tmp_path, changes, words):
-    import yaml
-
-    config = {**yaml.safe_load(TINY), **changes}
-    study = Study(tmp_path, yaml.safe_dump({key: value for key, value in config.items() if value is not None}))
-    run = study.run()
-    lines = [line for line in run.stderr.splitlines() if not line.startswith("Using workflow specific profile")]
-    assert run.returncode != 0
-    assert len(lines) == 1, run.stderr
-    assert lines[0].startswith("study.yaml: ")
-    for word in words:
-        assert word in lines[0]
-    assert not (tmp_path / "results").exists()
-
-
-def test_a_point_outside_the_grid(finished):
-    run = finished.run("-n", "results/tiny/points/linearized/plus/a0.0810.nc")
-    assert run.returncode != 0
-    assert "a0.0810.nc: not a point of study tiny" in run.stdout + run.stderr
 
 
 def test_the_default_config_is_not_merged_into_another(study):

@@ -27,13 +27,13 @@ rule basin_tile:
     benchmark:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/tile{{tile}}.tsv"
     wildcard_constraints:
-        tile=r"\d+",
+        tile="|".join(map(str, range(STUDY.config["basins"]["tiles"]))),
     threads: STUDY.config["basins"]["threads"]
     resources:
         mem_mb=400,
         runtime=240,
     params:
-        a=lambda wildcards: STUDY.grid[wildcards.a],
+        a=lambda wildcards: STUDY.value(wildcards.a),
         config=basin_config("pairs"),
         sources=script_sources("basin_tile"),
     message:
@@ -56,7 +56,7 @@ rule basin_pairs:
         mem_mb=400,
         runtime=240,
     params:
-        a=lambda wildcards: STUDY.grid[wildcards.a],
+        a=lambda wildcards: STUDY.value(wildcards.a),
         config=basin_config("pixels", "tiles"),
         sources=script_sources("basin_pairs"),
     message:

@@ -20,6 +20,8 @@ rule watch_chain:
         f"{RESULTS}/logs/chains/blocks{{blocks}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/chains/blocks{{blocks}}.tsv"
+    wildcard_constraints:
+        blocks="|".join(map(str, CHAIN_BLOCKS)),
     priority: 1
     resources:
         mem_mb=400,

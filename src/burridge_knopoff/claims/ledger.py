@@ -18,7 +18,8 @@ from burridge_knopoff.claims import history, kinds, laws, model, motion, synchro
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
 from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.config.study import check_names, check_schema, read_schema, read_yaml
+from burridge_knopoff.config.study import check_names, check_schema
+from burridge_knopoff.config.yaml_file import read_schema, read_yaml
 from burridge_knopoff.files import display_path
 from burridge_knopoff.initial import PAPER_STATES
 from burridge_knopoff.provenance import provenance

@@ -9,7 +9,8 @@ from typing import Any
 
 from burridge_knopoff.config.message import ConfigError
 
-MAXIMUM_POINTS = 1_000_000
+#: Values of a list, and points of a study: Snakemake takes minutes to plan so many jobs.
+MAXIMUM_POINTS = 100_000
 
 
 def grid_of(config: Mapping[str, Any], file: str) -> dict[str, float]:
@@ -49,7 +50,7 @@ def _range(item: Mapping[str, float], place: str) -> list[float]:
     if last < first:
         raise ConfigError(f"{place}.to: {item['to']!r} is not allowed: at least from ({item['from']!r})")
     count = (last - first) / step
-    if count > MAXIMUM_POINTS:
+    if count >= MAXIMUM_POINTS:
         raise ConfigError(f"{place}.step: {item['step']!r} is not allowed: at most {MAXIMUM_POINTS} values in a range")
     if count != int(count):
         raise ConfigError(

@@ -12,12 +12,21 @@ class ConfigError(ValueError):
     """A config that is not allowed; the message is one line: file, key, value, what is allowed."""
 
 
+def shown(value: Any) -> str:
+    """Return a key as a message shows it: plain words as they are, all else in quotes and ASCII; short, on one line.
+
+    Letters of other alphabets look like those of ours, and some characters are not seen at all.
+    """
+    text = value if isinstance(value, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", value) else ascii(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
 def explain(error: Any) -> str:
     """Return «key: value is not allowed: what is» for a jsonschema ValidationError."""
     key = _key(error.absolute_path)
     if error.validator == "additionalProperties":
         known = sorted(error.schema.get("properties", {}))
-        unknown = sorted(set(map(str, error.instance)) - set(known))[0]
+        unknown = min(set(map(str, error.instance)) - set(known))
         return f"{_join(key, unknown)}: unknown key; allowed here: {', '.join(known)}"
     if error.validator == "dependentRequired":
         present, missing = re.findall(r"'([^']*)'", error.message)[1::-1]
@@ -53,7 +62,7 @@ def _key(path: Any) -> str:
 
 
 def _join(key: str, part: str) -> str:
-    return f"{key}.{part}" if key else part
+    return f"{key}.{shown(part)}" if key else shown(part)
 
 
 def _short(value: Any) -> str:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.command import simulate_command
@@ -21,16 +20,13 @@ from burridge_knopoff.config.checks import (
     run_settings,
 )
 from burridge_knopoff.config.grid import grid_of
-from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.files import display_path
+from burridge_knopoff.config.message import ConfigError, explain, shown
+from burridge_knopoff.config.size import check_size
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.initial import InitialState
 from burridge_knopoff.settings import Settings
 
 LARGEST = 1e300
-
-# A file of ours has a few levels; more are a mistake.
-MOST_LEVELS = 20
 
 #: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
 PAPER_A = 0.08
@@ -79,6 +75,12 @@ class Study:
         """Return the solvers that know a law, without the one that makes the points of the study."""
         return [solver for solver in LAW_SOLVERS[law] if solver != self.config["solver"][law]]
 
+    def value(self, a: str) -> float:
+        """Return the value of a by its name in file names; raises ConfigError if it is not in the grid."""
+        if a not in self.grid:
+            raise ConfigError(f"a{a}: not a point of study {self.name}: a is not in its grid")
+        return self.grid[a]
+
     def settings(self, law: str, solver: str | None = None) -> Settings:
         """Return the settings of the runs under a law.
 
@@ -105,9 +107,7 @@ class Study:
         solver : another one than that of the study's points
         Raises ConfigError if a is not a value of the grid, or the solver not another one that knows the law.
         """
-        if a not in self.grid:
-            raise ConfigError(f"a{a}.nc: not a point of study {self.name}: a is not in its grid")
-        return simulate_command(law, self.grid[a], self.state(initial), self.settings(law, solver))
+        return simulate_command(law, self.value(a), self.state(initial), self.settings(law, solver))
 
     @property
     def points(self) -> dict[str, Any]:
@@ -139,80 +139,8 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
     study = Study(filled, grid)
     fill_solvers(filled, set(grid.values()), grid[study.figure_point], file)
-    return study
-
-
-def check_file(path: str | Path) -> None:
-    """Raise ConfigError if a key stands twice in one place of a YAML file: the first would be dropped in silence."""
-    import yaml
-
-    walked = set()
-
-    def walk(node: Any) -> None:
-        # An alias is its anchor's node once more.
-        if id(node) in walked:
-            return
-        walked.add(id(node))
-        if isinstance(node, yaml.MappingNode):
-            seen = set()
-            for key, value in node.value:
-                if key.value in seen:
-                    line = key.start_mark.line + 1
-                    raise ConfigError(f"{display_path(path)}: {key.value}: stands twice (line {line}); once is allowed")
-                seen.add(key.value)
-                walk(value)
-        elif isinstance(node, yaml.SequenceNode):
-            for item in node.value:
-                walk(item)
-
-    root = _parse(path, lambda text: yaml.compose(text, Loader=yaml.SafeLoader))
-    try:
-        walk(root)
-    except RecursionError:
-        raise ConfigError(_too_deep(display_path(path))) from None
-
-
-def read_yaml(path: str | Path) -> Any:
-    """Return the content of a YAML file; raises ConfigError, one line, if it cannot be read or a key stands twice."""
-    import yaml
-
-    content = _parse(path, yaml.safe_load)
-    check_file(path)
-    _check_depth(content, display_path(path))
-    return content
-
-
-def _check_depth(content: Any, file: str, levels: int = MOST_LEVELS) -> None:
-    """Raise ConfigError for content that is too deep: an alias inside its own anchor makes it endless."""
-    if not levels:
-        raise ConfigError(_too_deep(file))
-    for item in content.values() if isinstance(content, dict) else content if isinstance(content, list) else ():
-        _check_depth(item, file, levels - 1)
-
-
-def _too_deep(file: str) -> str:
-    return f"{file}: nested too deep; at most {MOST_LEVELS} levels are allowed"
-
-
-def _parse(path: str | Path, parse: Callable[[str], Any]) -> Any:
-    import yaml
-
-    file = display_path(path)
-    try:
-        return parse(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{file}: cannot be read: {getattr(error, 'strerror', None) or 'not UTF-8 text'}") from None
-    except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
-        mark = getattr(error, "problem_mark", None)
-        problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
-        raise ConfigError(f"{file}: not YAML{f' (line {mark.line + 1})' if mark else ''}: {problem}") from None
-
-
-def read_schema(path: str | Path) -> dict[str, Any]:
-    """Return the schema in a YAML file."""
-    import yaml
-
-    return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    check_size(filled, grid, file)
+    return Study(_with_numbers(filled, schema), grid)
 
 
 def _with_defaults(config: Any, schema: Mapping[str, Any]) -> Any:
@@ -224,6 +152,17 @@ def _with_defaults(config: Any, schema: Mapping[str, Any]) -> Any:
         if key in config or "default" in item:
             filled[key] = _with_defaults(copy.deepcopy(config.get(key, item.get("default"))), item)
     return {**filled, **{key: value for key, value in config.items() if key not in filled}}
+
+
+def _with_numbers(config: Any, schema: Mapping[str, Any]) -> Any:
+    """Return a valid config with every number that need not be whole as a double: 100 and 100.0 are one."""
+    if isinstance(config, dict):
+        other = schema.get("additionalProperties")
+        items = schema.get("properties", {})
+        return {key: _with_numbers(value, items.get(key, other or {})) for key, value in config.items()}
+    if isinstance(config, list):
+        return [_with_numbers(value, schema.get("items", {})) for value in config]
+    return float(config) if schema.get("type") == "number" else config
 
 
 @cache
@@ -247,8 +186,6 @@ def check_schema(config: Any, schema: Mapping[str, Any], file: str) -> None:
     errors = sorted(_validator_class()(schema).iter_errors(config), key=lambda error: [str(key) for key in error.path])
     if not errors:
         return
-    from burridge_knopoff.config.message import explain
-
     raise ConfigError(f"{file}: {explain(errors[0])}")
 
 
@@ -257,8 +194,10 @@ def check_names(config: Any, file: str, place: str = "") -> None:
     if isinstance(config, Mapping):
         for key, value in config.items():
             if not isinstance(key, str) or key != key.strip():
-                raise ConfigError(f"{file}: {place}{key!r} is not allowed as a key: text without spaces around it")
-            check_names(value, file, f"{place}{key}.")
+                raise ConfigError(
+                    f"{file}: {place}{ascii(key)[:60]} is not allowed as a key: text without spaces around it"
+                )
+            check_names(value, file, f"{place}{shown(key)}.")
     if place == "study." and isinstance(config, str) and config != config.strip():
         raise ConfigError(f"{file}: study: {config!r} is not allowed: text without spaces or line breaks around it")
 

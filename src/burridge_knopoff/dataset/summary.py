@@ -22,6 +22,8 @@ AXES: dict[str, Variable] = {
     "a": Variable(("a",), "f8", "friction parameter a", coordinate=True),
 }
 
+STATE = Variable(("state",), "i4", "number of the sampled initial state", coordinate=True)
+
 
 def axes(initial: Sequence[str], a: Sequence[float], laws: Sequence[str] = LAWS) -> dict[str, Any]:
     """Return the coordinates of a summary over (law, initial, a)."""

@@ -13,8 +13,9 @@ from scipy.stats import wasserstein_distance
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.paper import PAPER_LAWS
-from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
+from burridge_knopoff.stability.motion import KINDS
 from burridge_knopoff.summaries.event_order import common_order
+from burridge_knopoff.summaries.judgement import judge
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 # The last bit of a product of vectors depends on where in memory they lie.
@@ -86,31 +87,6 @@ def _section_distance(one: np.ndarray, other: np.ndarray) -> float:
     if not len(one) or not len(other):
         return np.nan
     return float(f"{wasserstein_distance(one, other):.{DIGITS}g}")
-
-
-def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
-    """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
-
-    There is no verdict where the kind of one of the two motions is not determined.
-    """
-    linearized, nonlinear = values["mean_distance"]
-    kind = values["kind"]
-    values["difference"][...] = nonlinear - linearized
-    values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
-    determined = (kind != UNDETERMINED).all(axis=0)
-    values["same_kind"][...] = np.where(determined, kind[0] == kind[1], -1)
-    tolerance = np.maximum.reduce(
-        [
-            agreement["relative_tolerance"] * np.maximum(linearized, nonlinear),
-            agreement["standard_errors"] * values["difference_error"],
-            np.full_like(linearized, threshold),
-        ]
-    )
-    agrees = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)
-    values["agrees"][...] = np.where(determined, agrees, -1)
-    for j, agrees in enumerate(values["agrees"]):
-        apart = a[agrees == 0]
-        values["parting_a"][j] = apart[0] if len(apart) else np.nan
 
 
 def table(dataset: xarray.Dataset) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.dataset.summary import axes, open_summary, summary
+from burridge_knopoff.dataset.summary import STATE, axes, open_summary, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.provenance import provenance
 from burridge_knopoff.stability.chains import (
@@ -27,7 +27,6 @@ from burridge_knopoff.stability.chains import (
     watch_chain,
 )
 from burridge_knopoff.stability.sampling import CONFIDENCE, fraction_interval
-from burridge_knopoff.summaries.two_blocks import STATE
 
 _POINT = ("law", "a")
 _OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance(__name__))

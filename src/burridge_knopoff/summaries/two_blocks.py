@@ -12,7 +12,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.chain import Chain
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import InitialState
@@ -21,15 +21,14 @@ from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import Trajectory, run
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED, motion_kind, section_period
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.summaries.agreement import judge
 from burridge_knopoff.summaries.event_order import common_order
+from burridge_knopoff.summaries.judgement import judge
 
 BLOCKS = 2
 
 # Enough to tell the kinds of motion.
 EXPONENTS = 2
 
-STATE = Variable(("state",), "i4", "number of the sampled initial state", coordinate=True)
 
 _RUN = ("law", "state", "a")
 _PAIR = ("state", "a")

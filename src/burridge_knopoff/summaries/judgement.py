@@ -1,0 +1,35 @@
+"""When two friction laws agree: the verdict from motions and mean distances under both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.stability.motion import UNDETERMINED
+
+
+def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
+    """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
+
+    There is no verdict where the kind of one of the two motions is not determined.
+    """
+    linearized, nonlinear = values["mean_distance"]
+    kind = values["kind"]
+    values["difference"][...] = nonlinear - linearized
+    values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
+    determined = (kind != UNDETERMINED).all(axis=0)
+    values["same_kind"][...] = np.where(determined, kind[0] == kind[1], -1)
+    tolerance = np.maximum.reduce(
+        [
+            agreement["relative_tolerance"] * np.maximum(linearized, nonlinear),
+            agreement["standard_errors"] * values["difference_error"],
+            np.full_like(linearized, threshold),
+        ]
+    )
+    agrees = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)
+    values["agrees"][...] = np.where(determined, agrees, -1)
+    for j, agrees in enumerate(values["agrees"]):
+        apart = a[agrees == 0]
+        values["parting_a"][j] = apart[0] if len(apart) else np.nan

@@ -1,0 +1,143 @@
+"""Configs that are not allowed, as they would stand in a file, and what the one line says: key, value, what is allowed.
+
+tests/test_config.py has more of them, as changes to a good one.
+"""
+
+GRID = "a: [0.1]\n"
+STATES = "initial: {minus: {}}\n"
+GOOD = f"study: x\n{GRID}{STATES}"
+BLOCKS = "[{}]".format(", ".join(["0.1"] * 1025))
+
+
+def _laughs(first: str, line: str) -> str:
+    """Nine lines, each naming the one before ten times: 10^9 values in 500 characters."""
+    return first + "".join(line.format(n=n, before=", ".join([f"*l{n - 1}"] * 10)) for n in range(1, 10))
+
+
+# name of the case: (content of the file, words of the line)
+BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
+    # The file.
+    "empty": ("", ["nothing is not allowed as a config", "keys with values"]),
+    "comment": ("# nothing yet\n", ["nothing is not allowed"]),
+    "null": ("null\n", ["nothing is not allowed"]),
+    "text": ("hello world\n", ["'hello world' is not allowed as a config"]),
+    "number": ("3\n", ["3 is not allowed as a config"]),
+    "list": ("- study\n- a\n", ["['study', 'a'] is not allowed as a config"]),
+    "documents": (f"{GOOD}---\n{GOOD}", ["not YAML (line 4)", "another document"]),
+    "binary": (b"\x00\x01\xff\xfe\x80\x81", ["cannot be read: not UTF-8 text"]),
+    "latin1": (GOOD.encode() + "# é".encode("latin1"), ["not UTF-8 text"]),
+    "utf16": (GOOD.encode("utf-16"), ["not UTF-8 text"]),
+    "nul": (f"{GOOD}v: 0.1\0\n", ["not YAML", "special characters"]),
+    "control": (f"{GOOD}v: \x07\n", ["not YAML", "special characters"]),
+    "tab": ("study: x\na:\n\t- 0.1\n", ["not YAML (line 3)", "cannot start any token"]),
+    "open": ("study: x\na: [0.1\ninitial: {minus: {}}\n", ["not YAML (line 3)"]),
+    "colon": (f"{GOOD}v 0.1\n", ["not YAML (line 5)", "':'"]),
+    "json": ('{"study": "x", "a": [0.1', ["not YAML (line 1)"]),
+    "directive": (f"%YAML 9.9\n---\n{GOOD}", ["not YAML (line 1)", "incompatible"]),
+    "long": (GOOD + "#" * 10_000_001, ["cannot be read: more than 10000000 bytes"]),
+    # What YAML can do beyond keys, lists and values.
+    "object": (f"{GOOD}v: !!python/object/apply:os.system ['touch made']\n", ["not YAML (line 4)", "python/object"]),
+    "tag": (f"{GOOD}v: !speed 0.1\n", ["not YAML (line 4)", "!speed"]),
+    "alias": (f"{GOOD}v: *speed\n", ["not YAML (line 4)", "alias"]),
+    "endless_list": (f"study: x\na: &a [0.1, *a]\n{STATES}", ["nested too deep", "20 levels"]),
+    "endless_keys": (f"study: x\n{GRID}initial: &i {{minus: *i}}\n", ["nested too deep"]),
+    "endless_merge": (f"study: x\n{GRID}initial: &i {{<<: *i}}\n", ["nested too deep"]),
+    "deep": (f"{GOOD}v: {'[' * 30}{']' * 30}\n", ["nested too deep"]),
+    "very_deep": (f"{GOOD}v: {'[' * 5000}{']' * 5000}\n", ["nested too deep"]),
+    "laughs": (_laughs(f"{GOOD}l0: &l0 [x]\n", "l{n}: &l{n} [{before}]\n"), ["too long", "50000 values"]),
+    "laughing_keys": (
+        _laughs(f"{GOOD}l0: &l0 {{x: 1}}\n", "l{n}: &l{n} {{k: [{before}]}}\n"),
+        ["too long", "50000 values"],
+    ),
+    "set": (f"study: x\na: !!set {{0.1, 0.2}}\n{STATES}", ["a: {", "a list"]),
+    "pairs": (f"study: x\n{GRID}initial: !!omap [minus: {{}}]\n", ["initial: [('minus', {})]", "named entries"]),
+    "bytes": (f"study: !!binary aGVsbG8=\n{GRID}{STATES}", ["study: b'hello'"]),
+    "date": (f"{GOOD}v: 2020-01-01\n", ["v: datetime.date(2020, 1, 1)", "a finite number"]),
+    "no_date": (f"{GOOD}v: 2020-99-99\n", ["not YAML", "month"]),
+    "template": (f"__use_yte__: true\n{GOOD}", ["__use_yte__: unknown key", "without templates"]),
+    "merged": (f"base: &b {{minus: {{}}}}\nstudy: x\n{GRID}initial: {{<<: *b}}\n", ["base: unknown key"]),
+    # Keys.
+    "twice": (f"{GOOD}a: [0.2]\n", ["a: stands twice (line 4)", "once is allowed"]),
+    "twice_quoted": (f"study: x\n{GRID}initial: {{minus: {{}}, 'minus': {{}}}}\n", ["minus: stands twice (line 3)"]),
+    "unknown": (f"{GOOD}windows: 7000\n", ["windows: unknown key", "window"]),
+    "upper_case": (f"{GOOD}Window: 7000\n", ["Window: unknown key", "window"]),
+    "lookalike": (f"{GOOD}w\u0456ndow: 7000\n", ["'w\\u0456ndow': unknown key"]),
+    "invisible": (f"{GOOD}window\u200b: 7000\n", ["'window\\u200b': unknown key"]),
+    "key_of_two_lines": (f'{GOOD}"a\\nb": 1\n', ["'a\\nb': unknown key"]),
+    "key_with_space": (f'{GOOD}"window ": 1\n', ["'window ' is not allowed as a key"]),
+    "long_key": (f"{GOOD}{'k' * 900}: 1\n", ["kkk", "unknown key"]),
+    "number_as_key": (f"{GOOD}7: 1\n", ["7 is not allowed as a key"]),
+    "yes_as_key": (f"study: x\n{GRID}initial: {{on: {{}}}}\n", ["initial.True is not allowed as a key"]),
+    "list_as_key": (f"{GOOD}? [a, b]\n: 1\n", ["(line 4) is not allowed as a key"]),
+    "missing": (f"{GRID}{STATES}", ["study: missing"]),
+    # Names.
+    "slash": (f"study: a/b\n{GRID}{STATES}", ["study: 'a/b'", "text like"]),
+    "parent": (f"study: ..\n{GRID}{STATES}", ["study: '..'"]),
+    "here": (f"study: .\n{GRID}{STATES}", ["study: '.'"]),
+    "absolute": (f"study: /tmp/x\n{GRID}{STATES}", ["study: '/tmp/x'"]),
+    "minus": (f"study: -x\n{GRID}{STATES}", ["study: '-x'"]),
+    "space": (f"study: my study\n{GRID}{STATES}", ["study: 'my study'"]),
+    "long_name": (f"study: {'n' * 300}\n{GRID}{STATES}", ["study: 'nnn", "{0,63}"]),
+    "umlaut": (f"study: Größe\n{GRID}{STATES}", ["study: 'Größe'"]),
+    "no": (f"study: no\n{GRID}{STATES}", ["study: False"]),
+    "line_break": (f'study: "x\\n"\n{GRID}{STATES}', ["study: 'x\\n'"]),
+    "shell": (f"study: $(touch made)\n{GRID}{STATES}", ["study: '$(touch made)'"]),
+    "state_name": (f"study: x\n{GRID}initial: {{a/b: {{position: [0, 0], velocity: [0, 0]}}}}\n", ["initial: 'a/b'"]),
+    # Numbers.
+    "octal": (f"{GOOD}transient: 03000\n", ["03000 (line 4) is not allowed", "decimals"]),
+    "hexadecimal": (f"{GOOD}window: 0x1F\n", ["0x1F (line 4)"]),
+    "sixties": (f"{GOOD}window: 1:30\n", ["'1:30' (line 4)"]),
+    "underline": (f"{GOOD}window: 7_000\n", ["7_000 (line 4)"]),
+    "arabic": (f"{GOOD}window: !!float ٣\n", ["'\\u0663' (line 4)"]),
+    "digits": (f"{GOOD}window: {'9' * 5000}\n", ["999", "(line 4)", "100 characters"]),
+    "not_a_number": (f"{GOOD}v: .nan\n", ["v: nan", "a finite number"]),
+    "infinite": (f"{GOOD}window: .inf\n", ["window: inf", "≤ 1e+09"]),
+    "overflow": (f"{GOOD}window: 1.0e+400\n", ["window: inf", "≤ 1e+09"]),
+    "huge": (f"{GOOD}window: 1.0e+12\n", ["window: 1000000000000.0", "≤ 1e+09"]),
+    "negative": (f"{GOOD}transient: -3000\n", ["transient: -3000", "> 0"]),
+    "text_for_number": (f"{GOOD}step: 1e-4\n", ["step: '1e-4'", "1.0e-6"]),
+    "comma": (f"{GOOD}step: 0,001\n", ["step: '0,001'", "a finite number"]),
+    "yes_for_number": (f"{GOOD}v: yes\n", ["v: True", "a finite number"]),
+    "nothing_for_number": (f"{GOOD}v:\n", ["v: None", "a finite number"]),
+    "half_batch": (f"{GOOD}batches: 2.5\n", ["batches: 2.5", "a whole number"]),
+    # Grids.
+    "no_values": (f"study: x\na: []\n{STATES}", ["a: []", "at least 1"]),
+    "a_of_two": (f"study: x\na: [0.1, 2]\n{STATES}", ["a[1]: 2", "< 2"]),
+    "value_twice": (f"study: x\na: [0.1, {{from: 0, to: 0.2, step: 0.1}}]\n{STATES}", ["a: 0.1 is listed twice"]),
+    "one_name": (f"study: x\na: [0.1, 0.10001]\n{STATES}", ["a: 0.1 and 0.10001", "a_digits"]),
+    "crooked": (f"study: x\na: [{{from: 0, to: 1, step: 0.3}}]\n{STATES}", ["a[0].step: 0.3", "divide"]),
+    "falling": (f"study: x\na: [{{from: 1, to: 0, step: 0.1}}]\n{STATES}", ["a[0].to: 0", "at least from"]),
+    "billion": (f"study: x\na: [{{from: 0, to: 1, step: 1.0e-9}}]\n{STATES}", ["a[0].step: 1e-09", "100000 values"]),
+    "many_points": (
+        "study: x\na: [{from: 0, to: 1, step: 0.001}]\ninitial:\n"
+        + "".join(f"  s{n}: {{position: [0, 0], velocity: [0, 0]}}\n" for n in range(1000)),
+        ["a: 2002000 points", "2 laws, 1000 initial states, 1001 values", "at most 100000"],
+    ),
+    # States, and what does not fit together.
+    "unknown_state": (f"study: x\n{GRID}initial: {{middle: {{}}}}\n", ["initial.middle: unknown", "minus | plus"]),
+    "no_velocity": (f"study: x\n{GRID}initial: {{m: {{position: [0, 0]}}}}\n", ["initial.m.velocity: missing"]),
+    "many_blocks": (
+        f"study: x\n{GRID}initial: {{m: {{position: {BLOCKS}, velocity: {BLOCKS}}}}}\n",
+        ["initial.m.position: [0.1,", "at most 1024"],
+    ),
+    "two_lengths": (
+        f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, 0]}}, plus: {{}}}}\n",
+        ["initial: states of one study", "m: 2, plus: 3"],
+    ),
+    "backward": (
+        f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, -0.1]}}}}\n",
+        ["initial.m.velocity: -0.1", "one_sided"],
+    ),
+    "no_map": (f"{GOOD}solver: {{nonlinear: map}}\n", ["solver.nonlinear: 'map'", "series | rk4"]),
+    "outside": (f"{GOOD}basins: {{linearized: [0.2]}}\n", ["basins.linearized: 0.2", "a value of the grid"]),
+    "box": (f"{GOOD}chains: {{position: [1, -1]}}\n", ["chains.position: [1, -1]", "low < high"]),
+    # More than a job can do.
+    "steps": (f"{GOOD}solver: {{linearized: rk4}}\nstep: 1.0e-9\n", ["step: 1e-09", "3.33e+09 steps"]),
+    "samples": (f"{GOOD}sampling: 1.0e-5\n", ["sampling: 1e-05", "1e7 samples"]),
+    "events": (f"{GOOD}window: 1.0e+9\nsampling: 1000\n", ["window: 1000000000.0", "numbers"]),
+    "pixels": (f"{GOOD}basins: {{linearized: [0.1], pixels: 16384}}\n", ["basins.pixels: 16384", "numbers"]),
+    "pairs_of_states": (f"{GOOD}basins: {{pairs: 10000000}}\n", ["basins.pairs: 10000000", "numbers"]),
+}
+
+#: The first case in which the file is in order and a key is not.
+FIRST_OF_KEYS = list(BAD_FILES).index("twice")

@@ -1,0 +1,124 @@
+"""Broken configs and command lines: one line that says what is wrong, and nothing written."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
+from tests.workflow.conftest import TINY, Study
+
+# What Snakemake says of itself at every start.
+ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared filesystem", "Building DAG of jobs")
+
+# What Snakemake makes before it reads the Snakefile: empty folders, and its log.
+OF_SNAKEMAKE = ".snakemake"
+
+
+def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str], words: list[str]) -> None:
+    """Require one line with these words, an exit code, and no other files than those that were there."""
+    lines = [line for line in run.stderr.splitlines() if not line.startswith(ANNOUNCED)]
+    assert run.returncode in (1, 2)
+    assert run.stdout == ""
+    assert len(lines) == 1, run.stderr
+    assert len(lines[0]) < 500
+    for word in words:
+        assert word in lines[0]
+    assert sorted(path.name for path in folder.iterdir() if path.name != OF_SNAKEMAKE) == sorted(files)
+    kept = [path for path in (folder / OF_SNAKEMAKE).rglob("*") if path.is_file() and path.parent.name != "log"]
+    assert kept == []
+
+
+# Those that Snakemake reads before the Snakefile does, and a third of the others: tests/test_config.py has them all.
+FILES, KEYS = (list(BAD_FILES)[part] for part in (slice(FIRST_OF_KEYS), slice(FIRST_OF_KEYS, None, 3)))
+
+
+@pytest.mark.parametrize("case", [*FILES, *KEYS])
+def test_a_bad_config(tmp_path, case):
+    content, words = BAD_FILES[case]
+    study = Study(tmp_path)
+    study.config.write_bytes(content if isinstance(content, bytes) else content.encode())
+    check(study.run(), tmp_path, ["study.yaml"], ["study.yaml: ", *words])
+
+
+def test_the_good_config_is_good(tmp_path):
+    """What the bad ones are made from has nothing wrong of its own."""
+    assert "simulate" in Study(tmp_path, GOOD).ok("-n")
+
+
+POINTS = "results/tiny/points/linearized"
+TARGETS = {
+    "nothing.nc": ["nothing.nc: neither a rule nor a file of this study"],
+    "point": ["point: neither a rule"],
+    f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],
+    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny"],
+    f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: neither a rule"],
+    "results/tiny/points/linear/plus/a0.0800.nc": ["linear/plus/a0.0800.nc: neither"],
+    "results/other/points/linearized/plus/a0.0800.nc": ["results/other/points/linearized/plus/a0.0800.nc: neither"],
+    "results/tiny/../tiny/summary/nothing.nc": ["nothing.nc: neither"],
+    "results/tiny/solvers/linearized/map/plus/a0.2000.nc": ["linearized/map/plus/a0.2000.nc: neither"],
+    "results/tiny/solvers/linearized/euler/plus/a0.2000.nc": ["euler/plus/a0.2000.nc: neither"],
+    "results/tiny/basins/linearized/a0.0500/tile9.nc": ["linearized/a0.0500/tile9.nc: neither"],
+    "results/tiny/basins/linearized/a0.0510/tile0.nc": ["a0.0510: not a point of study tiny"],
+    "results/tiny/basins/linearized/a0.0510/pairs.nc": ["a0.0510: not a point of study tiny"],
+    "results/tiny/chains/blocks11.nc": ["results/tiny/chains/blocks11.nc: neither"],
+    "results/tiny/attractors/linear.nc": ["results/tiny/attractors/linear.nc: neither"],
+    "results/tiny/figures/motion_middle.pdf": ["motion_middle.pdf: neither"],
+}
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_target_that_is_not_of_the_study(tmp_path, target):
+    check(Study(tmp_path, TINY).run(target), tmp_path, ["study.yaml"], TARGETS[target])
+
+
+CONFIG = ["--configfile", "study.yaml"]
+# Arguments of snakemake, and the words of the line.
+LINES = {
+    "target_behind_configfile": ([*CONFIG, "points"], ["--configfile: several files", "a target stands before"]),
+    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: several files"]),
+    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: several files"]),
+    "missing": (["--configfile", "missing.yaml"], ["missing.yaml: cannot be read: No such file"]),
+    "folder": (["--configfile", "."], ["cannot be read: it is a folder"]),
+    "device": (["--configfile", "/dev/zero"], ["/dev/zero: cannot be read: it is not a regular file"]),
+    "space": (["--configfile", "my study.yaml"], ["my study.yaml: cannot be read"]),
+    "umlaut": (["--configfile", "Größe.yaml"], ["Größe.yaml: cannot be read"]),
+    "long": (["--configfile", "x" * 300], ["xxx: cannot be read: File name too long"]),
+    "no_value": ([*CONFIG, "--config", "window"], ["--config: 'window' is not allowed: key=value"]),
+    "no_key": ([*CONFIG, "--config", "=7000"], ["--config: '=7000' is not allowed"]),
+    "short_key": ([*CONFIG, "--config", "a=0.1"], ["--config: 'a=0.1' is not allowed", "two letters"]),
+    "unknown_key": ([*CONFIG, "--config", "windows=7000"], ["windows: unknown key"]),
+    "bad_value": ([*CONFIG, "--config", "window=long"], ["window: 'long'", "a finite number"]),
+    "not_finite": ([*CONFIG, "--config", "window=nan"], ["window: nan", "a finite number"]),
+    "no_number": ([*CONFIG, "--config", "window="], ["window: None", "a finite number"]),
+    "bad_name": ([*CONFIG, "--config", "study=../x"], ["study: '../x'"]),
+    "text_inside": ([*CONFIG, "--config", "basins={pixels: 8}"], ["basins.pixels: '8'", "a whole number"]),
+    "unknown_rule": (["-R", "nothing", *CONFIG], ["nothing: neither a rule"]),
+    "unknown_until": (["--until", "nothing", *CONFIG], ["nothing: neither a rule"]),
+    "cores": ([*CONFIG, "--cores", "many"], ["--cores", "must be integer"]),
+}
+
+
+@pytest.mark.parametrize("case", LINES)
+def test_a_bad_command_line(tmp_path, case):
+    arguments, words = LINES[case]
+    study = Study(tmp_path, TINY)
+    start, _, _ = " ".join(study.command()).partition(" --configfile")
+    run = subprocess.run([*start.split(), *arguments], cwd=tmp_path, capture_output=True, text=True)
+    check(run, tmp_path, ["study.yaml"], words)
+
+
+def test_a_config_with_any_name_is_read(tmp_path):
+    for name in ("my study.yaml", "Größe.yaml", "study.json", "study"):
+        study = Study(tmp_path, GOOD)
+        study.config = study.config.rename(tmp_path / name)
+        assert "simulate" in study.ok("-n")
+
+
+def test_what_is_refused_before_snakemake_looks_is_refused_by_the_snakefile_too(tmp_path):
+    """Another display, and with it another reader of the command line, must let nothing pass."""
+    study = Study(tmp_path, "__use_yte__: true\n" + GOOD)
+    run = study.run("--logger", "rich")
+    assert run.returncode == 1
+    assert "study.yaml: __use_yte__: unknown key" in run.stderr
+    assert not (tmp_path / "results").exists()
