@@ -19,7 +19,12 @@ from burridge_knopoff.config import (
     load_study,
     read_schema,
 )
-from burridge_knopoff.files import display_path
+from burridge_knopoff.files import (
+    check_folder,
+    check_folders,
+    display_path,
+    nearest_folder,
+)
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.provenance import (
     CLAIM_SOURCES,
@@ -61,6 +66,14 @@ except ConfigError as error:
     sys.exit(f"{error}")
 
 RESULTS = f"results/{STUDY.name}"
+
+# What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
+try:
+    check_folder(os.path.abspath(".snakemake"))
+    nearest_folder(RESULTS)
+except OSError as error:
+    sys.exit(f"{error}")
+
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 
 
@@ -111,6 +124,10 @@ rule all:
 
 
 onstart:
+    try:
+        check_folders(RESULTS)
+    except OSError as error:
+        sys.exit(f"{error}")
     announce(workflow)
 
 
