@@ -85,7 +85,7 @@ def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
             os.fsync(file.fileno())
     except OSError as refused:
         return refused.strerror or refused
-    return error
+    return f"{error} (not for want of space on the disk, perhaps of memory)"
 
 
 def check_target(path: str | Path) -> None:
