@@ -4,11 +4,20 @@ import os
 import shlex
 import sys
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 from snakemake.utils import min_version
 
 min_version("9.0")
+
+from burridge_knopoff.kernel_build import KernelError, check_kernel
+
+# Before anything imports the kernel. What is to run can be seen without one.
+try:
+    check_kernel(compiled=not workflow.output_settings.dryrun)
+except KernelError as error:
+    sys.exit(f"{error}")
 
 from burridge_knopoff.claims.ledger import read_claims
 from burridge_knopoff.closing import closing_lines
@@ -26,22 +35,23 @@ from burridge_knopoff.files import (
     nearest_folder,
 )
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import (
-    CLAIM_SOURCES,
-    REPORT_SOURCES,
-    STABILITY_SOURCES,
-    source_fingerprint,
-)
 from burridge_knopoff.settings import SOLVERS
+from burridge_knopoff.sources import source_fingerprint
+from burridge_knopoff.study_record import write_study_record
 from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plan import announce
+
+SNAKEFILE = Path(workflow.main_snakefile).resolve()
+# One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 BEGIN = time.monotonic()
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
+DEFAULT_CONFIG = Path(workflow.basedir, "config/paper.yaml")
 if not workflow.configfiles:
 
-    configfile: str(Path(workflow.basedir, "config/paper.yaml"))
+    configfile: str(DEFAULT_CONFIG)
 
 
 if len(workflow.configfiles) > 1:
@@ -65,6 +75,21 @@ try:
 except ConfigError as error:
     sys.exit(f"{error}")
 
+# How the study is named to `snakemake`: its config file, empty for the default one, and all arguments.
+CONFIG_FILE = os.path.relpath(workflow.configfiles[0])
+if Path(CONFIG_FILE).resolve() == DEFAULT_CONFIG.resolve():
+    CONFIG_FILE = ""
+ARGUMENTS = [
+    *(
+        ["-s", os.path.relpath(SNAKEFILE)]
+        if SNAKEFILE != Path("Snakefile").resolve()
+        else []
+    ),
+    *(["--configfile", CONFIG_FILE] if CONFIG_FILE else []),
+    *(["--config"] if workflow.config_settings.config else []),
+    *(f"{key}={value}" for key, value in workflow.config_settings.config.items()),
+]
+
 RESULTS = f"results/{STUDY.name}"
 
 # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
@@ -81,6 +106,11 @@ POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 shell.prefix(
     f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
 )
+
+
+def script_sources(name):
+    """Return the fingerprint of a script and of all that it imports: what a rule does, comments left out."""
+    return source_fingerprint(Path(workflow.basedir, f"workflow/scripts/{name}.py"))
 
 
 # The least in which `make setup` works: Python, a C compiler and make. Used only if jobs are to run in containers.
@@ -126,6 +156,9 @@ rule all:
 onstart:
     try:
         check_folders(RESULTS)
+        write_study_record(
+            RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS)
+        )
     except OSError as error:
         sys.exit(f"{error}")
     announce(workflow)

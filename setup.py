@@ -1,35 +1,54 @@
 """Compiles the kernel; everything else about the package is in pyproject.toml."""
 
+import json
 import os
+import sys
 from pathlib import Path
 
 from Cython.Build import cythonize
 from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
 
-# Neither contraction to fused multiply-add nor reassociation: a compiler must not change a result.
-# docs/performance.md says what that means for the same bits elsewhere.
-FLAGS = ["-O3", "-ffp-contract=off", "-fno-fast-math"]
+sys.path.insert(0, "src")
+
+from burridge_knopoff.compilation import COMPILER_FLAGS, DIRECTIVES
+from burridge_knopoff.kernel_build import RECORD, kernel_sources, write_record
 
 KERNEL = Path("src/burridge_knopoff/kernel")
 
-extensions = [
-    Extension(f"burridge_knopoff.kernel.{source.stem}", [str(source)], extra_compile_args=FLAGS)
-    for source in sorted(KERNEL.glob("*.py"))
-    if source.stem != "__init__"
-]
 
+def changed() -> bool:
+    """Tell whether the kernel in the tree is another one than that of its sources."""
+    try:
+        return json.loads((KERNEL / RECORD).read_text(encoding="utf-8")) != kernel_sources()
+    except (OSError, ValueError):
+        return True
+
+
+class RecordedBuild(build_ext):
+    """Compiles the kernel, and records from what when all of it is compiled."""
+
+    def run(self) -> None:
+        """Compile all of it or, if nothing has changed, what is not there."""
+        # Times of files do not tell what was compiled from what.
+        self.force = self.force or FORCE
+        (KERNEL / RECORD).unlink(missing_ok=True)
+        super().run()
+        write_record(Path(self.get_ext_fullpath("burridge_knopoff.kernel.series")).parent)
+
+
+FORCE = changed()
 setup(
+    cmdclass={"build_ext": RecordedBuild},
     ext_modules=cythonize(
-        extensions,
+        [
+            Extension(f"burridge_knopoff.kernel.{source.stem}", [str(source)], extra_compile_args=list(COMPILER_FLAGS))
+            for source in sorted(KERNEL.glob("*.py"))
+            if source.stem != "__init__"
+        ],
         nthreads=os.cpu_count() or 1,
+        force=FORCE,
         build_dir="build/cython",
-        compiler_directives={
-            "language_level": 3,
-            "boundscheck": False,
-            "wraparound": False,
-            "cdivision": True,
-            "initializedcheck": False,
-            "embedsignature": False,
-        },
-    )
+        compiler_directives=DIRECTIVES,
+    ),
 )

@@ -28,7 +28,7 @@ RATIO_LIMIT = 1.5
 #: All that the default study makes from its point files, but figures.
 TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
 POINT_RULE = "workflow/rules/simulate.smk"
-POINT_COMMAND = '"bk simulate {params.options} --out {output} 2> {log}"'
+POINT_COMMAND = '"{params.command} --out {output} 2> {log}"'
 FINISHED = re.compile(r"(\d+) of \1 steps \(100%\) done")
 
 

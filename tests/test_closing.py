@@ -1,6 +1,7 @@
 """The last words of a run."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import xarray as xr
 
 from burridge_knopoff.closing import closing_lines, elapsed
 from burridge_knopoff.dataset.variables import flag
+from burridge_knopoff.job_log import SILENT
 from burridge_knopoff.simulation import STATUS
 from burridge_knopoff.stability.motion import KINDS
 
@@ -97,7 +99,11 @@ def test_a_damaged_summary_gives_a_line_and_no_error(results, content):
     assert all(f"{path}: cannot be read" in line for path, line in zip(summaries(results), lines[2:], strict=True))
 
 
-def test_a_run_that_failed(results):
+def test_a_run_that_failed(results, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("logs").mkdir()
+    error = "Traceback (most recent call last):\n  raise\nburridge_knopoff.dataset.seal.BadFile: x.nc: is empty\n\n"
+    Path("logs/mean_distance.log").write_text(error)
     failed = [
         ("mean_distance", ["logs/mean_distance.log"]),
         *((f"simulate a={n}", [f"logs/{n}.log"]) for n in range(10)),
@@ -107,8 +113,8 @@ def test_a_run_that_failed(results):
     )
     assert lines[:3] == [
         "study paper: stopped after 5 s: 11 jobs failed, 6 jobs did not run",
-        "failed: mean_distance, log logs/mean_distance.log",
-        "failed: simulate a=0, log logs/0.log",
+        "failed: mean_distance: x.nc: is empty (log logs/mean_distance.log)",
+        f"failed: simulate a=0: {SILENT} (log logs/0.log)",
     ]
     assert lines[-3:] == ["failed: and 1 more", "made: x.nc", "the same command goes on where this run stopped"]
     assert len(lines) == 14

@@ -218,35 +218,35 @@ def test_lists_and_several_ranges(schema):
     assert list(study.grid.values()) == [0.0, 0.08, 0.09, 0.095, 0.1, 0.2]
 
 
-def test_options_of_a_point(schema):
+def test_command_of_a_point(schema):
     study = load(schema, solver={"nonlinear": "rk4"}, step=0.01, lyapunov_exponents=6, lyapunov_alignment=250)
-    assert "--solver map" in study.options("linearized", "plus", "0.0800")
-    options = study.options("nonlinear", "plus", "0.0800")
+    assert "--solver map" in study.command("linearized", "plus", "0.0800")
+    options = study.command("nonlinear", "plus", "0.0800")
     assert "--a 0.08 " in options
-    assert "--position=" not in options
-    assert "--position 0.989,-0.993,-0.991" in options
+    assert "--position=0.989,-0.993,-0.991" in options
     assert "--step 0.01" in options
     assert "--lyapunov-exponents 6" in options
-    assert "--lyapunov-alignment 250" in options
-    assert "--position=-0.989,-0.993,-0.991" in study.options("nonlinear", "minus", "0.0800")
+    assert "--lyapunov-alignment 250.0" in options
+    assert "--position=-0.989,-0.993,-0.991" in study.command("nonlinear", "minus", "0.0800")
     with pytest.raises(ConfigError, match=re.escape("a0.0801.nc")):
-        study.options("linearized", "plus", "0.0801")
+        study.command("linearized", "plus", "0.0801")
 
 
-def test_options_of_another_solver(schema):
+def test_command_of_another_solver(schema):
     study = load(schema, solvers={"step": 0.02}, step=0.01, solver={"nonlinear": "rk4"}, window=500)
     assert study.other_solvers("linearized") == ["series", "rk4"]
     assert study.other_solvers("nonlinear") == ["series"]
-    own = study.options("linearized", "plus", "0.0800").split()
-    series = study.options("linearized", "plus", "0.0800", "series").split()
+    own = study.command("linearized", "plus", "0.0800").split()
+    assert "--lyapunov-exponents" not in own
+    series = study.command("linearized", "plus", "0.0800", "series").split()
     assert [(one, other) for one, other in zip(own, series, strict=True) if one != other] == [("map", "series")]
-    rk4 = study.options("linearized", "plus", "0.0800", "rk4")
-    assert "--solver rk4 --step 0.02 " in rk4
+    rk4 = study.command("linearized", "plus", "0.0800", "rk4")
+    assert "--solver rk4 --step 0.02" in rk4
     assert "--lyapunov-exponents 0" in rk4
     assert "--window 500" in rk4
     for law, solver in (("linearized", "map"), ("nonlinear", "rk4"), ("nonlinear", "map")):
         with pytest.raises(ConfigError, match=f"{law}/{solver}: not a comparison of study test"):
-            study.options(law, "plus", "0.0800", solver)
+            study.command(law, "plus", "0.0800", solver)
 
 
 def test_every_solver_of_a_law_is_compared(schema):

@@ -64,10 +64,13 @@ from burridge_knopoff import simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.figures.largest_velocity import draw
 from burridge_knopoff.friction import LAWS
+from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.settings import Settings
 from burridge_knopoff.summaries.largest_velocity import summarize
 from burridge_knopoff.summaries.points import Grid
-grid = Grid(Path("points"), ("plus",), {"0.1": 0.1, "0.3": 0.3})
 options = {"transient": 4.0, "window": 26.0, "batches": 2, "trajectory": 26.0, "trajectory_sampling": 0.01}
+settings = dict.fromkeys(LAWS, Settings(**options))
+grid = Grid(Path("points"), {"plus": PAPER_STATES["plus"]}, {"0.1": 0.1, "0.3": 0.3}, settings)
 words = [f"--{key.replace('_', '-')}={value}" for key, value in options.items()]
 for _, (law, initial, a) in grid:
     out = str(grid.path(law, initial, a))

@@ -9,6 +9,7 @@ import pytest
 from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
+from burridge_knopoff.job_log import SILENT
 from snakemake_logger_plugin_study import LogHandler
 from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plain import Pace
@@ -230,6 +231,9 @@ ROUTINE = (
 )
 
 
+START = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "wildcards": {"a": "0.0800"}})
+
+
 def job_error(log):
     extra = {**JOB, "log": [log], "conda_env": None, "aux": {}, "rule_msg": None}
     return record("Error in rule simulate", LogEvent.JOB_ERROR, logging.ERROR, **extra)
@@ -240,13 +244,22 @@ ERROR = job_error("x.log")
 
 def test_routine_is_replaced_and_all_else_is_written(written):
     assert written(*ROUTINE) == ""
-    plain = (record("Building DAG of jobs..."), record("careful", level=logging.WARNING), ERROR, record("the end"))
+    plain = (
+        record("Building DAG of jobs..."),
+        record("careful", level=logging.WARNING),
+        record("RuleException:\nCalledProcessError in file x.smk", level=logging.ERROR),
+        START,
+        ERROR,
+        record("the end"),
+    )
     text = written(*ROUTINE, *plain)
     lines = text.splitlines()
     assert lines[:2] == ["Building DAG of jobs...", "careful"]
-    assert "Error in rule simulate:" in lines
-    assert "log: x.log" in text
-    assert lines[-1] == "the end"
+    assert lines[2:4] == [f"failed: simulate a=0.0800: {SILENT} (log x.log)", "the end"]
+
+
+def test_an_unknown_job_that_fails_is_told_of_as_snakemake_does(written):
+    assert "Error in rule simulate:" in written(ERROR).splitlines()
 
 
 def test_settings_of_snakemake_hold(written):
@@ -260,14 +273,14 @@ def test_settings_of_snakemake_hold(written):
 
 def test_a_failed_log_is_shown(written, tmp_path):
     (tmp_path / "x.log").write_text("because\n")
-    assert "because" in written(job_error(str(tmp_path / "x.log")), show_failed_logs=True)
+    assert "because" in written(START, job_error(str(tmp_path / "x.log")), show_failed_logs=True)
 
 
 def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
     monkeypatch.setattr(Tally, "fail", lambda self, job: 1 / 0)
-    text = written(ERROR)
+    text = written(START, ERROR)
     assert "ZeroDivisionError" in text
-    assert "Error in rule simulate:" in text
+    assert "failed: simulate a=0.0800: " in text
 
 
 def test_a_defect_of_plan_or_outcome_is_only_told(caplog):

@@ -19,6 +19,9 @@ DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on rough ground (the
 SIMULATE = """Run one simulation and write it as a netCDF point file.
 All quantities are dimensionless: times in 1/omega, U = k X / F(0), as in the paper."""
 
+CHECK = """List the points of a study that are missing, corrupt, stale or failed, and damaged summaries.
+Exit code: 0 nothing to list, 1 something is missing, corrupt or stale, 3 runs have failed but nothing else is wrong."""
+
 EXAMPLES = """examples:
   bk simulate --law linearized --a 0.08 --initial plus --out plus.nc
   bk simulate --law nonlinear --a 0.08 --initial minus --transient 0 --window 100 --events all --out start.nc
@@ -126,6 +129,15 @@ def build_parser() -> argparse.ArgumentParser:
         "--trajectory", type=float, default=30.0, help="length of the kept last part of the run (default: %(default)s)"
     )
     kept.add_argument("--trajectory-sampling", type=float, default=0.05, help="its interval (default: %(default)s)")
+    check = commands.add_parser(
+        "check",
+        help="look for points that are missing, corrupt, stale or failed",
+        description=CHECK,
+        formatter_class=formatter,
+        allow_abbrev=False,
+    )
+    check.add_argument("results", metavar="FOLDER", help="results of a study: results/<study>")
+    check.add_argument("--paths", action="store_true", help="print only the paths of the files to be remade")
     return parser
 
 
@@ -133,6 +145,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run `bk`; return its exit code: 0, or 2 for bad input (one line on stderr)."""
     parser = build_parser()
     options = parser.parse_args(_join(sys.argv[1:] if arguments is None else arguments))
+    try:
+        return _check(options) if options.command == "check" else _simulate(options)
+    except (ValueError, OSError, ImportError) as error:
+        print(f"bk {options.command}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"bk {options.command}: interrupted, nothing was written", file=sys.stderr)
+        return 130
+
+
+def _check(options: argparse.Namespace) -> int:
+    from burridge_knopoff.check import check_study
+
+    found = check_study(options.results)
+    print("\n".join(found.paths if options.paths else found.lines()))
+    return found.exit_code
+
+
+def _simulate(options: argparse.Namespace) -> int:
     from burridge_knopoff.chain import Chain
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.files import check_target
@@ -148,15 +179,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = Settings(**{item.name: getattr(options, item.name) for item in fields(Settings)})
         trajectory = run(chain, Friction(options.law, options.a), state, settings)
         write_point(trajectory, options.out)
-    except (ValueError, OSError) as error:
-        print(f"bk simulate: {error}", file=sys.stderr)
-        return 2
     except MemoryError:
         print("bk simulate: not enough memory for so many events or samples", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("bk simulate: interrupted, nothing was written", file=sys.stderr)
-        return 130
     if trajectory.status != "completed":
         print(
             f"bk simulate: {options.out}: the run ended at tau = {trajectory.end_time:g} with status "

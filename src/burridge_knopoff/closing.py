@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
+from burridge_knopoff.job_log import failure
 
 #: Verdicts whose claims are named, not only counted.
 NAMED_VERDICTS = (FAILS, CONVENTION)
@@ -78,7 +79,7 @@ def _stopped(
     counts = ((len(failed), "failed"), (missed, "did not run"))
     reasons = [f"{count} {'job' if count == 1 else 'jobs'} {what}" for count, what in counts if count]
     lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons) or 'not at its end'}"]
-    lines += [f"failed: {job}, log {', '.join(logs) or 'none'}" for job, logs in failed[:MOST_FAILED]]
+    lines += [failure(job, logs) for job, logs in failed[:MOST_FAILED]]
     if len(failed) > MOST_FAILED:
         lines.append(f"failed: and {len(failed) - MOST_FAILED} more")
     return [*lines, *_made(results, made), "the same command goes on where this run stopped"]

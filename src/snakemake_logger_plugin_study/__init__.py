@@ -6,15 +6,18 @@ progress goes through Snakemake's own handler, with its own filter and format.
 
 from __future__ import annotations
 
+import re
 import sys
 import threading
-from logging import INFO, LogRecord
+from logging import ERROR, INFO, LogRecord, makeLogRecord
 from typing import Any
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
+from burridge_knopoff.job_log import failure
 from snakemake_logger_plugin_study.tally import Tally
+from snakemake_logger_plugin_study.wording import job_name
 
 #: Records that the display replaces; -p and --verbose bring them back.
 _REPLACED = {
@@ -29,6 +32,8 @@ _REPLACED = {
 }
 # The one message without an event that comes with every few jobs.
 _ROUTINE = "Select jobs to execute"
+# What Snakemake says of a script that ended with an error.
+_FAILED_COMMAND = re.compile(r"RuleException:\s+CalledProcessError ")
 
 
 class LogHandler(LogHandlerBase):
@@ -48,10 +53,12 @@ class LogHandler(LogHandlerBase):
         self._text.addFilter(
             DefaultFilter(quiet, settings.debug_dag, settings.verbose, settings.dryrun, settings.printshellcmds)
         )
+        self._whole_logs = settings.show_failed_logs
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
         self._silent = settings.dryrun or is_quiet_about(quiet, "progress")
         self._tally = Tally()
         self._grouped: set[int] = set()
+        self._names: dict[int, str] = {}
         self._display: Any = None
         # Two displays read the tally from threads of their own.
         self._state = threading.RLock()
@@ -71,13 +78,29 @@ class LogHandler(LogHandlerBase):
             # A defect of the display must neither end the thread of the log nor hide a message.
             self.handleError(record)
         if not self._replaced(record):
-            self._text.handle(record)
+            self._text.handle(self._in_a_line(record) if self._short(record) else record)
 
     def _replaced(self, record: LogRecord) -> bool:
-        if self._everything or record.levelno != INFO:
+        if self._everything:
+            return False
+        if record.levelno == ERROR:
+            # The failed job itself is told of right after, with what its log says.
+            return bool(_FAILED_COMMAND.match(record.getMessage()))
+        if record.levelno != INFO:
             return False
         event = getattr(record, "event", None)
         return event in _REPLACED or (event is None and record.getMessage().startswith(_ROUTINE))
+
+    def _short(self, record: LogRecord) -> bool:
+        """Tell whether a line is enough for a failed job: its block lists all input, which may be 10,000 files."""
+        if self._everything or self._whole_logs or getattr(record, "event", None) != LogEvent.JOB_ERROR:
+            return False
+        return getattr(record, "jobid", None) in self._names
+
+    def _in_a_line(self, record: Any) -> LogRecord:
+        """Return the record of a failed job as one line: job, reason, log."""
+        line = failure(self._names[record.jobid], record.log or [])
+        return makeLogRecord({**record.__dict__, "event": None, "msg": line, "args": None})
 
     def _count(self, record: Any) -> None:
         event = getattr(record, "event", None)
@@ -94,6 +117,7 @@ class LogHandler(LogHandlerBase):
         elif event == LogEvent.JOB_INFO and (record.output or record.rule_name in self._tally.rules):
             # The plan shows the display already, unless --no-hooks keeps it away.
             self._show()
+            self._names[record.jobid] = job_name(record.rule_name, record.wildcards)
             if record.indent:
                 self._grouped.add(record.jobid)
             self._tally.start(record.jobid, record.rule_name, record.created, record.threads, record.rule_msg or "")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from snakemake_logger_plugin_study.wording import job_name
+
 
 def say_outcome(workflow: Any, lines: Callable[..., list[str]], **given: Any) -> None:
     """Log the lines that `lines(made=…, wanted=…, failed=…, missed=…, **given)` returns.
@@ -34,10 +36,7 @@ def outcome(workflow: Any) -> dict[str, Any]:
         "made": [str(path) for job in dag.finished_jobs for path in job.output],
         "wanted": [str(path) for job in dag.jobs for path in job.output],
         "missed": sum(1 for job in dag.needrun_jobs() if job.rule.output and job not in failed),
-        "failed": sorted((job_name(job), [str(path) for path in job.log]) for job in failed),
+        "failed": sorted(
+            (job_name(job.rule.name, job.wildcards_dict), [str(path) for path in job.log]) for job in failed
+        ),
     }
-
-
-def job_name(job: Any) -> str:
-    """Return the rule and the wildcards of a job: simulate law=linearized initial=plus a=0.0800."""
-    return " ".join([job.rule.name, *(f"{name}={value}" for name, value in job.wildcards_dict.items())])

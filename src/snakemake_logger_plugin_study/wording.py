@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from snakemake_logger_plugin_study.tally import Tally, TimeLeft
 
 
@@ -45,3 +47,8 @@ def progress_line(tally: Tally, now: float) -> str:
     parts.append(f"all {total.done} of {total.total} ({percentage(total.done, total.total)} %)")
     parts += [words for words in (failures(tally), time_left(tally.time_left(now))) if words]
     return ", ".join(parts)
+
+
+def job_name(rule: str, wildcards: Mapping[str, object]) -> str:
+    """Return the rule and the wildcards of a job: simulate law=linearized initial=plus a=0.0800."""
+    return " ".join([rule, *(f"{name}={value}" for name, value in wildcards.items())])

@@ -15,9 +15,7 @@ from burridge_knopoff.config import Study, load_study, read_schema
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.friction import LAWS, Friction
-from burridge_knopoff.initial import InitialState
 from burridge_knopoff.report.page import Sources
-from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import STATUS, run
 from burridge_knopoff.summaries import agreement, attractors, bifurcation, lyapunov, mean_distance, orbits
 from burridge_knopoff.summaries.points import Grid
@@ -50,11 +48,12 @@ def poor(tmp_path_factory, repository) -> Poor:
     folder = tmp_path_factory.mktemp("poor") / "results" / "poor"
     study = load_study(POOR, read_schema(repository / "workflow/schemas/config.schema.yaml"), "poor.yaml")
     config = study.config
-    grid = Grid(folder / "points", study.initial, dict(study.grid))
-    state = InitialState("pair", **{key: tuple(value) for key, value in config["initial"]["pair"].items()})
-    settings = Settings(transient=100.0, window=100.0, batches=2)
+    grid = Grid.of(folder / "points", study.points)
     for _, (law, initial, a) in grid:
-        write_point(run(Chain(2), Friction(law, grid.a[a]), state, settings), grid.path(law, initial, a))
+        write_point(
+            run(Chain(2), Friction(law, grid.a[a]), grid.initial[initial], grid.settings[law]),
+            grid.path(law, initial, a),
+        )
     threshold = config["synchronization_threshold"]
     values = list(study.grid.values())
     kinds = lyapunov.summarize(grid, config["lyapunov_exponents"], threshold, config["motion"])

@@ -217,7 +217,7 @@ def test_the_commands_of_every_run_are_those_of_the_workflow(poor):
         for k, name in enumerate(runs["names"]):
             before, after = runs["simulate"][i][0]
             typed = f"{before} --a {runs['texts'][k]} {after}{name}.nc"
-            assert typed == f"bk simulate {poor.study.options(law, 'pair', name)} --out {law}_pair_a{name}.nc"
+            assert typed == f"{poor.study.command(law, 'pair', name)} --out {law}_pair_a{name}.nc"
     assert commands.snakemake("linearized", "pair", "0.1000") == (
         "snakemake -c1 --force results/poor/points/linearized/pair/a0.1000.nc --configfile 'config/two words.yaml'"
     )

@@ -62,7 +62,7 @@ def test_fractions_count_outcomes(files):
 def test_a_damaged_chain_file_is_named(files):
     path = files[0].with_name("damaged.nc")
     path.write_bytes(files[0].read_bytes()[:1000])
-    with pytest.raises(ValueError, match=r"damaged\.nc: not a readable file"):
+    with pytest.raises(ValueError, match=r"damaged\.nc: has no seal at its end"):
         chains.summarize([path])
 
 

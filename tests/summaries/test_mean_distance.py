@@ -8,7 +8,7 @@ import pytest
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
-from burridge_knopoff.summaries.points import Grid
+from tests.grids import grid_of
 
 TIME = np.array([0.0, 5.0, 10.0, 15.0])
 
@@ -30,10 +30,11 @@ def test_settling_time(distance, expected):
 
 
 def test_settling_times_of_runs(tmp_path):
-    grid = Grid(tmp_path, ("minus",), {"0.0800": 0.08})
+    settings = {"transient": 1500.0, "window": 100.0, "batches": 2}
+    grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
     runs = {}
     for _, (law, initial, a) in grid:
-        runs[law] = simulate(law, 0.08, initial, transient=1500.0, window=100.0, batches=2)
+        runs[law] = simulate(law, 0.08, initial, **settings)
         if law == "nonlinear":
             runs[law] = dataclasses.replace(runs[law], status="step_limit")
         write_point(runs[law], grid.path(law, initial, a))

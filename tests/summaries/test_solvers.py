@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.seal import BadFile
 from burridge_knopoff.figures import solvers as figure
+from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.settings import Settings
 from burridge_knopoff.simulation import simulate
-from burridge_knopoff.summaries.points import Grid, PointError
+from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
 
 SOLVERS = {"linearized": ["map", "series", "rk4"], "nonlinear": ["series", "rk4"]}
@@ -32,13 +35,23 @@ def runs():
 def files(tmp_path, runs):
     for (law, solver, name), run in runs.items():
         own = solver == SOLVERS[law][0]
-        folder = tmp_path / "points" / law if own else tmp_path / "solvers" / law / solver
-        write_point(run, folder / "plus" / f"a{name}.nc")
-    return Grid(tmp_path / "points", ("plus",), A), tmp_path / "solvers"
+        folder = tmp_path / "points" if own else tmp_path / "solvers" / solver
+        write_point(run, folder / law / "plus" / f"a{name}.nc")
+    state = {"plus": PAPER_STATES["plus"]}
+    own = {law: Settings(**settings(solvers[0])) for law, solvers in SOLVERS.items()}
+    grid = Grid(tmp_path / "points", state, A, own)
+    others = {
+        solver: grid.elsewhere(
+            tmp_path / "solvers" / solver,
+            {law: settings(solver) for law, solvers in SOLVERS.items() if solver in solvers[1:]},
+        )
+        for solver in ("series", "rk4")
+    }
+    return grid, others
 
 
 def test_the_runs_are_compared(files, runs):
-    dataset = summarize(*files, SOLVERS, 0.01)
+    dataset = summarize(*files, 0.01)
     assert dict(dataset.sizes) == {"law": 2, "solver": 3, "initial": 1, "a": 2}
     assert dataset.attrs["solver_linearized"] == "map"
     for (law, solver, name), run in runs.items():
@@ -62,7 +75,7 @@ def test_the_runs_are_compared(files, runs):
 
 
 def test_a_solver_that_does_not_know_a_law_has_no_numbers(files):
-    none = summarize(*files, SOLVERS, 0.01).sel(law="nonlinear", solver="map")
+    none = summarize(*files, 0.01).sel(law="nonlinear", solver="map")
     assert (none["status"] == -1).all()
     assert (none["step_count"] == -1).all()
     assert (none["event_order_count"] == -1).all()
@@ -71,16 +84,16 @@ def test_a_solver_that_does_not_know_a_law_has_no_numbers(files):
 
 
 def test_a_file_of_another_solver_is_refused(files):
-    grid, folder = files
-    (folder / "linearized" / "series" / "plus" / "a0.0800.nc").write_bytes(
-        (folder / "linearized" / "rk4" / "plus" / "a0.0800.nc").read_bytes()
-    )
-    with pytest.raises(PointError, match=r"series/plus/a0\.0800\.nc: was made by solver rk4 instead of series"):
-        summarize(grid, folder, SOLVERS, 0.01)
+    grid, others = files
+    series, rk4 = (others[solver].path("linearized", "plus", "0.0800") for solver in ("series", "rk4"))
+    series.write_bytes(rk4.read_bytes())
+    reason = r"series/linearized/plus/a0\.0800\.nc: is another run: --solver rk4 instead of --solver series"
+    with pytest.raises(BadFile, match=reason):
+        summarize(grid, others, 0.01)
 
 
 def test_the_figure_draws_every_solver(files):
-    dataset = summarize(*files, SOLVERS, 0.01)
+    dataset = summarize(*files, 0.01)
     panels = figure.draw(dataset).axes
     shown = [line.get_ydata().tolist() for line in panels[0].get_lines() if len(line.get_ydata()) == 2]
     for solver in SOLVERS["linearized"]:

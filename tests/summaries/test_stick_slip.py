@@ -12,7 +12,6 @@ from burridge_knopoff.initial import InitialState
 from burridge_knopoff.simulation import simulate
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.flow import Model
-from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,
@@ -20,6 +19,7 @@ from burridge_knopoff.summaries.stick_slip import (
     stick_fraction,
     summarize,
 )
+from tests.grids import grid_of
 
 STOP, START = 0, 1
 
@@ -98,7 +98,7 @@ SETTINGS = {"transient": 1500.0, "window": 400.0, "batches": 4}
 def points(folder, initial, a, change=lambda law, trajectory: trajectory, **settings):
     """Write the points of one initial state at one a, altered if asked, and return their grid."""
     name = initial if isinstance(initial, str) else initial.name
-    grid = Grid(folder, (name,), {f"{a:.4f}": a})
+    grid = grid_of(folder, [initial], {f"{a:.4f}": a}, **{**SETTINGS, **settings})
     for _, (law, _, number) in grid:
         trajectory = simulate(law, a, initial, **{**SETTINGS, **settings})
         write_point(change(law, trajectory), grid.path(law, name, number))

@@ -26,7 +26,7 @@ rule attractors_of_law:
         grid=list(STUDY.grid.values()),
         initial=STUDY.config["initial"],
         config={key: STUDY.config[key] for key in ATTRACTOR_KEYS},
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/attractors.py")),
+        sources=script_sources("attractors_of_law"),
     message:
         "attractors of the {wildcards.law} law along a"
     script:
@@ -51,6 +51,8 @@ rule attractors:
     resources:
         mem_mb=400,
         runtime=10,
+    params:
+        sources=script_sources("attractors"),
     message:
         "attractors of both laws"
     script:

@@ -32,7 +32,7 @@ rule basin_tile:
     params:
         a=lambda wildcards: STUDY.grid[wildcards.a],
         config=BASIN_CONFIG,
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/basins.py")),
+        sources=script_sources("basin_tile"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
     script:
@@ -55,7 +55,7 @@ rule basin_pairs:
     params:
         a=lambda wildcards: STUDY.grid[wildcards.a],
         config=BASIN_CONFIG,
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/basins.py")),
+        sources=script_sources("basin_pairs"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
     script:
@@ -91,6 +91,7 @@ rule basins:
     params:
         maps=BASIN_MAPS,
         config=BASIN_CONFIG,
+        sources=script_sources("basins"),
     message:
         "maps of basins of attraction"
     script:

@@ -32,7 +32,7 @@ rule watch_chain:
         },
         model=CHAIN_MODEL,
         threshold=STUDY.config["synchronization_threshold"],
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/chains.py")),
+        sources=script_sources("watch_chain"),
     message:
         "mirror synchrony of sampled states, {wildcards.blocks} blocks"
     script:
@@ -51,6 +51,8 @@ rule chains_summary:
     resources:
         mem_mb=400,
         runtime=10,
+    params:
+        sources=script_sources("chains_summary"),
     message:
         "fraction of synchronizing states over number of blocks and a"
     script:
@@ -76,6 +78,8 @@ rule figure_chains:
     resources:
         mem_mb=400,
         runtime=10,
+    params:
+        sources=script_sources("figure_chains"),
     message:
         "figure: longer chains, two blocks under both laws"
     script:

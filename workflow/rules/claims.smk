@@ -46,7 +46,7 @@ rule claims:
             )
         },
         figures=FIGURE_NAMES,
-        sources=source_fingerprint(CLAIM_SOURCES),
+        sources=script_sources("claims"),
     message:
         "verdicts on the claims of the paper"
     script:

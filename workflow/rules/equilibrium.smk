@@ -15,7 +15,7 @@ rule equilibrium:
         blocks=STUDY.blocks,
         v=STUDY.config["v"],
         grid=list(STUDY.grid.values()),
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/equilibrium.py")),
+        sources=script_sources("equilibrium"),
     message:
         "uniform sliding and the growth of its perturbations"
     script:

@@ -8,6 +8,15 @@ FIGURE_POINTS = {
     )
     for initial in STUDY.initial
 }
+# Of the points only these are read.
+FIGURE_RUNS = {
+    "points": {
+        **STUDY.points,
+        "a": {STUDY.figure_point: STUDY.grid[STUDY.figure_point]},
+    },
+    "law": STUDY.config["figures"]["law"],
+    "a": STUDY.figure_point,
+}
 
 
 FIGURE_NAMES = [
@@ -52,6 +61,7 @@ rule figure_friction_laws:
     params:
         a=STUDY.grid[STUDY.figure_point],
         largest=max(STUDY.grid.values()),
+        sources=script_sources("figure_friction_laws"),
     message:
         "figure: friction laws, and the least friction in the runs"
     script:
@@ -74,6 +84,8 @@ rule figure_mean_distance:
         f"{RESULTS}/logs/figure_mean_distance.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_mean_distance.tsv"
+    params:
+        sources=script_sources("figure_mean_distance"),
     message:
         "figure: <J> against a"
     script:
@@ -95,6 +107,8 @@ rule figure_bifurcation:
         f"{RESULTS}/logs/figure_bifurcation.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_bifurcation.tsv"
+    params:
+        sources=script_sources("figure_bifurcation"),
     message:
         "figure: bifurcation diagrams"
     script:
@@ -116,6 +130,9 @@ rule figure_distance:
         f"{RESULTS}/logs/figure_distance.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_distance.tsv"
+    params:
+        **FIGURE_RUNS,
+        sources=script_sources("figure_distance"),
     message:
         "figure: J against time"
     script:
@@ -140,6 +157,9 @@ rule figure_motion:
         f"{RESULTS}/logs/figure_motion_{{initial}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_motion_{{initial}}.tsv"
+    params:
+        **FIGURE_RUNS,
+        sources=script_sources("figure_motion"),
     message:
         "figure: velocities and positions, initial state {wildcards.initial}"
     script:
@@ -161,6 +181,8 @@ rule figure_lyapunov:
         f"{RESULTS}/logs/figure_lyapunov.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_lyapunov.tsv"
+    params:
+        sources=script_sources("figure_lyapunov"),
     message:
         "figure: Lyapunov exponents against a"
     script:
@@ -182,6 +204,8 @@ rule figure_basin_fractions:
         f"{RESULTS}/logs/figure_basin_fractions.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_basin_fractions.tsv"
+    params:
+        sources=script_sources("figure_basin_fractions"),
     message:
         "figure: basin fractions and sweeps of a"
     script:
@@ -206,6 +230,7 @@ rule figure_basins:
         f"{RESULTS}/benchmarks/figure_basins.tsv"
     params:
         marked=STUDY.marked_states,
+        sources=script_sources("figure_basins"),
     message:
         "figure: maps of basins"
     script:
@@ -227,6 +252,8 @@ rule figure_agreement:
         f"{RESULTS}/logs/figure_agreement.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_agreement.tsv"
+    params:
+        sources=script_sources("figure_agreement"),
     message:
         "figure: agreement of the two laws"
     script:
@@ -249,6 +276,8 @@ rule figure_orbits:
         f"{RESULTS}/logs/figure_orbits.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_orbits.tsv"
+    params:
+        sources=script_sources("figure_orbits"),
     message:
         "figure: the synchronized orbit and where it is lost"
     script:
@@ -272,6 +301,7 @@ rule figure_stick_slip:
         f"{RESULTS}/benchmarks/figure_stick_slip.tsv"
     params:
         law=STUDY.config["figures"]["law"],
+        sources=script_sources("figure_stick_slip"),
     message:
         "figure: stick-slip cycles against a"
     script:
@@ -293,6 +323,8 @@ rule figure_equilibrium:
         f"{RESULTS}/logs/figure_equilibrium.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_equilibrium.tsv"
+    params:
+        sources=script_sources("figure_equilibrium"),
     message:
         "figure: uniform sliding and the growth of its perturbations"
     script:
@@ -314,6 +346,8 @@ rule figure_solvers:
         f"{RESULTS}/logs/figure_solvers.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_solvers.tsv"
+    params:
+        sources=script_sources("figure_solvers"),
     message:
         "figure: independent solvers of the same equations"
     script:

@@ -18,7 +18,7 @@ rule orbits:
             "contact": STUDY.config["contact"],
         },
         grid=list(STUDY.grid.values()),
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/orbits.py")),
+        sources=script_sources("orbits"),
     message:
         "the synchronized orbit and where it is lost"
     script:

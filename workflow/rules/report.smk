@@ -1,8 +1,5 @@
 # Report: one HTML file that opens offline, with the verdicts, charts, figures and commands of the study.
 
-DEFAULT_CONFIG = Path(workflow.basedir, "config/paper.yaml").resolve()
-CONFIG_FILE = Path(workflow.configfiles[0]).resolve()
-
 # Results of the optional stage are no inputs: the report must not make them. It shows those that are there.
 OPTIONAL_RESULTS = {
     path: hashlib.sha256(Path(path).read_bytes()).hexdigest()
@@ -29,10 +26,10 @@ rule report:
         # The report shows the whole config.
         config=STUDY.config,
         grid=dict(STUDY.grid),
-        configfile="" if CONFIG_FILE == DEFAULT_CONFIG else os.path.relpath(CONFIG_FILE),
+        configfile=CONFIG_FILE,
         optional=OPTIONAL_RESULTS,
         benchmarks=f"{RESULTS}/benchmarks",
-        sources=source_fingerprint(REPORT_SOURCES),
+        sources=script_sources("report"),
     message:
         f"report: {RESULTS}/report.html"
     script:

@@ -20,11 +20,11 @@ rule simulate:
         mem_mb=150,
         runtime=10,
     params:
-        options=lambda wildcards: STUDY.options(
+        command=lambda wildcards: STUDY.command(
             wildcards.law, wildcards.initial, wildcards.a
         ),
-        sources=source_fingerprint(),
+        sources=source_fingerprint("burridge_knopoff.dataset.point"),
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, a = {wildcards.a}"
     shell:
-        "bk simulate {params.options} --out {output} 2> {log}"
+        "{params.command} --out {output} 2> {log}"

@@ -1,6 +1,6 @@
 # Solvers: the points of a few values of a once more, by every other solver of each law.
 
-SOLVER_POINT = f"{RESULTS}/solvers/{{law}}/{{solver}}/{{initial}}/a{{a}}.nc"
+SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{{law}}/{{initial}}/a{{a}}.nc"
 SOLVER_GRID = {
     name: value
     for name, value in STUDY.grid.items()
@@ -12,23 +12,23 @@ rule simulate_solver:
     output:
         SOLVER_POINT,
     log:
-        f"{RESULTS}/logs/simulate_solver/{{law}}/{{solver}}/{{initial}}/a{{a}}.log",
+        f"{RESULTS}/logs/simulate_solver/{{solver}}/{{law}}/{{initial}}/a{{a}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/simulate_solver/{{law}}/{{solver}}/{{initial}}/a{{a}}.tsv"
+        f"{RESULTS}/benchmarks/simulate_solver/{{solver}}/{{law}}/{{initial}}/a{{a}}.tsv"
     wildcard_constraints:
         solver="|".join(SOLVERS),
     resources:
         mem_mb=150,
         runtime=60,
     params:
-        options=lambda wildcards: STUDY.options(
+        command=lambda wildcards: STUDY.command(
             wildcards.law, wildcards.initial, wildcards.a, wildcards.solver
         ),
-        sources=source_fingerprint(),
+        sources=source_fingerprint("burridge_knopoff.dataset.point"),
     message:
         "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
     shell:
-        "bk simulate {params.options} --out {output} 2> {log}"
+        "{params.command} --out {output} 2> {log}"
 
 
 rule solvers:
@@ -56,14 +56,17 @@ rule solvers:
         mem_mb=400,
         runtime=10,
     params:
-        initial=STUDY.initial,
-        grid=SOLVER_GRID,
-        solvers={
-            law: [STUDY.config["solver"][law], *STUDY.other_solvers(law)]
-            for law in LAWS
+        points={**STUDY.points, "a": SOLVER_GRID},
+        others={
+            solver: {
+                law: asdict(STUDY.settings(law, solver))
+                for law in LAWS
+                if solver in STUDY.other_solvers(law)
+            }
+            for solver in SOLVERS
         },
         step=STUDY.config["solvers"]["step"],
-        sources=source_fingerprint(("summaries/solvers.py", "summaries/event_order.py")),
+        sources=script_sources("solvers"),
     message:
         "independent solvers of the same equations"
     script:

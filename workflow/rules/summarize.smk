@@ -37,10 +37,9 @@ rule mean_distance:
         mem_mb=400,
         runtime=30,
     params:
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
+        points=STUDY.points,
         threshold=STUDY.config["synchronization_threshold"],
-        sources=source_fingerprint(("summaries/mean_distance.py",)),
+        sources=script_sources("mean_distance"),
     message:
         "<J> over law, initial state and a"
     script:
@@ -60,8 +59,8 @@ rule bifurcation:
         mem_mb=1000,
         runtime=30,
     params:
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
+        points=STUDY.points,
+        sources=script_sources("bifurcation"),
     message:
         "section points W' of all runs"
     script:
@@ -81,12 +80,11 @@ rule lyapunov:
         mem_mb=400,
         runtime=30,
     params:
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
+        points=STUDY.points,
         exponents=STUDY.config["lyapunov_exponents"],
         threshold=STUDY.config["synchronization_threshold"],
         motion=STUDY.config["motion"],
-        sources=source_fingerprint(("stability/motion.py", "summaries/lyapunov.py")),
+        sources=script_sources("lyapunov"),
     message:
         "Lyapunov exponents and kinds of motion"
     script:
@@ -119,10 +117,10 @@ rule agreement:
         mem_mb=400,
         runtime=30,
     params:
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
+        points=STUDY.points,
         threshold=STUDY.config["synchronization_threshold"],
         agreement=STUDY.config["agreement"],
+        sources=script_sources("agreement"),
     message:
         "linearized against nonlinear law"
     script:
@@ -142,11 +140,10 @@ rule stick_slip:
         mem_mb=400,
         runtime=30,
     params:
-        initial=STUDY.initial,
-        grid=dict(STUDY.grid),
+        points=STUDY.points,
         blocks=STUDY.blocks,
         window={key: STUDY.config[key] for key in ("transient", "window", "batches")},
-        sources=source_fingerprint(("summaries/stick_slip.py",)),
+        sources=script_sources("stick_slip"),
     message:
         "stick-slip cycles of each block"
     script:

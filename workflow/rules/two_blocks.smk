@@ -26,7 +26,7 @@ rule two_blocks:
         threshold=STUDY.config["synchronization_threshold"],
         motion=STUDY.config["motion"],
         agreement=STUDY.config["agreement"],
-        sources=source_fingerprint((*STABILITY_SOURCES, "summaries/two_blocks.py")),
+        sources=script_sources("two_blocks"),
     message:
         "two blocks: linearized against nonlinear law"
     script:
@@ -48,6 +48,8 @@ rule figure_two_blocks:
         f"{RESULTS}/logs/figure_two_blocks.log",
     benchmark:
         f"{RESULTS}/benchmarks/figure_two_blocks.tsv"
+    params:
+        sources=script_sources("figure_two_blocks"),
     message:
         "figure: two blocks under both laws"
     script:

@@ -10,7 +10,7 @@ from burridge_knopoff.files import write_text
 from burridge_knopoff.summaries.agreement import digest, summarize, table
 from burridge_knopoff.summaries.points import Grid
 
-grid = Grid(Path(snakemake.input.points[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
+grid = Grid.of(Path(snakemake.input.points[0]).parents[2], snakemake.params.points)
 lyapunov = open_summary(snakemake.input.lyapunov[0])
 dataset = summarize(grid, lyapunov, snakemake.params.threshold, snakemake.params.agreement)
 write_summary(dataset, snakemake.output.dataset)

@@ -1,11 +1,14 @@
 """Figure: J against time, for each initial state."""
 
 import sys
+from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
-from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.figures.distance import draw
 from burridge_knopoff.figures.style import write_figure
+from burridge_knopoff.summaries.points import Grid, open_point
 
-write_figure(draw({name: open_summary(path) for name, path in snakemake.input.items()}), *snakemake.output)
+params = snakemake.params
+grid = Grid.of(Path(snakemake.input[0]).parents[2], params.points)
+write_figure(draw({name: open_point(grid, params.law, name, params.a) for name in grid.initial}), *snakemake.output)

@@ -9,6 +9,6 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries.lyapunov import summarize
 from burridge_knopoff.summaries.points import Grid
 
-grid = Grid(Path(snakemake.input[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
+grid = Grid.of(Path(snakemake.input[0]).parents[2], snakemake.params.points)
 params = snakemake.params
 write_summary(summarize(grid, params.exponents, params.threshold, params.motion), snakemake.output[0])

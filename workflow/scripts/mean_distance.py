@@ -9,5 +9,5 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries.mean_distance import summarize
 from burridge_knopoff.summaries.points import Grid
 
-grid = Grid(Path(snakemake.input[0]).parents[2], tuple(snakemake.params.initial), snakemake.params.grid)
+grid = Grid.of(Path(snakemake.input[0]).parents[2], snakemake.params.points)
 write_summary(summarize(grid, snakemake.params.threshold), snakemake.output[0])

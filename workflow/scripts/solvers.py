@@ -10,6 +10,7 @@ from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
 
 params = snakemake.params
-grid = Grid(Path(snakemake.input.points[0]).parents[2], tuple(params.initial), params.grid)
+grid = Grid.of(Path(snakemake.input.points[0]).parents[2], params.points)
 folder = Path(snakemake.input.others[0]).parents[3]
-write_summary(summarize(grid, folder, params.solvers, params.step), snakemake.output[0])
+others = {solver: grid.elsewhere(folder / solver, settings) for solver, settings in params.others.items()}
+write_summary(summarize(grid, others, params.step), snakemake.output[0])

@@ -10,5 +10,5 @@ from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.stick_slip import summarize
 
 params = snakemake.params
-grid = Grid(Path(snakemake.input[0]).parents[2], tuple(params.initial), params.grid)
+grid = Grid.of(Path(snakemake.input[0]).parents[2], params.points)
 write_summary(summarize(grid, params.blocks, **params.window), snakemake.output[0])

@@ -21,7 +21,7 @@ from burridge_knopoff.config.message import ConfigError
 from burridge_knopoff.config.study import check_names, check_schema, read_schema, read_yaml
 from burridge_knopoff.files import display_path
 from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.provenance import CLAIM_SOURCES, provenance
+from burridge_knopoff.provenance import provenance
 
 TOPICS = {
     "synchronization": synchronization,
@@ -141,7 +141,7 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
-        **provenance(CLAIM_SOURCES),
+        **provenance(__name__),
         "counts": {name: sum(verdict.verdict == name for _, verdict in judged) for name in VERDICTS},
         "claims": [
             {

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 from burridge_knopoff.config.grid import values_of
 from burridge_knopoff.config.message import ConfigError
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.settings import SOLVERS
+from burridge_knopoff.settings import SOLVERS, Settings
 
 #: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss.
 BASIN_A = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
@@ -37,14 +38,23 @@ RUN_KEYS = (
 )
 
 
+def run_settings(config: Mapping[str, Any], solver: str) -> Settings:
+    """Return the settings of runs by a solver; raises ValueError, one line, for what it does not allow."""
+    values: dict[str, Any] = {key: config[key] for key in RUN_KEYS}
+    if solver == "rk4":
+        values["step"] = config["step"]
+    numbers = {item.name for item in fields(Settings) if item.type == "float"}
+    # 3000 and 3000.0 are one run, with one command.
+    values = {key: float(item) if key in numbers else item for key, item in values.items()}
+    return Settings(solver=solver, **values)
+
+
 def check_runs(config: Mapping[str, Any], file: str) -> None:
     """Let the settings of the runs be checked by the code that will run them."""
-    from burridge_knopoff.settings import Settings
-
     blocks = len(next(iter(config["initial"].values()))["position"])
     for solver in config["solver"].values():
         try:
-            Settings(solver=solver, step=config["step"], **{key: config[key] for key in RUN_KEYS}).check_blocks(blocks)
+            run_settings(config, solver).check_blocks(blocks)
         except ValueError as error:
             raise ConfigError(f"{file}: {error}") from error
 

@@ -4,25 +4,28 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.command import simulate_command
 from burridge_knopoff.config.checks import (
     LAW_SOLVERS,
-    RUN_KEYS,
     check_boxes,
     check_chains,
     check_runs,
     check_states,
     fill_basins,
     fill_solvers,
+    run_settings,
 )
 from burridge_knopoff.config.grid import grid_of
 from burridge_knopoff.config.message import ConfigError
 from burridge_knopoff.files import display_path
 from burridge_knopoff.friction import LAWS
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.settings import Settings
 
 LARGEST = 1e300
 
@@ -76,14 +79,12 @@ class Study:
         """Return the solvers that know a law, without the one that makes the points of the study."""
         return [solver for solver in LAW_SOLVERS[law] if solver != self.config["solver"][law]]
 
-    def options(self, law: str, initial: str, a: str, solver: str | None = None) -> str:
-        """Return the options of `bk simulate` for one grid point, named by its wildcards.
+    def settings(self, law: str, solver: str | None = None) -> Settings:
+        """Return the settings of the runs under a law.
 
         solver : another one than that of the study's points
-        Raises ConfigError if a is not a value of the grid, or the solver not another one that knows the law.
+        Raises ConfigError if it is not another one that knows the law.
         """
-        if a not in self.grid:
-            raise ConfigError(f"a{a}.nc: not a point of study {self.name}: a is not in its grid")
         config = dict(self.config)
         if solver is not None:
             if solver not in self.other_solvers(law):
@@ -92,14 +93,30 @@ class Study:
             config.update(solver={law: solver}, step=config["solvers"]["step"])
             if solver == "rk4":
                 config["lyapunov_exponents"] = 0
-        state = config["initial"][initial]
-        options = [("law", law), ("a", repr(self.grid[a])), ("initial", initial)]
-        options += [(key, ",".join(repr(float(value)) for value in state[key])) for key in ("position", "velocity")]
-        options.append(("solver", config["solver"][law]))
-        if config["solver"][law] == "rk4":
-            options.append(("step", repr(config["step"])))
-        options += [(key.replace("_", "-"), str(config[key])) for key in RUN_KEYS]
-        return " ".join(f"--{key}={value}" if value.startswith("-") else f"--{key} {value}" for key, value in options)
+        return run_settings(config, config["solver"][law])
+
+    def state(self, initial: str) -> InitialState:
+        """Return an initial state of the study by its name."""
+        return InitialState(initial, **self.config["initial"][initial])
+
+    def command(self, law: str, initial: str, a: str, solver: str | None = None) -> str:
+        """Return the `bk simulate` command of one grid point, named by its wildcards, without its --out.
+
+        solver : another one than that of the study's points
+        Raises ConfigError if a is not a value of the grid, or the solver not another one that knows the law.
+        """
+        if a not in self.grid:
+            raise ConfigError(f"a{a}.nc: not a point of study {self.name}: a is not in its grid")
+        return simulate_command(law, self.grid[a], self.state(initial), self.settings(law, solver))
+
+    @property
+    def points(self) -> dict[str, Any]:
+        """What decides the point files, in the types of a config: `initial`, `a`, and `settings` of each law."""
+        return {
+            "initial": {name: dict(state) for name, state in self.config["initial"].items()},
+            "a": dict(self.grid),
+            "settings": {law: asdict(self.settings(law)) for law in LAWS},
+        }
 
 
 def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> Study:

@@ -6,16 +6,18 @@ table makes the xarray Dataset of a notebook.
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from burridge_knopoff.command import simulate_command
+from burridge_knopoff.dataset.seal import identity, seal
 from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, fill, flag
 from burridge_knopoff.files import write_whole
-from burridge_knopoff.provenance import provenance
+from burridge_knopoff.provenance import SOFTWARE, provenance
 from burridge_knopoff.simulation import DEFAULT_SOLVER, STATUS, Trajectory
+from burridge_knopoff.sources import source_fingerprint
 
 if TYPE_CHECKING:
     import xarray
@@ -100,16 +102,9 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
 
 
-def command(trajectory: Trajectory) -> str:
-    """Return the `bk simulate` command that makes this point again."""
-    state, settings = trajectory.initial, trajectory.settings
-    words = [f"bk simulate --law {trajectory.friction.law} --a {trajectory.friction.a!r} --initial {state.name}"]
-    words += [f"--{key}={','.join(map(repr, getattr(state, key)))}" for key in ("position", "velocity")]
-    for item in fields(settings):
-        value = getattr(settings, item.name)
-        if value != item.default:
-            words.append(f"--{item.name.replace('_', '-')} {value}")
-    return " ".join(words)
+def point_identity(command: str) -> str:
+    """Return what the point file of a run is about: its `bk simulate` command, and the software that makes it."""
+    return identity(command, SOFTWARE, source_fingerprint(__name__))
 
 
 def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
@@ -124,8 +119,8 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
             "phase-space distance between the end blocks. All quantities are dimensionless."
         ),
         "keywords": "stick-slip, Burridge-Knopoff model, synchronization",
-        "source": f"{provenance()['software']}, event-driven or time-stepping simulation",
-        "history": command(trajectory),
+        "source": f"{SOFTWARE}, event-driven or time-stepping simulation",
+        "history": simulate_command(law, trajectory.friction.a, trajectory.initial, settings),
         "law": law,
         "solver": settings.solver or DEFAULT_SOLVER[law],
         "initial": trajectory.initial.name,
@@ -137,7 +132,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     }
     if attributes["solver"] == "rk4":
         attributes["step"] = settings.step
-    attributes.update(provenance())
+    attributes.update(provenance(__name__))
     # The sources are told by their fingerprint; a commit that changes a text must not change the bytes of a point.
     del attributes["git_commit"]
     return attributes
@@ -150,9 +145,12 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     """
     import netCDF4
 
+    attributes = point_attributes(trajectory)
+
     def write(name: str) -> None:
         with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
-            fill(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
+            fill(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
+        seal(name, point_identity(attributes["history"]), trajectory.status)
 
     write_whole(path, write)
 

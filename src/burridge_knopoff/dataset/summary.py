@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.seal import BadFile, identity, read_seal, seal
 from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
 from burridge_knopoff.files import write_whole
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import POINT_SOURCES, provenance
+from burridge_knopoff.provenance import provenance
+from burridge_knopoff.sources import source_fingerprint
 
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),
@@ -33,11 +35,12 @@ def summary(
     values: Mapping[str, np.ndarray],
     coordinates: Mapping[str, Any],
     attributes: Mapping[str, Any],
-    sources: tuple[str, ...] = POINT_SOURCES,
+    *,
+    module: str,
 ) -> xarray.Dataset:
     """Return a Dataset of the described variables with the values under the same names.
 
-    sources : files whose text decides the values
+    module : name of the module that makes the values
     """
     data = {
         name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
@@ -48,7 +51,7 @@ def summary(
         "title": title,
         "history": "snakemake, from the point files",
         **attributes,
-        **provenance(sources),
+        **provenance(module),
     }
     return xarray.Dataset(data, dict(coordinates), head)
 
@@ -60,15 +63,31 @@ def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
         encoding[str(name)] = {"_FillValue": None}
         if variable.dtype != object and variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
-    write_whole(path, lambda name: dataset.to_netcdf(name, engine="netcdf4", encoding=encoding))
+    about = _identity(dataset)
+
+    def write(name: str) -> None:
+        dataset.to_netcdf(name, engine="netcdf4", encoding=encoding)
+        seal(name, about)
+
+    write_whole(path, write)
 
 
 def open_summary(path: str | Path) -> xarray.Dataset:
-    """Return a summary or a point file, loaded into memory.
+    """Return a summary, loaded into memory.
 
-    Raises ValueError, one line that names the file, if it cannot be read.
+    Raises BadFile if it is missing, damaged, or made by other sources than those of this package.
     """
+    read_seal(path)
     try:
-        return xarray.load_dataset(path, engine="netcdf4")
-    except (OSError, RuntimeError) as error:
-        raise ValueError(f"{path}: not a readable file ({error}); delete it and run snakemake again") from None
+        dataset = xarray.load_dataset(path, engine="netcdf4")
+        module, fingerprint = dataset.attrs["source_module"], dataset.attrs["source_fingerprint"]
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise BadFile(path, f"is not a summary ({error})") from None
+    current = source_fingerprint(module)
+    if fingerprint != current:
+        raise BadFile(path, f"was made by other sources ({module} {fingerprint}, now {current})")
+    return dataset
+
+
+def _identity(dataset: xarray.Dataset) -> str:
+    return identity(*(dataset.attrs[key] for key in ("software", "source_module", "source_fingerprint")))

@@ -72,14 +72,18 @@ def config_text(study: Study) -> str:
 def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
     """Return which software made each summary, as its file says."""
     return [
-        {"name": f"{name}.nc", **{key: str(dataset.attrs.get(key, "–")) for key in provenance()}}
+        {"name": f"{name}.nc", **{key: str(dataset.attrs.get(key, "–")) for key in provenance(__name__)}}
         for name, dataset in summaries.items()
     ]
 
 
+#: The module whose sources decide the point files.
+POINT_MODULE = "burridge_knopoff.dataset.point"
+
+
 def software() -> list[tuple[str, str]]:
     """Return the provenance of this report and the versions of the libraries."""
-    found = provenance()
+    found = provenance(POINT_MODULE)
     rows = [
         ("Software", found["software"]),
         ("Source fingerprint of the runs", found["source_fingerprint"]),

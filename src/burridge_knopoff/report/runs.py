@@ -39,7 +39,7 @@ class Commands:
 
     def simulate(self, law: str, initial: str, a: str) -> str:
         """Return the command of the same run by hand; it writes a copy of the point file into the current folder."""
-        return f"bk simulate {self.study.options(law, initial, a)} --out {law}_{initial}_a{a}.nc"
+        return f"{self.study.command(law, initial, a)} --out {law}_{initial}_a{a}.nc"
 
 
 def embedded_runs(

@@ -72,8 +72,9 @@ def summarize(
         "Agreement of the linearized and the nonlinear friction law",
         VARIABLES,
         values,
-        axes(grid.initial, list(grid.a.values()), PAPER_LAWS),
+        axes(list(grid.initial), list(grid.a.values()), PAPER_LAWS),
         {"synchronization_threshold": synchronization_threshold, **agreement},
+        module=__name__,
     )
 
 

@@ -14,7 +14,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.friction import Friction
 from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
-from burridge_knopoff.provenance import STABILITY_SOURCES
+from burridge_knopoff.provenance import provenance
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
 from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
@@ -114,7 +114,7 @@ def one_law(
             for key in ("samples", "seed", "transient", "window", "time_limit", "resolution", "pushes")
         },
     }
-    return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
+    return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes, module=__name__)
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
@@ -141,10 +141,10 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     law = axes([], [])["law"]
     coordinates["law"] = (law[0], np.array([part.attrs["law"] for part in parts], dtype=object), law[2])
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
-    return summary("Attractors of both friction laws", variables, values, coordinates, attributes, STABILITY_SOURCES)
+    return summary("Attractors of both friction laws", variables, values, coordinates, attributes, module=__name__)
 
 
-_HEAD = ("Conventions", "title", "law", "software", "source_fingerprint", "git_commit")
+_HEAD = ("Conventions", "title", "law", *provenance(__name__))
 
 
 def digest(dataset: xarray.Dataset) -> str:

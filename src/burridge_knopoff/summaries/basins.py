@@ -11,7 +11,6 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import STABILITY_SOURCES
 from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, label_states, pixel_centres, plane
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
@@ -64,7 +63,7 @@ def tile(
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
     attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
     coordinates = _coordinates(first, last)
-    return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
+    return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
 def pairs(attractors: xarray.Dataset, law: str, a: float, config: Mapping[str, Any], threads: int) -> xarray.Dataset:
@@ -84,7 +83,7 @@ def pairs(attractors: xarray.Dataset, law: str, a: float, config: Mapping[str, A
     values = dict(zip(PAIR_VARIABLES, counts, strict=True))
     attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
     coordinates = {"separation": _separation(basins)}
-    return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
+    return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
 def _labels(known: KnownAttractors, position: np.ndarray, *others: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -134,7 +133,7 @@ def merge(
         "last_range": np.array(basins["last_position"], dtype=float),
         "time_limit": config["attractors"]["time_limit"],
     }
-    return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes, STABILITY_SOURCES)
+    return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
 def digest(dataset: xarray.Dataset) -> str:

@@ -24,17 +24,18 @@ def summarize(grid: Grid) -> xarray.Dataset:
     before; `section_points` picks them by name.
     """
     velocity, direction, count, law, initial, a = [], [], [], [], [], []
+    names = tuple(grid.initial)
     for _, point in grid:
         read = read_point(grid, *point, ["crossing_velocity", "crossing_direction"])
         velocity.append(read["crossing_velocity"])
         direction.append(read["crossing_direction"])
         count.append(len(read["crossing_velocity"]))
         law.append(LAWS.index(point[0]))
-        initial.append(grid.initial.index(point[1]))
+        initial.append(names.index(point[1]))
         a.append(grid.a[point[2]])
     coordinates = {
         "law": ("point", np.array(law, dtype="i1"), _flag("friction law", LAWS)),
-        "initial": ("point", np.array(initial, dtype="i2"), _flag("initial state", grid.initial)),
+        "initial": ("point", np.array(initial, dtype="i2"), _flag("initial state", names)),
         "a": ("point", np.array(a), {"long_name": "friction parameter a", "units": "1"}),
     }
     values = {
@@ -48,6 +49,7 @@ def summarize(grid: Grid) -> xarray.Dataset:
         values,
         coordinates,
         {},
+        module=__name__,
     )
 
 

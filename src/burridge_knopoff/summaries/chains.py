@@ -30,7 +30,7 @@ from burridge_knopoff.stability.sampling import CONFIDENCE, fraction_interval
 from burridge_knopoff.summaries.two_blocks import STATE
 
 _POINT = ("law", "a")
-_OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance())
+_OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance(__name__))
 _STATE = (*_POINT, "state")
 _SYMMETRIC = (*_POINT, "symmetric_state")
 CHAIN_VARIABLES = {
@@ -90,6 +90,7 @@ def chain_dataset(
             **asdict(watch),
             **asdict(sample),
         },
+        module=__name__,
     )
 
 
@@ -116,7 +117,12 @@ def summarize(paths: Sequence[str | Path]) -> xarray.Dataset:
     }
     kept = {name: value for name, value in first.attrs.items() if name not in _OWN_ATTRIBUTES}
     return summary(
-        "Mirror synchrony of longer chains", VARIABLES, values, coordinates, {"confidence": CONFIDENCE, **kept}
+        "Mirror synchrony of longer chains",
+        VARIABLES,
+        values,
+        coordinates,
+        {"confidence": CONFIDENCE, **kept},
+        module=__name__,
     )
 
 

@@ -20,7 +20,6 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.friction import LAWS, Friction
 from burridge_knopoff.initial import InitialState
-from burridge_knopoff.provenance import STABILITY_SOURCES
 from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, begin, instant, new_solver
 
 #: Time for which the equations are simulated from uniform sliding: a few periods of the slowest mode.
@@ -30,8 +29,6 @@ PARTS = ("real", "imaginary")
 
 # Figures of numbers that come from LAPACK, whose last bits depend on the machine.
 DIGITS = 12
-
-SOURCES = (*STABILITY_SOURCES, "summaries/equilibrium.py")
 
 _CURVE = ("law", "a")
 VARIABLES = {
@@ -78,7 +75,7 @@ def summarize(blocks: int, grid: Sequence[float], v: float) -> xarray.Dataset:
         values,
         coordinates,
         {"history": "snakemake, from the equations of motion", "v": v, "duration": DURATION},
-        SOURCES,
+        module=__name__,
     )
 
 

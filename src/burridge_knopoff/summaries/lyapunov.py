@@ -75,6 +75,7 @@ def summarize(
         "Lyapunov exponents and kinds of motion",
         VARIABLES,
         values,
-        axes(grid.initial, list(grid.a.values())),
+        axes(list(grid.initial), list(grid.a.values())),
         {"synchronization_threshold": synchronization_threshold, **motion},
+        module=__name__,
     )

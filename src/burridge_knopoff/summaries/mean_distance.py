@@ -56,10 +56,11 @@ def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
         VARIABLES,
         values,
         {
-            **axes(grid.initial, list(grid.a.values())),
+            **axes(list(grid.initial), list(grid.a.values())),
             "level": ("level", np.array(LEVELS), LEVEL.all_attributes()),
         },
         {"synchronization_threshold": synchronization_threshold},
+        module=__name__,
     )
 
 

@@ -119,6 +119,7 @@ def summarize(blocks: int, grid: Sequence[float], v: float, contact: str) -> xar
         values,
         coordinates,
         {"history": "snakemake, from the equations of motion", "v": v, "contact": contact},
+        module=__name__,
     )
 
 

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
+import xarray
 
+from burridge_knopoff.command import difference, simulate_command
+from burridge_knopoff.dataset.point import point_identity
+from burridge_knopoff.dataset.seal import BadFile, Seal, read_seal
 from burridge_knopoff.friction import LAWS
-
-
-class PointError(ValueError):
-    """A point file that cannot be used; the message is one line that names the file and the reason."""
-
+from burridge_knopoff.initial import InitialState
+from burridge_knopoff.provenance import SOFTWARE
+from burridge_knopoff.settings import Settings
 
 _EVENT = ("time", "block", "kind")
 
@@ -24,14 +27,32 @@ EVENTS = tuple(f"{part}event_{name}" for part in ("earlier_", "") for name in _E
 
 @dataclass(frozen=True)
 class Grid:
-    """Where the points of a study lie: its initial states and {name in file names: value of a}.
+    """The points of a study: where they lie and what they hold.
 
-    `path(law, initial, a)` is the point file below `folder`.
+    folder : holds <law>/<initial>/a<name>.nc
+    initial : {name: initial state}
+    a : {name in file names: value of a}
+    settings : {law: settings of its runs}
     """
 
     folder: Path
-    initial: tuple[str, ...]
-    a: dict[str, float]
+    initial: Mapping[str, InitialState]
+    a: Mapping[str, float]
+    settings: Mapping[str, Settings]
+
+    @classmethod
+    def of(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
+        """Return the grid of the points that `config.Study.points` describes."""
+        return cls(
+            Path(folder),
+            {name: InitialState(name, **state) for name, state in points["initial"].items()},
+            points["a"],
+            {law: Settings(**settings) for law, settings in points["settings"].items()},
+        )
+
+    def elsewhere(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
+        """Return the same points as they were run with other settings, {law: settings}, below another folder."""
+        return Grid(folder, self.initial, self.a, {law: Settings(**items) for law, items in settings.items()})
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -41,6 +62,10 @@ class Grid:
     def path(self, law: str, initial: str, a: str) -> Path:
         """Return the path of a point file."""
         return self.folder / law / initial / f"a{a}.nc"
+
+    def command(self, law: str, initial: str, a: str) -> str:
+        """Return the `bk simulate` command that makes a point."""
+        return simulate_command(law, self.a[a], self.initial[initial], self.settings[law])
 
     def __iter__(self) -> Iterator[tuple[tuple[int, int, int], tuple[str, str, str]]]:
         """Yield (index, (law, initial, a)) in the order law, initial, a."""
@@ -53,36 +78,58 @@ class Grid:
 def read_point(grid: Grid, law: str, initial: str, a: str, names: Sequence[str]) -> dict[str, np.ndarray]:
     """Return the named variables of one point.
 
-    Raises PointError if the file is missing, damaged, or of another law, initial state or value of a.
+    Raises BadFile, one line, if the file is missing, damaged, or another one than the study would make now.
     """
-    return read_run(grid.path(law, initial, a), law, initial, grid.a[a], names)
+    return read_run(grid.path(law, initial, a), grid.command(law, initial, a), names)
 
 
-def read_run(
-    path: Path, law: str, initial: str, a: float, names: Sequence[str], solver: str | None = None
-) -> dict[str, np.ndarray]:
-    """Return the named variables of the point file at a path.
+def read_run(path: Path, command: str, names: Sequence[str]) -> dict[str, np.ndarray]:
+    """Return the named variables of the point file of a run, which `command` makes.
 
-    Raises PointError if the file is missing, damaged, or of another law, initial state, value of a, or solver if given.
+    Raises BadFile as `read_point` does.
     """
+    check_run(path, command)
     try:
         with netCDF4.Dataset(path) as dataset:
             dataset.set_auto_mask(False)
-            found = (dataset.law, dataset.initial, float(dataset["a"][...]))
-            found_solver = dataset.solver
-            values = {name: dataset[name][...] for name in names}
-    except (OSError, RuntimeError, AttributeError, IndexError, KeyError) as error:
-        raise PointError(f"{path}: not a readable point file ({error}); delete it and run snakemake again") from error
-    if found != (law, initial, a):
-        raise PointError(
-            f"{path}: holds law {found[0]}, initial {found[1]}, a {found[2]!r} instead of "
-            f"{law}, {initial}, {a!r}; delete it and run snakemake again"
-        )
-    if solver is not None and found_solver != solver:
-        raise PointError(
-            f"{path}: was made by solver {found_solver} instead of {solver}; delete it and run snakemake again"
-        )
-    return values
+            return {name: dataset[name][...] for name in names}
+    except (OSError, RuntimeError, IndexError, KeyError) as error:
+        raise BadFile(path, f"is not a point file ({error})") from error
+
+
+def open_point(grid: Grid, law: str, initial: str, a: str) -> xarray.Dataset:
+    """Return one point as an xarray Dataset, loaded into memory; raises BadFile as `read_point` does."""
+    path = grid.path(law, initial, a)
+    check_run(path, grid.command(law, initial, a))
+    try:
+        return xarray.load_dataset(path, engine="netcdf4")
+    except (OSError, RuntimeError, ValueError) as error:
+        raise BadFile(path, f"is not a point file ({error})") from error
+
+
+def check_run(path: Path, command: str) -> Seal:
+    """Return the seal of the point file of a run after holding it against the command and the sources of now.
+
+    Raises BadFile as `read_point` does.
+    """
+    seal = read_seal(path)
+    if seal.identity != point_identity(command):
+        raise BadFile(path, _other(path, command))
+    return seal
+
+
+def _other(path: Path, command: str) -> str:
+    """Return in words what else a sealed file is than the run of a command."""
+    try:
+        with netCDF4.Dataset(path) as dataset:
+            found, software = dataset.history, dataset.software
+    except (OSError, RuntimeError, AttributeError) as error:
+        return f"is not a point file ({error})"
+    if found != command:
+        return f"is another run: {difference(found, command)}"
+    if software != SOFTWARE:
+        return f"was made by {software}, now {SOFTWARE}"
+    return "was made by other sources of the simulation than those of now"
 
 
 def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

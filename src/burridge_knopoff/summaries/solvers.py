@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
 import numpy as np
 import xarray
@@ -14,7 +13,7 @@ from burridge_knopoff.friction import LAWS
 from burridge_knopoff.settings import SOLVERS
 from burridge_knopoff.simulation import STATUS
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_run
+from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 NO_RUN = -1
 
@@ -49,21 +48,20 @@ _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_
 _READ = [*_COPIED, *EVENTS]
 
 
-def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], step: float) -> xarray.Dataset:
+def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dataset:
     """Compare the solvers of each law at every point of a grid.
 
     grid : the study's points at the values of a that are compared
-    folder : holds the runs of the other solvers, <law>/<solver>/<initial>/a<value>.nc
-    solvers : {law: its solvers}, that of the study's points first
+    others : {solver: its runs of the same points, with settings for each law that it is another solver of}
     step : of rk4 in these runs, unless it makes the points
     """
     shape = (len(LAWS), len(SOLVERS), *grid.shape[1:])
     values = {name: np.full(shape, NO_RUN if item.dtype[0] == "i" else np.nan) for name, item in VARIABLES.items()}
     for (i, j, k), (law, initial, a) in grid:
         reference: dict[str, np.ndarray] = {}
-        for solver in solvers[law]:
-            path = folder / law / solver / initial / f"a{a}.nc" if reference else grid.path(law, initial, a)
-            run = read_run(path, law, initial, grid.a[a], _READ, solver)
+        known = {solver: runs for solver, runs in others.items() if law in runs.settings}
+        for solver, runs in {grid.settings[law].solver: grid, **known}.items():
+            run = read_point(runs, law, initial, a, _READ)
             reference = reference or run
             index = (i, SOLVERS.index(solver), j, k)
             for name in _COPIED:
@@ -74,12 +72,13 @@ def summarize(grid: Grid, folder: Path, solvers: Mapping[str, Sequence[str]], st
             count, until = common_order(all_events(run), all_events(reference))
             values["event_order_count"][index] = count
             values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
-    shared = axes(grid.initial, list(grid.a.values()))
+    shared = axes(list(grid.initial), list(grid.a.values()))
     names = ("solver", np.array(SOLVERS, dtype=object), SOLVER.all_attributes())
     return summary(
         "Independent solvers of the same equations",
         VARIABLES,
         values,
         {"law": shared["law"], "solver": names, **shared},
-        {**{f"solver_{law}": solvers[law][0] for law in LAWS}, "step": step},
+        {**{f"solver_{law}": grid.settings[law].solver for law in LAWS}, "step": step},
+        module=__name__,
     )

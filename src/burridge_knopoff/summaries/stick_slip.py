@@ -83,10 +83,11 @@ def summarize(grid: Grid, blocks: int, transient: float, window: float, batches:
         VARIABLES,
         values,
         {
-            **axes(grid.initial, list(grid.a.values())),
+            **axes(list(grid.initial), list(grid.a.values())),
             "block": ("block", np.arange(1, blocks + 1, dtype=BLOCK.dtype), BLOCK.all_attributes()),
         },
         {"transient": transient, "window": window, "batches": batches},
+        module=__name__,
     )
 
 

@@ -124,6 +124,7 @@ def summarize(
             **{f"agreement_{name}": value for name, value in agreement.items()},
             **{f"motion_{name}": value for name, value in motion.items()},
         },
+        module=__name__,
     )
 
 

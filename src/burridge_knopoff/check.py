@@ -1,0 +1,151 @@
+"""Which files of a study are missing, corrupt, stale, or of a run that failed: `bk check`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import netCDF4
+
+from burridge_knopoff.config import ConfigError, Study, all_points
+from burridge_knopoff.config.study import read_yaml
+from burridge_knopoff.dataset.point import point_identity
+from burridge_knopoff.dataset.seal import BadFile, read_seal
+from burridge_knopoff.friction import LAWS
+from burridge_knopoff.job_log import last_words
+from burridge_knopoff.sources import source_fingerprint
+from burridge_knopoff.study_record import NAME, read_study_record, remake_command
+from burridge_knopoff.summaries.points import check_run
+
+MISSING, CORRUPT, STALE, FAILED = KINDS = ("missing", "corrupt", "stale", "failed")
+#: Files that a command is printed with; more are left to --paths.
+MOST_IN_COMMAND = 8
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A file that is not as it should be: what it is, and why, in a line."""
+
+    kind: str
+    path: Path
+    reason: str
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was found in the results of a study.
+
+    points, summaries : numbers of point files that should be there, and of other netCDF files that are
+    unused : number of point files of no point of the study
+    changed : what has changed in the config since the last run, in a line, or nothing
+    """
+
+    results: Path
+    points: int
+    summaries: int
+    findings: tuple[Finding, ...]
+    unused: int
+    changed: str
+
+    @property
+    def exit_code(self) -> int:
+        """0 if there is nothing to list, 3 if runs have failed only, else 1."""
+        kinds = {finding.kind for finding in self.findings}
+        return 1 if self.changed or kinds - {FAILED} else 3 if kinds else 0
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of the files that are to be made again."""
+        return [str(finding.path) for finding in self.findings if finding.kind != FAILED]
+
+    def lines(self) -> list[str]:
+        """Return all findings and their sum, a line each."""
+        counts = Counter(finding.kind for finding in self.findings)
+        lines = [f"{finding.kind:8} {finding.path}: {finding.reason}" for finding in self.findings]
+        lines += [self.changed] if self.changed else []
+        sums = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
+        lines.append(f"{self.results}: {self.points} points and {self.summaries} other files: {sums}")
+        if self.unused:
+            lines.append(f"{self.unused} point files belong to no point of the study")
+        if self.paths:
+            named = self.paths if len(self.paths) <= MOST_IN_COMMAND else [f"$(bk check --paths {self.results})"]
+            lines.append(f"remake: {remake_command(self.results / NAME, *named)}")
+        return lines
+
+
+def check_study(results: str | Path) -> Check:
+    """Hold every point and every other netCDF file of a study against its config and the sources of now.
+
+    Raises ValueError, one line, if the folder holds no study.
+    """
+    results = Path(results)
+    record = read_study_record(results)
+    study = Study(record["config"], record["grid"])
+    points = list(_runs(study, results))
+    findings = [finding for path, log, command in points if (finding := _look(path, log, command))]
+    wanted = {path for path, _, _ in points}
+    others = [path for path in sorted(results.rglob("*.nc")) if path not in wanted and not path.name.startswith(".")]
+    runs = [path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")]
+    summaries = [path for path in others if path not in set(runs)]
+    findings += [finding for path in summaries if (finding := _look_at_summary(path))]
+    findings.sort(key=lambda finding: (KINDS.index(finding.kind), finding.path))
+    return Check(results, len(points), len(summaries), tuple(findings), len(runs), _changed(record))
+
+
+def _runs(study: Study, results: Path) -> Iterator[tuple[Path, Path, str]]:
+    """Yield file, log and command of every run of a study."""
+    for law, initial, a in all_points(study):
+        place = f"{law}/{initial}/a{a}"
+        log = results / f"logs/simulate/{place}.log"
+        yield results / f"points/{place}.nc", log, study.command(law, initial, a)
+    compared = [name for name, value in study.grid.items() if value in study.config["solvers"]["a"]]
+    for law in LAWS:
+        for solver in study.other_solvers(law):
+            for initial in study.initial:
+                for a in compared:
+                    place = f"{solver}/{law}/{initial}/a{a}"
+                    log = results / f"logs/simulate_solver/{place}.log"
+                    yield results / f"solvers/{place}.nc", log, study.command(law, initial, a, solver)
+
+
+def _look(path: Path, log: Path, command: str) -> Finding | None:
+    try:
+        seal = read_seal(path)
+    except BadFile as error:
+        if path.exists():
+            return Finding(CORRUPT, path, error.reason)
+        words = last_words(log)
+        return Finding(MISSING, path, f"its job failed: {words} (log {log})" if words else "not made yet")
+    if seal.identity != point_identity(command):
+        try:
+            check_run(path, command)
+        except BadFile as error:
+            return Finding(STALE, path, error.reason)
+    if seal.status != "completed":
+        return Finding(FAILED, path, f"ended with status {seal.status}")
+    return None
+
+
+def _look_at_summary(path: Path) -> Finding | None:
+    try:
+        read_seal(path)
+        with netCDF4.Dataset(path) as dataset:
+            module, fingerprint = dataset.source_module, dataset.source_fingerprint
+    except BadFile as error:
+        return Finding(CORRUPT, path, error.reason)
+    except (OSError, RuntimeError, AttributeError) as error:
+        return Finding(CORRUPT, path, f"is not a summary ({error})")
+    if fingerprint != source_fingerprint(module):
+        return Finding(STALE, path, f"was made by other sources of {module} than those of now")
+    return None
+
+
+def _changed(record: dict) -> str:
+    file = record["config_file"]
+    try:
+        same = read_yaml(file) == record["given"]
+    except ConfigError as error:
+        return f"stale    {error}; what is checked is the config of the last run"
+    return "" if same else f"stale    {file}: has changed since the last run, whose config is checked"

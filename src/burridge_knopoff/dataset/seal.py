@@ -1,0 +1,68 @@
+"""The seal: the last line of every netCDF file of a study, after the HDF5 data, by which a damaged file is known.
+
+HDF5 itself sees neither a changed number nor noise over a part of a file. netCDF programs do not read past the end of
+the data that HDF5 has noted, so they do not see the seal. It holds the SHA-256 of all bytes before it, a digest of what
+the file is about, and how a run ended: all files of a study can be checked without opening one by netCDF.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from burridge_knopoff.study_record import remake_command
+
+_SEAL = re.compile(rb"\n#seal ([0-9a-f]{16}) ([a-z_]+) ([0-9a-f]{64})\n\Z")
+_LONGEST = 200
+
+
+class BadFile(ValueError):
+    """A file of results that must not be used; the message is one line: file, reason, command that makes it again."""
+
+    def __init__(self, path: str | Path, reason: str) -> None:
+        self.path, self.reason = Path(path), reason
+        super().__init__(f"{path}: {reason}; remake it: {remake_command(path)}")
+
+
+@dataclass(frozen=True)
+class Seal:
+    """What a seal says: the digest of what the file is about, and the status of a run."""
+
+    identity: str
+    status: str
+
+
+def identity(*parts: str) -> str:
+    """Return 16 hexadecimal digits for what a file is about."""
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
+
+
+def seal(path: str | Path, about: str, status: str = "made") -> None:
+    """Put the seal at the end of a file that has just been written; about : see `identity`."""
+    head = f"\n#seal {about} {status} ".encode()
+    digest = hashlib.sha256(Path(path).read_bytes() + head).hexdigest()
+    with open(path, "ab") as file:
+        file.write(head + f"{digest}\n".encode())
+
+
+def read_seal(path: str | Path) -> Seal:
+    """Return the seal of a file after holding it against all bytes before it.
+
+    Raises BadFile if the file is not there, has no seal, or is not what was sealed.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except FileNotFoundError:
+        raise BadFile(path, "is missing") from None
+    except OSError as error:
+        raise BadFile(path, f"cannot be read: {error.strerror}") from None
+    if not content:
+        raise BadFile(path, "is empty")
+    found = _SEAL.search(content[-_LONGEST:])
+    if found is None:
+        raise BadFile(path, "has no seal at its end: it is cut off, or another program wrote it")
+    if hashlib.sha256(content[: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
+        raise BadFile(path, "has other bytes than were written")
+    return Seal(found[1].decode(), found[2].decode())

@@ -1,0 +1,56 @@
+"""Whether the compiled kernel is that of the sources beside it: what was compiled is recorded when it is."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from burridge_knopoff.sources import PACKAGE, code_digest
+
+KERNEL = PACKAGE / "kernel"
+#: Beside the compiled modules: {name of a source: SHA-256 of its code} of what they were compiled from.
+RECORD = "build.json"
+
+_CHECKOUT = PACKAGE.parent.parent
+REBUILD = "make setup" if (_CHECKOUT / "Makefile").is_file() else "pip install --force-reinstall burridge-knopoff"
+
+
+class KernelError(ImportError):
+    """A kernel that must not be used; the message is one line with the command that compiles it."""
+
+
+def kernel_sources() -> dict[str, str]:
+    """Return {name: SHA-256 of its code} of all sources of the kernel, as they are on disk."""
+    paths = [PACKAGE / "compilation.py", *(path for path in KERNEL.glob("*.p*") if path.suffix in (".py", ".pxd"))]
+    return {path.relative_to(PACKAGE).as_posix(): code_digest(path) for path in sorted(paths)}
+
+
+def write_record(folder: Path) -> None:
+    """Record what has been compiled into the modules in this folder."""
+    (folder / RECORD).write_text(json.dumps(kernel_sources(), indent=1) + "\n", encoding="utf-8")
+
+
+def is_compiled() -> bool:
+    """Tell whether there is a compiled kernel; without one its sources run as Python, about a hundred times slower."""
+    return any(path.suffix in (".so", ".pyd") for path in KERNEL.iterdir())
+
+
+def check_kernel(*, compiled: bool = False) -> None:
+    """Raise KernelError if the compiled kernel is not that of the sources on disk.
+
+    compiled : whether a kernel that is not compiled at all is refused as well
+    """
+    if not is_compiled():
+        if compiled:
+            raise KernelError(f"the kernel is not compiled: run `{REBUILD}`")
+        return
+    try:
+        recorded = json.loads((KERNEL / RECORD).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise KernelError(
+            f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole: run `{REBUILD}`"
+        ) from None
+    current = kernel_sources()
+    for name in sorted(current.keys() | recorded.keys()):
+        if current.get(name) != recorded.get(name):
+            raise KernelError(f"{name}: has changed since the kernel was compiled: run `{REBUILD}`")

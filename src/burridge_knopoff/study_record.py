@@ -1,0 +1,72 @@
+"""What the last run of a study was about, recorded beside its results: its config, and how to run it again."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from burridge_knopoff.config import Study
+from burridge_knopoff.config.study import read_yaml
+from burridge_knopoff.files import display_path, write_text
+
+NAME = "study.json"
+
+
+_KEYS = ("arguments", "config_file", "given", "config", "grid")
+
+
+def write_study_record(results: str | Path, study: Study, config_file: str | Path, arguments: str) -> None:
+    """Record a study in its folder of results; a record that says the same already stays untouched.
+
+    config_file : its config as it was given
+    arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
+    Raises OSError, one line, if the folder cannot be written to.
+    """
+    path = Path(results, NAME)
+    values = (arguments, display_path(config_file), read_yaml(config_file), study.config, study.grid)
+    text = json.dumps(dict(zip(_KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
+    if not (path.is_file() and path.read_text(encoding="utf-8") == text):
+        write_text(path, text)
+
+
+def read_study_record(results: str | Path) -> dict[str, Any]:
+    """Return the record of a folder of results.
+
+    arguments, config_file : as they were recorded
+    given, config : the config as it was given, and with all defaults
+    grid : {name in file names: value of a}
+
+    Raises ValueError, one line, if there is none.
+    """
+    path = Path(results, NAME)
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except OSError:
+        raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: not readable ({error}); run snakemake again, it writes it") from None
+    if not isinstance(record, dict) or tuple(record) != _KEYS:
+        raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
+    return record
+
+
+def snakemake_command(path: str | Path) -> str:
+    """Return the start of the command that runs the study in whose results a file lies."""
+    for folder in Path(path).absolute().parents:
+        if (folder / NAME).is_file():
+            try:
+                arguments = read_study_record(folder)["arguments"]
+            except ValueError:
+                break
+            return f"snakemake -c2 {arguments}".strip()
+    return "snakemake -c2"
+
+
+def remake_command(study_file: str | Path, *paths: str | Path) -> str:
+    """Return the command that makes files again, and all that depends on them.
+
+    study_file : a file in the results of their study
+    paths : the files, if it is not that one
+    """
+    return f"{snakemake_command(study_file)} -R {' '.join(map(str, paths or [study_file]))}"
