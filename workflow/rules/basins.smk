@@ -1,14 +1,17 @@
 # Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
 
-# Neither the list of maps nor the number of threads changes a map.
-BASIN_CONFIG = {
-    **{key: STUDY.config[key] for key in (*ATTRACTOR_KEYS, "initial")},
-    "basins": {
-        key: value
-        for key, value in STUDY.config["basins"].items()
-        if key not in (*LAWS, "threads")
-    },
-}
+
+def basin_config(*unused):
+    """Return what maps depend on, without some keys of the section of basins."""
+    # Neither the list of maps nor the number of threads changes a map.
+    unused = {*LAWS, "threads", *unused}
+    section = STUDY.config["basins"]
+    return {
+        **{key: STUDY.config[key] for key in (*ATTRACTOR_KEYS, "initial")},
+        "basins": {key: section[key] for key in section if key not in unused},
+    }
+
+
 BASIN_MAPS = [(law, a) for law in LAWS for a in STUDY.config["basins"][law]]
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
@@ -31,7 +34,7 @@ rule basin_tile:
         runtime=240,
     params:
         a=lambda wildcards: STUDY.grid[wildcards.a],
-        config=BASIN_CONFIG,
+        config=basin_config("pairs"),
         sources=script_sources("basin_tile"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
@@ -54,7 +57,7 @@ rule basin_pairs:
         runtime=240,
     params:
         a=lambda wildcards: STUDY.grid[wildcards.a],
-        config=BASIN_CONFIG,
+        config=basin_config("pixels", "tiles"),
         sources=script_sources("basin_pairs"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
@@ -90,7 +93,7 @@ rule basins:
         runtime=10,
     params:
         maps=BASIN_MAPS,
-        config=BASIN_CONFIG,
+        config=basin_config(),
         sources=script_sources("basins"),
     message:
         "maps of basins of attraction"

@@ -21,7 +21,10 @@ rule two_blocks:
         two_blocks=CHAINS["two_blocks"],
         settings={
             key: STUDY.config[key]
-            for key in (*CHAIN_MODEL, "transient", "window", "batches")
+            for key in (
+                *CHAIN_MODEL,
+                *("transient", "window", "batches", "lyapunov_alignment"),
+            )
         },
         threshold=STUDY.config["synchronization_threshold"],
         motion=STUDY.config["motion"],

@@ -216,13 +216,14 @@ def read_schema(path: str | Path) -> dict[str, Any]:
 
 
 def _with_defaults(config: Any, schema: Mapping[str, Any]) -> Any:
-    if isinstance(config, dict):
-        for key, item in schema.get("properties", {}).items():
-            if key not in config and "default" in item:
-                config[key] = copy.deepcopy(item["default"])
-            if key in config:
-                config[key] = _with_defaults(config[key], item)
-    return config
+    """Return a config with defaults, its keys in the order of the schema: in what order a file has them is nothing."""
+    if not isinstance(config, dict):
+        return config
+    filled = {}
+    for key, item in schema.get("properties", {}).items():
+        if key in config or "default" in item:
+            filled[key] = _with_defaults(copy.deepcopy(config.get(key, item.get("default"))), item)
+    return {**filled, **{key: value for key, value in config.items() if key not in filled}}
 
 
 @cache

@@ -17,6 +17,9 @@ from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
+# The last bit of a product of vectors depends on where in memory they lie.
+DIGITS = 12
+
 _POINT = ("law", "initial", "a")
 _PAIR = ("initial", "a")
 _VERDICT = {-1: "undetermined", 0: "no", 1: "yes"}
@@ -62,7 +65,7 @@ def summarize(
             for i, point in enumerate(pair):
                 values["mean_distance"][i, j, k] = point["mean_distance"]
                 values["mean_distance_error"][i, j, k] = point["mean_distance_error"]
-            values["section_distance"][j, k] = wasserstein_distance(*upward) if all(map(len, upward)) else np.nan
+            values["section_distance"][j, k] = _section_distance(*upward)
             count, until = common_order(*(all_events(point) for point in pair))
             values["event_order_count"][j, k] = count
             values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
@@ -76,6 +79,13 @@ def summarize(
         {"synchronization_threshold": synchronization_threshold, **agreement},
         module=__name__,
     )
+
+
+def _section_distance(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the Wasserstein distance of two samples, NaN if one is empty."""
+    if not len(one) or not len(other):
+        return np.nan
+    return float(f"{wasserstein_distance(one, other):.{DIGITS}g}")
 
 
 def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
