@@ -20,6 +20,8 @@ from tests.workflow.conftest import Study
 COMPARED = ("points", "summary", "figures", "attractors", "basins", "solvers")
 #: What is being made when a kill hits a stage.
 STAGES = ("points", "attractors", "basins", "solvers", "summary", "figures", "claims", "report")
+#: Touched when Snakemake is started.
+BEGUN = "begun"
 #: A snakemake that neither ends nor gets on.
 PATIENCE = 300.0
 
@@ -30,10 +32,16 @@ def stage(path: str) -> str:
 
 
 def running(study: Study) -> list[str]:
-    """Return the files, below results/<study>, that jobs are making: those that Snakemake has noted as incomplete."""
+    """Return the files, below results/<study>, that jobs are making: those that the last run noted as incomplete."""
     folder = study.folder / ".snakemake" / "incomplete"
-    names = [base64.urlsafe_b64decode(path.name).decode() for path in folder.rglob("*") if path.is_file()]
-    return sorted(name.split("/", 2)[2] for name in names)
+    begun = (study.folder / BEGUN).stat().st_mtime_ns
+    found = []
+    for path in folder.rglob("*"):
+        # Snakemake may be removing them.
+        with contextlib.suppress(FileNotFoundError):
+            if path.is_file() and path.stat().st_mtime_ns > begun:
+                found.append(base64.urlsafe_b64decode(path.name).decode().split("/", 2)[2])
+    return sorted(found)
 
 
 def temporaries(study: Study) -> list[str]:
@@ -54,6 +62,7 @@ def processes(study: Study) -> list[str]:
 
 def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.Popen[bytes]:
     """Start Snakemake as a process group of its own; what it writes goes to the file `screen`."""
+    (study.folder / BEGUN).touch()
     inherited = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
     with (study.folder / "screen").open("wb") as screen:
         return subprocess.Popen(
