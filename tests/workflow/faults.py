@@ -9,7 +9,7 @@ import re
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 import psutil
@@ -42,6 +42,11 @@ def running(study: Study) -> list[str]:
             if path.is_file() and path.stat().st_mtime_ns > begun:
                 found.append(base64.urlsafe_b64decode(path.name).decode().split("/", 2)[2])
     return sorted(found)
+
+
+def stages_running(study: Study) -> set[str]:
+    """Return the stages of the files that jobs are making, or were making when the run was killed."""
+    return {stage(path) for path in running(study)}
 
 
 def temporaries(study: Study) -> list[str]:
@@ -87,9 +92,16 @@ def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] |
     return True
 
 
-def wait_for_stage(study: Study, name: str, process: subprocess.Popen[bytes]) -> bool:
-    """Wait until a job of a stage runs; return False if the process ended before."""
-    return wait_for(lambda: any(stage(path) == name for path in running(study)), process)
+def wait_for_stages(study: Study, stages: Collection[str], process: subprocess.Popen[bytes]) -> bool:
+    """Wait until a job of one of the stages runs; return False if the process ended before."""
+    return wait_for(lambda: not stages_running(study).isdisjoint(stages), process)
+
+
+def flag_named(text: str) -> str:
+    """Return the flag of Snakemake that its own error message names."""
+    named = re.search(r"with the (--[a-z-]+) argument", " ".join(text.split()))
+    assert named, text
+    return named[1]
 
 
 def go_on(study: Study, *arguments: str) -> list[str]:
@@ -97,11 +109,18 @@ def go_on(study: Study, *arguments: str) -> list[str]:
     run = study.run(*arguments)
     if run.returncode == 0:
         return []
-    named = re.search(r"with the (--[a-z-]+) argument", " ".join(run.stderr.split()))
-    assert named, run.stderr
-    study.ok(named[1])
+    flag = flag_named(run.stderr)
+    study.ok(flag)
     study.ok(*arguments)
-    return [named[1]]
+    return [flag]
+
+
+def failures(text: str) -> dict[str, str]:
+    """Return {log below results/tiny/logs: reason} from the last words of a run that failed."""
+    assert "study tiny: stopped" in text, text
+    lines = text[text.index("study tiny: stopped") :].splitlines()
+    found = [re.fullmatch(r"failed: (.+?): (.*) \(log results/tiny/logs/(\S+)\)", line) for line in lines]
+    return {line[3]: line[2] for line in found if line}
 
 
 def differences(study: Study, other: Study, *folders: str) -> list[str]:
