@@ -102,7 +102,9 @@ class Trials:
 def run_command(command: str, study: Study) -> None:
     """Run a command of a message in the folder of a study."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    subprocess.run(shlex.split(command), cwd=study.folder, capture_output=True, env={**os.environ, "PATH": path})
+    subprocess.run(
+        shlex.split(command), cwd=study.folder, capture_output=True, env={**study.environment(), "PATH": path}
+    )
 
 
 def kills(trials: Trials, count: int, chance: random.Random) -> None:
@@ -208,11 +210,10 @@ def clones(trials: Trials) -> None:
     subprocess.run(["git", "clone", "--quiet", str(REPOSITORY), str(clone)], check=True)
     build = [sys.executable, "setup.py", "--quiet", "build_ext", "--inplace"]
     subprocess.run(build, cwd=clone, check=True, capture_output=True)
-    environment = {**os.environ, "PYTHONPATH": str(clone / "src")}
     for cores in (1, 2):
         study = trials.new()
-        command = [word.replace(str(REPOSITORY), str(clone)) for word in study.command(cores=cores)]
-        run = subprocess.run(command, cwd=study.folder, capture_output=True, text=True, env=environment)
+        study.repository = clone
+        run = study.run(cores=cores)
         good = run.returncode == 0 and not differences(study, trials.finished)
         row = [f"none, second clone, -c{cores}", "", "", str(len(study.files())), "0", "", "yes" if good else "NO"]
         trials.rows.append(row)

@@ -26,10 +26,11 @@ chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 
 
 class Study:
-    """A folder in which Snakemake runs a config through the repository's Snakefile."""
+    """A folder in which Snakemake runs a config through the Snakefile of a checkout."""
 
-    def __init__(self, folder: Path, config: str = TINY) -> None:
+    def __init__(self, folder: Path, config: str = TINY, repository: Path = REPOSITORY) -> None:
         folder.mkdir(parents=True, exist_ok=True)
+        self.repository = repository
         self.folder = folder
         self.config = folder / "study.yaml"
         self.config.write_text(config)
@@ -39,16 +40,25 @@ class Study:
         """Return the command line; arguments follow the usual ones."""
         snakemake = str(Path(sys.executable).parent / "snakemake")
         return [
-            *(snakemake, f"-c{cores}", "-s", str(REPOSITORY / "Snakefile")),
+            *(snakemake, f"-c{cores}", "-s", str(self.repository / "Snakefile")),
             *("--configfile", str(self.config), "--nocolor", *arguments),
         ]
 
     def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
         """Run Snakemake to its end; standard output and error are captured."""
-        environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
         return subprocess.run(
-            self.command(*arguments, cores=cores), cwd=self.folder, capture_output=True, text=True, env=environment
+            self.command(*arguments, cores=cores),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            env=self.environment(),
         )
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment of its commands: the package is that of its repository."""
+        inherited = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+        path = [str(self.repository / "src"), *filter(None, [inherited.get("PYTHONPATH")])]
+        return {**inherited, "PYTHONPATH": os.pathsep.join(path)}
 
     def ok(self, *arguments: str, cores: int = 2) -> str:
         """Run Snakemake, require success, and return all that it wrote."""

@@ -68,7 +68,6 @@ def processes(study: Study) -> list[str]:
 def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.Popen[bytes]:
     """Start Snakemake as a process group of its own; what it writes goes to the file `screen`."""
     (study.folder / BEGUN).touch()
-    inherited = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
     with (study.folder / "screen").open("wb") as screen:
         return subprocess.Popen(
             study.command(*arguments),
@@ -76,7 +75,7 @@ def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None =
             start_new_session=True,
             stdout=screen,
             stderr=subprocess.STDOUT,
-            env={**inherited, **(environment or {})},
+            env={**study.environment(), **(environment or {})},
         )
 
 
@@ -129,15 +128,15 @@ def differences(study: Study, other: Study, *folders: str) -> list[str]:
     return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))
 
 
-def broken(folder: Path, faults: Mapping[str, str]) -> dict[str, str]:
+def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
     """Return the environment in which each Python process whose command holds a key first runs that code."""
+    folder = study.folder / "faults"
     folder.mkdir()
     lines = ["import os, signal, sys", "words = ' '.join(sys.orig_argv)"]
     for words, code in faults.items():
         lines += [f"if {words!r} in words:", *(f"    {line}" for line in code.strip().splitlines())]
     (folder / "sitecustomize.py").write_text("\n".join(lines))
-    path = [str(folder), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {"PYTHONPATH": os.pathsep.join(path)}
+    return {"PYTHONPATH": os.pathsep.join([str(folder), study.environment()["PYTHONPATH"]])}
 
 
 def killed_at_the_move(suffix: str) -> str:

@@ -148,7 +148,7 @@ def test_the_readers_read_what_is_whole(finished, grids):
 def remade(study, reasons):
     """Run exactly the commands that the reasons name."""
     commands = {re.search(r"; remake it: (.*)$", reason)[1] for reason in reasons}
-    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+    environment = study.environment()
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     for command in sorted(commands):
         run = subprocess.run(shlex.split(command), cwd=study.folder, capture_output=True, text=True, env=environment)

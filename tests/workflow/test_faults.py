@@ -90,7 +90,7 @@ def test_points_that_die(finished, study):
         "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.simulation", "run"),
         "points/nonlinear/plus/a0.2000.nc": out_of_memory("burridge_knopoff.dataset.point", 1),
     }
-    process = begin(study, "points", environment=broken(study.folder / "faults", faults))
+    process = begin(study, "points", environment=broken(study, faults))
     assert process.wait() == 1
     screen = (study.folder / "screen").read_text()
     reasons = failures(screen)
@@ -123,7 +123,7 @@ def test_scripts_that_die(finished, copy):
         ".figure_distance.py": out_of_memory("burridge_knopoff.figures.distance", 1),
         ".stick_slip.py": crash("burridge_knopoff.summaries.stick_slip", "summarize"),
     }
-    process = begin(copy, environment=broken(copy.folder / "faults", faults))
+    process = begin(copy, environment=broken(copy, faults))
     assert process.wait() == 1
     screen = (copy.folder / "screen").read_text()
     reasons = failures(screen)
