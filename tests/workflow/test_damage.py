@@ -162,7 +162,7 @@ def test_every_stage_stops_at_a_bad_file(finished, copy):
     spoiled = {
         POINT: lambda path: rewrite(path, noise_inside),
         "points/linearized/minus/a0.0800.nc": lambda path: shutil.copy(path.with_name("a0.0500.nc"), path),
-        "solvers/nonlinear/rk4/plus/a0.2000.nc": lambda path: rewrite(path, cut),
+        "solvers/rk4/nonlinear/plus/a0.2000.nc": lambda path: rewrite(path, cut),
         "attractors/nonlinear.nc": lambda path: rewrite(path, noise_inside),
         "basins/linearized/a0.0800/tile1.nc": lambda path: rewrite(path, noise_inside),
         "summary/equilibrium.nc": lambda path: rewrite(path, unsealed),
@@ -200,7 +200,7 @@ def test_every_stage_stops_at_a_bad_file(finished, copy):
     [
         ("points/nonlinear/plus/a0.2200.nc", "mean_distance"),
         ("summary/lyapunov.nc", "figure_lyapunov"),
-        ("summary/attractors.nc", "basin_tile"),
+        ("attractors/linearized.nc", "attractors"),
         ("summary/two_blocks.nc", "claims"),
         ("summary/orbits.nc", "report"),
     ],

@@ -21,6 +21,15 @@ def test_nothing_to_do(finished):
     assert "Nothing to be done" in finished.ok("-n")
 
 
+def test_nothing_to_do_with_the_snakefile_by_another_path(finished):
+    """As the commands of messages name it: relative to the current folder."""
+    snakefile = str(finished.repository / "Snakefile")
+    relative = os.path.relpath(snakefile, finished.folder)
+    command = [relative if word == snakefile else word for word in finished.command("-n")]
+    run = subprocess.run(command, cwd=finished.folder, capture_output=True, text=True, env=finished.environment())
+    assert "Nothing to be done" in run.stdout + run.stderr
+
+
 def test_the_same_bytes_on_one_core_and_in_a_second_checkout(finished, tmp_path, repository):
     """The kernel is copied along; benchmarks/faults.py compiles it anew."""
     checkout = tmp_path / "checkout"
