@@ -61,8 +61,11 @@ if " " in sys.executable:
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
     )
 
-CLAIMS_FILE = str(Path(workflow.basedir, "config/claims.yaml"))
-CLAIMS_SCHEMA = str(Path(workflow.basedir, "workflow/schemas/claims.schema.yaml"))
+# The same however the Snakefile is named, or the claims would be judged again.
+CLAIMS_FILE = os.path.relpath(Path(workflow.basedir, "config/claims.yaml"))
+CLAIMS_SCHEMA = os.path.relpath(
+    Path(workflow.basedir, "workflow/schemas/claims.schema.yaml")
+)
 
 try:
     read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
@@ -101,6 +104,9 @@ except OSError as error:
 
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 
+# Programs that submit jobs tell the studies of a folder apart by it.
+os.environ["BK_RESULTS"] = RESULTS
+
 
 # Jobs find the `bk` of this environment, activated or not.
 shell.prefix(
@@ -128,6 +134,7 @@ wildcard_constraints:
     blocks=r"\d+",
 
 
+include: "workflow/rules/groups.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/summarize.smk"
 include: "workflow/rules/attractors.smk"

@@ -45,8 +45,8 @@ def check_kernel(*, compiled: bool = False) -> None:
             raise KernelError(f"the kernel is not compiled: run `{REBUILD}`")
         return
     try:
-        recorded = json.loads((KERNEL / RECORD).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        recorded = dict(json.loads((KERNEL / RECORD).read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
         raise KernelError(
             f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole: run `{REBUILD}`"
         ) from None

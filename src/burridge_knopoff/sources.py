@@ -98,13 +98,13 @@ def code_digest(path: Path) -> str:
 def code_of(text: str) -> str:
     """Return Python or Cython code without comments, docstrings, empty lines and blanks at the ends of lines."""
     lines = text.splitlines()
-    for (first, start), (last, end) in reversed(list(_idle(text))):
+    for (first, start), (last, end) in sorted(_idle(text), reverse=True):
         lines[first - 1 : last] = [lines[first - 1][:start] + lines[last - 1][end:]]
     return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
 def _idle(text: str) -> Iterable[tuple[tuple[int, int], tuple[int, int]]]:
-    """Yield where comments and statements that are only a text begin and end, in the order of the text."""
+    """Yield where comments and statements that are only a text begin and end."""
     # Here, as a job whose sources are known needs no parser.
     import io
     import tokenize

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from burridge_knopoff.config import Study
-from burridge_knopoff.config.study import read_yaml
 from burridge_knopoff.files import display_path, write_text
+
+if TYPE_CHECKING:
+    from burridge_knopoff.config import Study
 
 NAME = "study.json"
 
@@ -23,6 +24,8 @@ def write_study_record(results: str | Path, study: Study, config_file: str | Pat
     arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
     Raises OSError, one line, if the folder cannot be written to.
     """
+    from burridge_knopoff.config.study import read_yaml
+
     path = Path(results, NAME)
     values = (arguments, display_path(config_file), read_yaml(config_file), study.config, study.grid)
     text = json.dumps(dict(zip(_KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"

@@ -26,14 +26,14 @@ chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 
 
 class Study:
-    """A folder in which Snakemake runs a config through the Snakefile of a checkout."""
+    """A folder in which Snakemake runs a config through the Snakefile, and with the package, of a checkout."""
 
     def __init__(self, folder: Path, config: str = TINY, repository: Path = REPOSITORY) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        self.repository = repository
         self.folder = folder
         self.config = folder / "study.yaml"
         self.config.write_text(config)
+        self.repository = repository
         self.output = ""
 
     def command(self, *arguments: str, cores: int = 2) -> list[str]:

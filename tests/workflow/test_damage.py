@@ -175,7 +175,7 @@ def test_every_stage_stops_at_a_bad_file(finished, copy):
     reasons = failures(run.stderr)
     assert reasons.keys() >= {
         *("mean_distance.log", "bifurcation.log", "lyapunov.log", "stick_slip.log", "solvers.log"),
-        *("figure_distance.log", "figure_motion_minus.log", "attractors.log", "basins.log", "figure_equilibrium.log"),
+        *("figure_distance.log", "figure_motion_minus.log", "attractors.log", "figure_equilibrium.log"),
     }
     named = set()
     for log, reason in reasons.items():

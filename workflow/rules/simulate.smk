@@ -1,12 +1,13 @@
 # Points: one simulation for each friction law, initial state and a.
 
 
+POINTS = all_points(STUDY)
+POINT_NUMBERS = {point: number for number, point in enumerate(POINTS)}
+
+
 rule points:
     input:
-        [
-            POINT.format(law=law, initial=initial, a=a)
-            for law, initial, a in all_points(STUDY)
-        ],
+        [POINT.format(law=law, initial=initial, a=a) for law, initial, a in POINTS],
 
 
 rule simulate:
@@ -16,6 +17,8 @@ rule simulate:
         f"{RESULTS}/logs/simulate/{{law}}/{{initial}}/a{{a}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/simulate/{{law}}/{{initial}}/a{{a}}.tsv"
+    group:
+        lambda wildcards: fixed_group("points", POINT_NUMBERS.get(tuple(wildcards)))
     resources:
         mem_mb=150,
         runtime=10,

@@ -6,6 +6,14 @@ SOLVER_GRID = {
     for name, value in STUDY.grid.items()
     if value in STUDY.config["solvers"]["a"]
 }
+SOLVER_POINTS = [
+    (law, solver, initial, a)
+    for law in LAWS
+    for solver in STUDY.other_solvers(law)
+    for initial in STUDY.initial
+    for a in SOLVER_GRID
+]
+SOLVER_POINT_NUMBERS = {point: number for number, point in enumerate(SOLVER_POINTS)}
 
 
 rule simulate_solver:
@@ -17,6 +25,10 @@ rule simulate_solver:
         f"{RESULTS}/benchmarks/simulate_solver/{{solver}}/{{law}}/{{initial}}/a{{a}}.tsv"
     wildcard_constraints:
         solver="|".join(SOLVERS),
+    group:
+        lambda wildcards: fixed_group(
+            "solver_points", SOLVER_POINT_NUMBERS.get(tuple(wildcards))
+        )
     resources:
         mem_mb=150,
         runtime=60,
@@ -41,10 +53,7 @@ rule solvers:
         ],
         others=[
             SOLVER_POINT.format(law=law, solver=solver, initial=initial, a=a)
-            for law in LAWS
-            for solver in STUDY.other_solvers(law)
-            for initial in STUDY.initial
-            for a in SOLVER_GRID
+            for law, solver, initial, a in SOLVER_POINTS
         ],
     output:
         f"{SUMMARY}/solvers.nc",

@@ -1,0 +1,143 @@
+"""Large studies: what a run of many points costs, point by point, and how much memory it takes.
+
+Studies of several numbers of points, alike but for their grid of a, are run from nothing to their reports on two
+cores, each in an empty folder. The cost of a point is the CPU time of Snakemake and all jobs over the number of points:
+the wall time would tell of other programs too. A second run has nothing to do; `bk check` then looks at every file.
+"""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+from measure import print_table, verdict
+from process import ONE_THREAD
+from stages import jobs
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+BIN = Path(sys.executable).parent
+MEMORY_LIMIT_MB = 1500.0
+COST_LIMIT = 1.3
+CHECK_LIMIT = 20.0
+LAWS, STATES = 2, 5
+#: Of the whole range of a, so that small and large studies have the same kinds of motion.
+A_RANGE = 0.3
+
+CONFIG = """study: size
+a_digits: 7
+a: [{values}]
+initial:
+{states}
+transient: 200
+window: 400
+batches: 4
+attractors: {{samples: 4, transient: 300, window: 300, time_limit: 2000, pushes: 2}}
+basins: {{linearized: [], nonlinear: []}}
+chains: {{two_blocks: {{a: [0.02, 0.15], samples: 2}}}}
+"""
+#: The paper's positions but for that of the first block.
+STATE = "  {name}: {{position: [{first}, -0.993, -0.991], velocity: [0.099, 0.1012, 0.1023]}}"
+
+
+@dataclass
+class Run:
+    """Wall and CPU time in seconds of a command, and the peak memory in MB of its own process."""
+
+    wall: float
+    cpu: float
+    memory: float
+
+
+def config_of(points: int) -> str:
+    """Return the config of a study of that many points."""
+    count = points // (LAWS * STATES)
+    values = ", ".join(f"{A_RANGE * (k + 1) / count:.7f}" for k in range(count))
+    states = "\n".join(STATE.format(name=f"state{n}", first=-0.989 + 0.4 * n) for n in range(STATES))
+    return CONFIG.format(values=values, states=states)
+
+
+def run(command: list[str], folder: Path) -> Run:
+    """Run a command to its end, looking at the memory of its process now and then."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    begin, peak = time.perf_counter(), 0.0
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(command, cwd=folder, env=ONE_THREAD, stdout=said, stderr=said)
+        while process.poll() is None:
+            try:
+                status = Path(f"/proc/{process.pid}/status").read_text()
+                peak = max(peak, *(float(line.split()[1]) for line in status.splitlines() if line.startswith("VmHWM")))
+            except (OSError, TypeError):
+                pass
+            time.sleep(0.05)
+        wall = time.perf_counter() - begin
+        if process.returncode:
+            said.seek(0)
+            sys.exit(f"{' '.join(command)} failed:\n{said.read().decode()[-4000:]}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Run(wall, cpu, peak * 1024 / 1e6)
+
+
+def measure(points: int, folder: Path, cores: int) -> tuple[list[object], dict[str, tuple[float, float]]]:
+    """Run a study of that many points; return its row of the table and {rule: CPU s, largest MB}."""
+    (folder / "size.yaml").write_text(config_of(points), encoding="utf-8")
+    command = [str(BIN / "snakemake"), f"-c{cores}", "-s", str(REPOSITORY / "Snakefile"), "--configfile", "size.yaml"]
+    plan = run([*command, "-n", "--quiet"], folder)
+    whole = run(command, folder)
+    again = run(command, folder)
+    check = run([str(BIN / "bk"), "check", "results/size"], folder)
+    size = sum(path.stat().st_size for path in folder.joinpath("results/size/points").rglob("*.nc")) / 1e6
+    rules: dict[str, tuple[float, float]] = defaultdict(lambda: (0.0, 0.0))
+    for rule, values in jobs(folder / "results/size/benchmarks").items():
+        rules[rule] = (sum(value[1] for value in values), max(value[2] for value in values))
+    row = [points, f"{plan.wall:.1f}", f"{whole.wall / 60:.1f}", f"{whole.cpu / points:.3f}", f"{whole.memory:.0f}"]
+    row += [f"{again.wall:.1f}", f"{check.wall:.1f}", f"{size:.0f}"]
+    print(f"{points} points: {whole.wall:.0f} s", file=sys.stderr)
+    return row, rules
+
+
+def main() -> None:
+    """Measure the studies and print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
+    parser.add_argument("--points", type=int, nargs="+", default=[500, 10_000], help="(default: %(default)s)")
+    parser.add_argument("--cores", type=int, default=2, help="cores of Snakemake (default: %(default)s)")
+    parser.add_argument("--folder", type=Path, help="where the studies stay (default: nowhere)")
+    options = parser.parse_args()
+    rows, rules = [], []
+    with tempfile.TemporaryDirectory() as temporary:
+        for points in options.points:
+            folder = (options.folder or Path(temporary)) / f"points{points}"
+            folder.mkdir(parents=True)
+            row, found = measure(points, folder, options.cores)
+            rows.append(row)
+            rules.append(found)
+    header = ["points", "dry run s", "run min", "CPU s a point", "Snakemake MB", "no-op s", "check s", "points MB"]
+    print_table(header, rows)
+    table = []
+    for rule in sorted(rules[-1], key=lambda name: -rules[-1][name][0]):
+        memory = rules[-1][rule][1]
+        each = [1000.0 * found[rule][0] / points for found, points in zip(rules, options.points, strict=True)]
+        table.append([rule, *(f"{cost:.2f}" for cost in each), f"{memory:.0f}", verdict(memory, MEMORY_LIMIT_MB)])
+    names = [f"ms a point, {points}" for points in options.points]
+    print_table(["rule", *names, "MB, largest", f"under {MEMORY_LIMIT_MB:g} MB"], table)
+    ratio = float(rows[-1][3]) / float(rows[0][3])
+    memory, check = float(rows[-1][4]), float(rows[-1][6])
+    print_table(
+        ["of the largest study", "measured", "limit, kept"],
+        [
+            ["CPU of a point, ratio to the smallest", f"{ratio:.2f}", f"{COST_LIMIT:g}, {verdict(ratio, COST_LIMIT)}"],
+            ["Snakemake MB", f"{memory:.0f}", f"{MEMORY_LIMIT_MB:g}, {verdict(memory, MEMORY_LIMIT_MB)}"],
+            ["bk check s", f"{check:.1f}", f"{CHECK_LIMIT:g}, {verdict(check, CHECK_LIMIT)}"],
+        ],
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,92 @@
+"""The seal of a file: no changed byte passes, and no netCDF program minds it."""
+
+import subprocess
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from burridge_knopoff.dataset.point import point_identity, write_point
+from burridge_knopoff.dataset.seal import BadFile, Seal, identity, read_seal, seal
+from burridge_knopoff.simulation import simulate
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("sealed") / "point.nc"
+    write_point(simulate("linearized", 0.08, "plus", transient=50.0, window=50.0), path)
+    return path
+
+
+def test_the_seal_of_a_point(path):
+    with xr.open_dataset(path) as dataset:
+        about = point_identity(dataset.attrs["history"])
+    assert read_seal(path) == Seal(about, "completed")
+    assert point_identity("bk simulate --law linearized --a 0.09") != about
+
+
+def test_netcdf_programs_read_a_sealed_file(path, tmp_path):
+    said = subprocess.run(["ncdump", "-v", "status", str(path)], capture_output=True, text=True)
+    assert "status = 0" in said.stdout, said.stderr
+    bare = tmp_path / "bare.nc"
+    bare.write_bytes(path.read_bytes()[: path.read_bytes().rindex(b"\n#seal")])
+    with xr.open_dataset(path) as one, xr.open_dataset(bare) as other:
+        assert one.identical(other)
+
+
+CHANGES = {
+    "flip": lambda content, at, byte: content[:at] + bytes([content[at] ^ (byte or 1)]) + content[at + 1 :],
+    "cut": lambda content, at, byte: content[:at],
+    "lose": lambda content, at, byte: content[:at] + content[at + 1 + byte :],
+    "insert": lambda content, at, byte: content[:at] + bytes([byte]) + content[at:],
+    "append": lambda content, at, byte: content + bytes([byte]) * (1 + at % 5),
+    "noise": lambda content, at, byte: content[:at] + np.random.default_rng(at).bytes(100) + content[at + 100 :],
+}
+
+
+@given(st.sampled_from(sorted(CHANGES)), st.data())
+@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_no_change_of_a_file_passes(path, tmp_path, kind, data):
+    content = path.read_bytes()
+    # Half of the changes in the last bytes, where the seal is.
+    first = data.draw(st.sampled_from([0, len(content) - 120]))
+    at = data.draw(st.integers(first, len(content) - 1))
+    changed = CHANGES[kind](content, at, data.draw(st.integers(0, 255)))
+    target = tmp_path / "changed.nc"
+    target.write_bytes(changed)
+    if changed == content:
+        assert read_seal(target).status == "completed"
+        return
+    with pytest.raises(BadFile, match=r"changed\.nc: .*; remake it: snakemake -c2 -R .*changed\.nc$") as caught:
+        read_seal(target)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_empty_and_unreadable_files(tmp_path):
+    for name, make, reason in (
+        ("none.nc", lambda path: None, "is missing"),
+        ("empty.nc", lambda path: path.touch(), "is empty"),
+        ("folder.nc", lambda path: path.mkdir(), "cannot be read: Is a directory"),
+        ("text.nc", lambda path: path.write_text("noise"), "has no seal at its end"),
+    ):
+        make(tmp_path / name)
+        with pytest.raises(BadFile, match=reason):
+            read_seal(tmp_path / name)
+
+
+def test_another_seal_is_no_seal(path, tmp_path):
+    """The line is part of what is sealed: nobody's status or subject can be written into it."""
+    target = tmp_path / "forged.nc"
+    for old, new in ((b" completed ", b" diverged "), (point_line(path), identity("another").encode())):
+        target.write_bytes(path.read_bytes().replace(old, new))
+        with pytest.raises(BadFile, match="has other bytes than were written"):
+            read_seal(target)
+    target.write_bytes(b"data")
+    seal(target, identity("this"), "diverged")
+    assert read_seal(target) == Seal(identity("this"), "diverged")
+
+
+def point_line(path):
+    return read_seal(path).identity.encode()

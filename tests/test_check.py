@@ -1,0 +1,192 @@
+"""`bk check`: every kind of trouble is found in its file, and nothing else is."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import check as module
+from burridge_knopoff.chain import Chain
+from burridge_knopoff.check import check_study
+from burridge_knopoff.cli import main
+from burridge_knopoff.config import load_study, read_schema
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.simulation import run
+from burridge_knopoff.study_record import write_study_record
+from burridge_knopoff.summaries import mean_distance
+from burridge_knopoff.summaries.points import Grid
+
+CONFIG = """
+study: small
+a: [0.05, 0.08]
+initial: {minus: {}}
+transient: 20
+window: 20
+batches: 2
+solvers: {a: [0.08], step: 0.02}
+"""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory, repository):
+    """The results of a study as Snakemake leaves them: points, points of other solvers, a summary, the record."""
+    import yaml
+
+    folder = tmp_path_factory.mktemp("study")
+    config_file = folder / "small.yaml"
+    config_file.write_text(CONFIG)
+    schema = read_schema(repository / "workflow/schemas/config.schema.yaml")
+    study = load_study(yaml.safe_load(CONFIG), schema, "small.yaml")
+    results = folder / "results" / "small"
+    grid = Grid.of(results / "points", study.points)
+    for _, (law, initial, a) in grid:
+        names = [(None, grid.path(law, initial, a))]
+        if a == "0.0800":
+            names += [
+                (solver, results / f"solvers/{solver}/{law}/{initial}/a{a}.nc") for solver in study.other_solvers(law)
+            ]
+        for solver, path in names:
+            state, settings = study.state(initial), study.settings(law, solver)
+            write_point(run(Chain(3), Friction(law, grid.a[a]), state, settings), path)
+    write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
+    write_study_record(results, study, config_file, "--configfile small.yaml")
+    return results
+
+
+@pytest.fixture
+def results(whole, tmp_path, monkeypatch):
+    shutil.copytree(whole.parent.parent, tmp_path / "study")
+    record = tmp_path / "study/results/small/study.json"
+    content = json.loads(record.read_text())
+    record.write_text(json.dumps({**content, "config_file": str(tmp_path / "study/small.yaml")}))
+    monkeypatch.chdir(tmp_path / "study")
+    return tmp_path.joinpath("study/results/small").relative_to(tmp_path / "study")
+
+
+def found(results):
+    return {(finding.kind, str(finding.path.relative_to(results))) for finding in check_study(results).findings}
+
+
+def point(results, law="linearized", a="0.0500"):
+    return results / f"points/{law}/minus/a{a}.nc"
+
+
+def test_a_sound_study(results, capsys):
+    assert main(["check", str(results)]) == 0
+    said = capsys.readouterr().out
+    assert said == f"{results}: 7 points and 1 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+
+
+@pytest.mark.parametrize(
+    ("damage", "kind", "reason"),
+    [
+        (lambda path: path.unlink(), "missing", "not made yet"),
+        (lambda path: path.write_bytes(b""), "corrupt", "is empty"),
+        (lambda path: path.write_bytes(path.read_bytes()[:5000]), "corrupt", "has no seal at its end"),
+        (lambda path: path.write_bytes(path.read_bytes().replace(b"1.0", b"1.1", 1)), "corrupt", "has other bytes"),
+        (lambda path: shutil.copy(path.with_name("a0.0800.nc"), path), "stale", "--a 0.08 instead of --a 0.05"),
+    ],
+)
+def test_a_bad_point_is_listed_with_the_command_that_remakes_it(results, capsys, damage, kind, reason):
+    if "1.0" in reason or kind == "corrupt":
+        assert b"1.0" in point(results).read_bytes()
+    damage(point(results))
+    assert main(["check", str(results)]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith(f"{kind:8} {point(results)}: ")
+    assert reason in lines[0]
+    assert f"1 {kind}" in lines[1]
+    assert lines[2] == f"remake: snakemake -c2 --configfile small.yaml -R {point(results)}"
+    assert main(["check", "--paths", str(results)]) == 1
+    assert capsys.readouterr().out == f"{point(results)}\n"
+
+
+def test_points_of_other_solvers_are_looked_at_as_well(results):
+    one, other = (results / f"solvers/{solver}/linearized/minus/a0.0800.nc" for solver in ("series", "rk4"))
+    shutil.copy(other, one)
+    other.unlink()
+    assert found(results) == {
+        ("stale", "solvers/series/linearized/minus/a0.0800.nc"),
+        ("missing", "solvers/rk4/linearized/minus/a0.0800.nc"),
+    }
+    reasons = [finding.reason for finding in check_study(results).findings]
+    assert "is another run: --solver rk4 instead of --solver series" in reasons
+
+
+def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys, monkeypatch):
+    study = check_study(results)
+    assert not study.findings
+    trajectory = run(Chain(3), Friction("linearized", 0.05), *state_and_settings(results))
+    object.__setattr__(trajectory, "status", "accumulating_events")
+    write_point(trajectory, point(results))
+    assert main(["check", str(results)]) == 3
+    said = capsys.readouterr().out
+    assert f"failed   {point(results)}: ended with status accumulating_events" in said
+    assert "remake" not in said
+    point(results, a="0.0800").unlink()
+    assert main(["check", str(results)]) == 1
+
+
+def state_and_settings(results):
+    from burridge_knopoff.config import Study
+
+    record = json.loads((results / "study.json").read_text())
+    study = Study(record["config"], record["grid"])
+    return study.state("minus"), study.settings("linearized")
+
+
+def test_a_crashed_job_says_why_its_point_is_missing(results):
+    point(results).unlink()
+    log = results / "logs/simulate/linearized/minus/a0.0500.log"
+    log.parent.mkdir(parents=True)
+    log.write_text("Traceback (most recent call last):\n  File x\nMemoryError: no more\n")
+    (finding,) = check_study(results).findings
+    assert finding.reason == f"its job failed: MemoryError: no more (log {log})"
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_other_sources_make_points_stale(results, monkeypatch, law):
+    path = point(results, law)
+    identity = module.point_identity
+    monkeypatch.setattr(module, "point_identity", lambda command: identity(command + "x" * (law in command)))
+    monkeypatch.setattr("burridge_knopoff.summaries.points.point_identity", module.point_identity)
+    stale = {finding.path: finding.reason for finding in check_study(results).findings if finding.kind == "stale"}
+    assert "was made by other sources" in stale[path]
+    assert all(f"/{law}/" in str(path) for path in stale)
+
+
+def test_summaries(results):
+    path = results / "summary" / "mean_distance.nc"
+    path.write_bytes(path.read_bytes()[:-1])
+    assert found(results) == {("corrupt", "summary/mean_distance.nc")}
+    values = xr.Dataset({"x": ("x", np.zeros(3))}, attrs={"software": "burridge-knopoff 0.0.1"})
+    values.attrs.update(source_module="burridge_knopoff.summaries.mean_distance", source_fingerprint="0" * 16)
+    write_summary(values, path)
+    assert found(results) == {("stale", "summary/mean_distance.nc")}
+
+
+def test_a_changed_config_and_points_of_no_grid(results, capsys):
+    config = results.parent.parent / "small.yaml"
+    config.write_text(CONFIG + "# words\n")
+    assert main(["check", str(results)]) == 0
+    config.write_text(CONFIG.replace("[0.05, 0.08]", "[0.08]"))
+    shutil.copy(point(results), point(results, a="0.0600"))
+    capsys.readouterr()
+    assert main(["check", str(results)]) == 1
+    said = capsys.readouterr().out
+    assert "small.yaml: has changed since the last run, whose config is checked" in said
+    assert "1 point files belong to no point of the study" in said
+
+
+@pytest.mark.parametrize("content", [None, "", "{", "[]", "{}", '{"arguments": ""}'])
+def test_a_folder_that_is_no_study_is_refused_in_a_line(tmp_path, capsys, content):
+    if content is not None:
+        (tmp_path / "study.json").write_text(content)
+    assert main(["check", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert said.startswith(f"bk check: {tmp_path}")

@@ -1,0 +1,90 @@
+"""A kernel that was compiled from other sources than those on disk is refused."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from burridge_knopoff import kernel_build
+from burridge_knopoff.sources import PACKAGE
+
+RUN = "from burridge_knopoff import simulate; print(simulate(transient=0.0, window=2.0).status)"
+SERIES = Path("kernel/series.py")
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A copy of the package with its compiled kernel."""
+    subprocess.run(["cp", "-a", str(PACKAGE), str(tmp_path / "burridge_knopoff")], check=True)
+    return tmp_path / "burridge_knopoff"
+
+
+def run(package, code=RUN):
+    environment = {**os.environ, "PYTHONPATH": str(package.parent)}
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment)
+
+
+def change(path, code=True):
+    path.write_text(path.read_text() + ("\nMORE = 1\n" if code else "\n# more words\n"))
+
+
+def refusal(package):
+    done = run(package)
+    assert done.returncode != 0
+    return done.stderr.strip().splitlines()[-1]
+
+
+def test_the_kernel_here_is_that_of_its_sources():
+    kernel_build.check_kernel(compiled=True)
+    recorded = json.loads((kernel_build.KERNEL / kernel_build.RECORD).read_text())
+    assert recorded == kernel_build.kernel_sources()
+    assert {"kernel/series.py", "kernel/series.pxd", "compilation.py"} <= recorded.keys()
+
+
+def test_as_it_was_built_it_runs(package):
+    assert run(package).stdout == "completed\n"
+
+
+@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", "compilation.py"])
+def test_changed_code_is_refused_with_the_command_that_rebuilds(package, name):
+    change(package / name)
+    rebuild = "run `pip install --force-reinstall burridge-knopoff`"
+    expected = f"{name}: has changed since the kernel was compiled: {rebuild}"
+    assert refusal(package) == f"burridge_knopoff.kernel_build.KernelError: {expected}"
+    done = run(package, "from burridge_knopoff.cli import main; print(main('simulate --law x --a 1 --out x'.split()))")
+    assert done.stdout == "2\n"
+    assert done.stderr == f"bk simulate: {expected}\n"
+
+
+def test_a_comment_is_no_change(package):
+    change(package / SERIES, code=False)
+    assert run(package).stdout == "completed\n"
+
+
+def test_a_new_source_and_one_less_are_seen(package):
+    (package / "kernel" / "more.py").write_text("x = 1\n")
+    assert "kernel/more.py: has changed" in refusal(package)
+    (package / "kernel" / "more.py").unlink()
+    (package / "kernel" / "record.pxd").unlink()
+    assert "kernel/record.pxd: has changed" in refusal(package)
+
+
+@pytest.mark.parametrize("content", [None, "", "{", "[1]"])
+def test_a_build_that_was_not_finished_is_refused(package, content):
+    path = package / "kernel" / kernel_build.RECORD
+    path.unlink() if content is None else path.write_text(content)
+    assert "build.json: cannot be read; the kernel was not compiled whole" in refusal(package)
+
+
+def test_an_uncompiled_kernel_runs_but_no_study_with_it(package):
+    for path in (package / "kernel").glob("*.so"):
+        path.unlink()
+    change(package / SERIES)
+    assert run(package).stdout == "completed\n"
+    done = run(package, "from burridge_knopoff.kernel_build import check_kernel; check_kernel(compiled=True)")
+    assert done.stderr.strip().endswith(
+        "KernelError: the kernel is not compiled: run `pip install --force-reinstall burridge-knopoff`"
+    )

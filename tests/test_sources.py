@@ -1,0 +1,167 @@
+"""Fingerprints of sources: they see all code that runs, and nothing else."""
+
+import io
+import os
+import subprocess
+import sys
+import tokenize
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from burridge_knopoff import sources
+from burridge_knopoff.sources import PACKAGE, PLUMBING, code_of, files_of, source_fingerprint, sources_of
+
+SCRIPTS = sorted((PACKAGE.parent.parent / "workflow" / "scripts").glob("*.py"))
+SOURCES = sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.pxd"), *SCRIPTS])
+
+TEXT = '''"""What it is."""
+
+import os  # for nothing
+
+x = "not # a comment"
+"""A text alone."""
+
+
+def f(a):
+    """Return it."""
+    return a + 1  # one
+
+
+class Empty:
+    """Nothing."""
+'''
+
+
+def test_comments_and_docstrings_go_and_code_stays():
+    assert code_of(TEXT) == 'import os\nx = "not # a comment"\ndef f(a):\n    return a + 1\nclass Empty:'
+    assert code_of("# cython: boundscheck=True\n# plain\nx = 1\n") == "# cython: boundscheck=True\nx = 1"
+    assert code_of('x = (\n    """kept"""\n    # gone\n)\n') == 'x = (\n    """kept"""\n)'
+    assert code_of("cdef class A:\n    cdef double x  # why\n") == "cdef class A:\n    cdef double x"
+
+
+def words(text):
+    """Return the words of the code, without the statements that are only a text."""
+    layout = (tokenize.COMMENT, tokenize.NL, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
+    tokens = [token for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type not in layout]
+    lines, line = [], []
+    for token in tokens:
+        line.append(token)
+        if token.type == tokenize.NEWLINE:
+            if not (len(line) == 2 and line[0].type == tokenize.STRING):
+                lines.append([item.string for item in line[:-1]])
+            line = []
+    return lines
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
+def test_no_code_of_ours_is_lost(path):
+    text = path.read_text(encoding="utf-8")
+    assert words(code_of(text)) == words(text)
+
+
+@given(st.sampled_from(SOURCES), st.data())
+def test_a_changed_word_of_code_is_seen_and_a_comment_is_not(path, data):
+    text = path.read_text(encoding="utf-8")
+    lines = text.splitlines(keepends=True)
+    names = [
+        token
+        for token in tokenize.generate_tokens(io.StringIO(text).readline)
+        if token.type in (tokenize.NAME, tokenize.NUMBER, tokenize.OP)
+    ]
+    if not names:
+        return
+    token = data.draw(st.sampled_from(names))
+    row, column = token.start
+    changed = [*lines]
+    changed[row - 1] = f"{changed[row - 1][:column]}x{changed[row - 1][column:]}"
+    assert code_of("".join(changed)) != code_of(text)
+    # At the end of a statement: a line that goes on in brackets or after a backslash may not take a comment.
+    ends = [t.start for t in tokenize.generate_tokens(io.StringIO(text).readline) if t.type == tokenize.NEWLINE]
+    row, column = data.draw(st.sampled_from(ends))
+    changed = [*lines]
+    changed[row - 1] = f"{changed[row - 1][:column]}  # a comment{changed[row - 1][column:]}"
+    assert code_of("".join(changed)) == code_of(text)
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_every_module_that_a_script_loads_is_among_its_sources(script):
+    imports = [
+        line for line in script.read_text().splitlines() if line.startswith(("from burridge", "import burridge"))
+    ]
+    program = "\n".join(
+        [*imports, "import sys", "print(*(m for m in sys.modules if m.startswith('burridge_knopoff')))"]
+    )
+    loaded = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout.split()
+    needed = {file for module in loaded if "." in module for file in files_of(module)}
+    needed = {path for path in needed if path.relative_to(PACKAGE).as_posix() not in PLUMBING}
+    # A folder's own file is loaded on the way to its modules; where it says something, it is followed.
+    needed = {path for path in needed if path.name != "__init__.py"}
+    assert len(needed) > 3
+    assert needed <= set(sources_of(script))
+
+
+def test_results_depend_on_what_makes_them():
+    def names(stem):
+        script = next(path for path in SCRIPTS if path.stem == stem)
+        return {path.relative_to(PACKAGE).as_posix() for path in sources_of(script) if path != script}
+
+    point = {path.relative_to(PACKAGE).as_posix() for path in sources_of("burridge_knopoff.dataset.point")}
+    assert {"kernel/series.py", "kernel/series.pxd", "simulation.py", "compilation.py", "dataset/variables.py"} <= point
+    assert not {name for name in point if name.startswith(("stability", "summaries", "figures", "report", "claims"))}
+    assert "kernel/proximity.py" not in point
+    assert {"kernel/proximity.py", "stability/attractors.py"} <= names("attractors_of_law")
+    assert not {"dataset/point.py", "stability/basins.py"} & names("attractors_of_law")
+    assert {"figures/agreement.py", "figures/style.py"} <= names("figure_agreement")
+    assert not {name for name in names("figure_agreement") if name.startswith(("kernel", "stability", "report"))}
+    assert {"report/static/style.css", "report/templates/report.html.jinja", "report/page.py"} <= names("report")
+    assert not set(PLUMBING) & names("report")
+
+
+def test_the_fingerprint_is_of_the_code(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text("from burridge_knopoff.friction import LAWS\n")
+    one = source_fingerprint(script)
+    for text, same in (("# why\nfrom burridge_knopoff.friction import LAWS\n", True), ("x = 1\n", False)):
+        other = tmp_path / str(same) / "script.py"
+        other.parent.mkdir()
+        other.write_text(text)
+        assert (source_fingerprint(other) == one) is same
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", "\x00", '{"x": 1}'])
+def test_what_is_kept_may_be_damaged(tmp_path, content):
+    """A process of its own: what was read once is known."""
+    package = tmp_path / "burridge_knopoff"
+    subprocess.run(["cp", "-a", str(PACKAGE), str(package)], check=True)
+    kept = package / sources._CACHE.relative_to(PACKAGE)
+    kept.parent.mkdir(exist_ok=True)
+    kept.write_text(content)
+    program = "from burridge_knopoff import sources; print(sources.source_fingerprint('burridge_knopoff.friction'))"
+    for _ in range(2):
+        found = subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "PYTHONPATH": str(tmp_path)},
+            check=True,
+            capture_output=True,
+            text=True,
+        )
+        assert found.stdout.strip() == source_fingerprint("burridge_knopoff.friction")
+
+
+def test_nothing_is_imported_that_would_not_be_followed():
+    """From the package itself only its version is imported: its other names are looked up when they are used."""
+    for path in [*PACKAGE.rglob("*.py"), *SCRIPTS]:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        assert [line for line in lines if line.strip().startswith("from burridge_knopoff import")] in (
+            [],
+            ["from burridge_knopoff import __version__"],
+        )
+        assert not [line for line in lines if "import_module(" in line and path != PACKAGE / "__init__.py"]
+
+
+def test_the_sources_of_a_missing_script(tmp_path):
+    with pytest.raises(OSError, match="none.py"):
+        source_fingerprint(Path(tmp_path, "none.py"))

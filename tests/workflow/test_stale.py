@@ -1,0 +1,295 @@
+"""What an edit makes out of date: of the sources in a copy of the tree, and of each key of the config."""
+
+import contextlib
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.workflow.conftest import REPOSITORY, TINY, Study
+from tests.workflow.test_runs import jobs
+
+#: Rules by stage; an edit makes some of them run again, and all that needs their output.
+POINTS = ("simulate", "simulate_solver")
+SUMMARIES = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip", "solvers")
+STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "orbits", "equilibrium", "two_blocks")
+FIGURES = tuple(
+    f"figure_{name}"
+    for name in (
+        *("friction_laws", "mean_distance", "bifurcation", "distance", "lyapunov", "agreement", "basin_fractions"),
+        *("basins", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion"),
+    )
+)
+CODE, COMMENT, DOCSTRING = "\n_MORE = 1\n", "\n# More words.\n", '"""More words.\n'
+
+
+_PLANS = {}
+
+
+def planned(study, *roots):
+    """Return the jobs of a run in which these rules are forced."""
+    key = (study.folder, study.repository, roots)
+    if key not in _PLANS:
+        _PLANS[key] = jobs(study.ok("-n", "-R", *roots))
+    return _PLANS[key]
+
+
+@pytest.fixture(scope="module")
+def studied(finished, tmp_path_factory):
+    """The finished study, made in the last steps by a copy of the tree that is to be edited and mended again."""
+    folder = tmp_path_factory.mktemp("studied")
+    for name in ("config", "profiles", "src", "workflow", "Snakefile", "pyproject.toml", "Makefile"):
+        subprocess.run(["cp", "-a", str(REPOSITORY / name), str(folder)], check=True)
+    subprocess.run(["cp", "-a", str(finished.folder), str(folder / "study")], check=True)
+    study = Study(folder / "study", finished.config.read_text(), folder)
+    # The list of claims lies elsewhere now.
+    assert set(jobs(study.ok("-n"))) == {"claims", "report", "all"}
+    study.ok()
+    return study
+
+
+class Edit:
+    """A file with more text while it lasts."""
+
+    def __init__(self, path, text):
+        self.path, self.text = path, text
+
+    def __enter__(self):
+        self.before = self.path.read_text()
+        after = self.before.replace('"""', self.text, 1) if self.text == DOCSTRING else self.before + self.text
+        assert after != self.before
+        self.path.write_text(after)
+
+    def __exit__(self, *_):
+        self.path.write_text(self.before)
+
+
+PACKAGE = Path("src/burridge_knopoff")
+
+
+NOTHING = (
+    ("simulation.py", COMMENT),
+    ("friction.py", DOCSTRING),
+    ("kernel/series.py", COMMENT),
+    ("kernel/modes.py", DOCSTRING),
+    ("kernel/series.pxd", COMMENT),
+    ("stability/attractors.py", DOCSTRING),
+    ("figures/style.py", COMMENT),
+    ("cli.py", CODE),
+    ("files.py", CODE),
+    ("../../workflow/scripts/attractors_of_law.py", COMMENT),
+    ("../../workflow/rules/simulate.smk", COMMENT),
+)
+
+
+def test_comments_docstrings_and_plumbing_remake_nothing(studied):
+    with contextlib.ExitStack() as edits:
+        for name, text in NOTHING:
+            edits.enter_context(Edit(studied.repository / PACKAGE / name, text))
+        assert "Nothing to be done" in studied.ok("-n")
+
+
+@pytest.mark.parametrize(
+    ("name", "roots"),
+    [
+        ("simulation.py", (*POINTS, *STABILITY, *SUMMARIES)),
+        ("dataset/point.py", POINTS),
+        ("stability/attractors.py", ("attractors_of_law",)),
+        ("stability/basins.py", ("basin_tile", "basin_pairs", "basins")),
+        ("stability/motion.py", ("attractors_of_law", "lyapunov", "agreement", "two_blocks")),
+        ("summaries/mean_distance.py", ("mean_distance",)),
+        ("summaries/orbits.py", ("orbits",)),
+        ("figures/lyapunov.py", ("figure_lyapunov",)),
+        ("figures/style.py", FIGURES),
+        ("claims/history.py", ("claims",)),
+        ("report/page.py", ("report",)),
+        ("report/static/style.css", ("report",)),
+        ("report/templates/runs.jinja", ("report",)),
+        ("../../workflow/scripts/figure_agreement.py", ("figure_agreement",)),
+        ("../../workflow/scripts/stick_slip.py", ("stick_slip",)),
+    ],
+)
+def test_code_remakes_what_depends_on_it(studied, name, roots):
+    """The roots run again; nothing does that does not need them."""
+    path = studied.repository / PACKAGE / name
+    with Edit(path, "\n/* more */\n" if path.suffix in (".css", ".jinja") else CODE):
+        found = jobs(studied.ok("-n"))
+    assert set(roots) <= set(found)
+    assert found == planned(studied, *roots)
+
+
+def test_an_edited_kernel_is_refused_until_it_is_built(studied):
+    with Edit(studied.repository / PACKAGE / "kernel/series.py", CODE):
+        run = studied.run("-n")
+    lines = [line for line in run.stderr.splitlines() if not line.startswith("Using workflow specific profile")]
+    assert run.returncode != 0
+    assert lines == ["kernel/series.py: has changed since the kernel was compiled: run `make setup`"]
+
+
+@pytest.fixture(scope="module")
+def uncompiled(studied, tmp_path_factory):
+    """The same study and tree, with a kernel that is not built."""
+    folder = tmp_path_factory.mktemp("uncompiled") / "tree"
+    subprocess.run(["cp", "-a", str(studied.repository), str(folder)], check=True)
+    for path in (folder / PACKAGE / "kernel").glob("*.so"):
+        path.unlink()
+    return Study(folder / "study", studied.config.read_text(), folder)
+
+
+@pytest.mark.parametrize(
+    ("name", "roots"),
+    [
+        ("kernel/series.py", (*POINTS, *STABILITY, *SUMMARIES)),
+        ("kernel/state.pxd", (*POINTS, *STABILITY, *SUMMARIES)),
+        ("compilation.py", (*POINTS, *STABILITY, *SUMMARIES)),
+        ("kernel/proximity.py", ("attractors_of_law", "basin_tile", "basin_pairs", "basins")),
+    ],
+)
+def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studied, uncompiled, name, roots):
+    more = CODE if name.endswith(".py") else "\ncdef double MORE\n"
+    with Edit(uncompiled.repository / PACKAGE / name, more):
+        found = jobs(uncompiled.ok("-n"))
+    assert set(roots) <= set(found)
+    assert found == planned(studied, *roots)
+
+
+def test_a_kernel_that_is_not_compiled_starts_no_study(uncompiled):
+    run = uncompiled.run()
+    assert run.returncode != 0
+    assert run.stderr.splitlines()[-1] == "the kernel is not compiled: run `make setup`"
+
+
+RUNS = {
+    "v": 0.11,
+    "contact": "symmetric",
+    "start": "tested",
+    "transient": 120,
+    "window": 180,
+    "batches": 5,
+    "sampling": 4,
+    "trajectory": 20,
+    "trajectory_sampling": 0.1,
+    "events": "all",
+    "event_window": 100,
+    "lyapunov_alignment": 50,
+    "lyapunov_exponents": 2,
+}
+#: Rules, besides the points, that use keys of the runs themselves.
+ALSO = {
+    "v": ("attractors_of_law", "orbits", "equilibrium", "two_blocks"),
+    "contact": ("attractors_of_law", "orbits", "two_blocks"),
+    "start": ("attractors_of_law", "two_blocks"),
+    **dict.fromkeys(("transient", "window", "batches", "lyapunov_alignment"), ("two_blocks",)),
+}
+KEYS = [
+    *((key, value, (*POINTS, *ALSO.get(key, ()))) for key, value in RUNS.items()),
+    ("step", 0.002, ()),
+    (
+        "synchronization_threshold",
+        1.0e-5,
+        ("mean_distance", "lyapunov", "agreement", "attractors_of_law", "two_blocks"),
+    ),
+    ("motion.zero_exponent", 1.0e-3, ("lyapunov", "attractors_of_law", "two_blocks")),
+    ("agreement.relative_tolerance", 0.2, ("agreement", "two_blocks")),
+    ("figures.a", 0.05, ("figure_motion", "figure_distance", "figure_friction_laws")),
+    ("figures.law", "nonlinear", ("figure_motion", "figure_distance", "figure_stick_slip")),
+    ("attractors.samples", 7, ("attractors_of_law",)),
+    ("basins.pixels", 9, ("basin_tile",)),
+    ("basins.pairs", 21, ("basin_pairs",)),
+    ("basins.first_position", [-1.4, 1.5], ("basin_tile", "basin_pairs")),
+    ("basins.threads", 2, ()),
+    ("chains.blocks", [2, 3], ()),
+    ("chains.seed", 2, ("two_blocks",)),
+    ("chains.time_limit", 900, ()),
+    ("chains.two_blocks.samples", 3, ("two_blocks",)),
+]
+#: Keys whose rules get more or less input as well, so that counts are not those of running them again.
+RESHAPED = [
+    (
+        "a",
+        [0.05, 0.06, 0.08, 0.2, 0.22],
+        {"simulate": 4, "attractors_of_law": 2, "orbits": 1, "equilibrium": 1},
+        ("two_blocks",),
+    ),
+    ("solvers.a", [0.08], {"simulate_solver": 6, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
+    ("solvers.step", 0.02, {"simulate_solver": 4, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
+    ("basins.tiles", 3, {"basin_tile": 9, "basins": 1}, ("basin_pairs", "attractors_of_law", "simulate")),
+    ("basins.nonlinear", [], {"basins": 1}, ("basin_tile", "basin_pairs", "attractors_of_law", "simulate")),
+    (
+        "a_digits",
+        5,
+        {"simulate": 16, "simulate_solver": 6},
+        ("attractors_of_law", "orbits", "equilibrium", "two_blocks"),
+    ),
+]
+
+
+def test_every_key_is_there():
+    """A key that is added to the schema needs a row here."""
+    schema = yaml.safe_load((REPOSITORY / "workflow/schemas/config.schema.yaml").read_text())
+    known = {key.split(".")[0] for key, *_ in (*KEYS, *RESHAPED)}
+    assert known | {"study", "initial", "solver"} == set(schema["properties"])
+
+
+def changed(finished, tmp_path, key, value):
+    """Return a study in the folder of the finished one whose config has one key changed."""
+    config = yaml.safe_load(TINY)
+    *path, last = key.split(".")
+    section = config
+    for part in path:
+        section = section.setdefault(part, {})
+    section[last] = value
+    study = Study(tmp_path, yaml.safe_dump(config))
+    study.folder = finished.folder
+    return study
+
+
+@pytest.mark.parametrize(("key", "value", "roots"), KEYS, ids=[key for key, *_ in KEYS])
+def test_a_key_remakes_only_what_uses_it(finished, tmp_path, key, value, roots):
+    found = jobs(changed(finished, tmp_path, key, value).ok("-n"))
+    expected = planned(finished, *roots, "report")
+    if key == "lyapunov_exponents":
+        # rk4 computes none.
+        found["simulate_solver"] += 4
+        roots = (*roots, "lyapunov")
+    assert set(roots) <= set(found)
+    assert found == expected
+
+
+@pytest.mark.parametrize(("key", "value", "counts", "spared"), RESHAPED, ids=[key for key, *_ in RESHAPED])
+def test_a_key_that_adds_or_takes_away(finished, tmp_path, key, value, counts, spared):
+    found = jobs(changed(finished, tmp_path, key, value).ok("-n"))
+    assert {name: found.get(name) for name in counts} == counts
+    assert not set(spared) & set(found)
+
+
+def test_a_solver_remakes_its_law_alone(finished, tmp_path):
+    output = changed(finished, tmp_path, "solver", {"nonlinear": "rk4"}).ok("-n", "--quiet", "host")
+    assert len(re.findall(r"simulate nonlinear law, initial", output)) == 8
+    assert not re.findall(r"simulate linearized law, initial", output)
+
+
+def test_neither_words_nor_order_nor_notation_of_a_config_count(finished, tmp_path):
+    config = yaml.safe_load(TINY)
+    for name, text in (
+        ("order", yaml.safe_dump(config, sort_keys=True)),
+        ("words", f"# words\n{TINY}"),
+        ("notation", TINY.replace("transient: 100\n", "transient: 100.0\n")),
+        ("defaults", f"{TINY}v: 0.1\ncontact: one_sided\n"),
+    ):
+        study = Study(tmp_path / name, text)
+        study.folder = finished.folder
+        assert set(jobs(study.ok("-n"))) <= {"report", "all"}, name
+
+
+def test_results_know_their_sources(finished):
+    from burridge_knopoff.dataset.summary import open_summary
+    from burridge_knopoff.sources import source_fingerprint
+
+    summaries = sorted((finished.folder / "results/tiny/summary").glob("*.nc"))
+    assert len(summaries) == 11
+    for path in summaries:
+        attributes = open_summary(path).attrs
+        assert attributes["source_fingerprint"] == source_fingerprint(attributes["source_module"])

@@ -1,0 +1,11 @@
+#!/usr/bin/env python3
+"""Cancels jobs that submit.py has returned.
+
+cancel.py NUMBER:NAME ...
+"""
+
+import subprocess
+import sys
+
+if __name__ == "__main__":
+    sys.exit(subprocess.run(["scancel", *(job.partition(":")[0] for job in sys.argv[1:])]).returncode)

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Prints running, success or failed for a job that submit.py has returned.
+
+    status.py NUMBER:NAME
+
+A job has succeeded if its script left the exit code 0, whatever Slurm remembers of it; one that left none has failed
+once Slurm does not know it as live. Without an answer of Slurm a job counts as running. The folder of a job that has
+succeeded is removed: from then on Snakemake itself knows.
+"""
+
+import shutil
+import sys
+import time
+
+from jobs import Job, ask
+
+#: States of a job that is yet to end.
+LIVE = {"PENDING", "CONFIGURING", "RUNNING", "SUSPENDED", "COMPLETING", "STAGE_OUT", "SIGNALING", "STOPPED", "RESIZING"}
+#: States of a job whose script has ended by itself: it leaves an exit code, which another node may see later.
+ENDED = {"COMPLETED", "FAILED", "UNKNOWN"}
+#: Seconds until a file that another node has written is seen here.
+LATENCY = 60.0
+
+
+def main():
+    """Print the status; return the exit code."""
+    number, _, name = sys.argv[1].partition(":")
+    job = Job(name)
+    # Slurm first: a job that ends after the answer is found at the next call.
+    state = slurm_state(number, name)
+    code = job.exit_code()
+    if code == 0:
+        shutil.rmtree(job.folder, ignore_errors=True)
+        print("success")
+    elif state in LIVE or (code is None and state in ENDED and waited(job) < LATENCY):
+        print("running")
+    else:
+        words = "no exit code" if code is None else f"exit code {code}"
+        print(f"Slurm job {number} {name}: {state}, {words}, output in {job.output}", file=sys.stderr)
+        print("failed")
+    return 0
+
+
+def slurm_state(number, name):
+    """Return the state of a job; UNKNOWN if it was forgotten, RUNNING if Slurm does not answer."""
+    if number == "0":
+        return "UNKNOWN"
+    answer = ask("scontrol", "--oneliner", "show", "job", number)
+    if answer.returncode:
+        return "UNKNOWN" if "Invalid job id" in answer.stderr + answer.stdout else "RUNNING"
+    fields = dict(word.partition("=")[::2] for word in answer.stdout.split())
+    # After a new installation Slurm may count from 1 again.
+    return fields.get("JobState", "RUNNING") if fields.get("JobName") == name else "UNKNOWN"
+
+
+def waited(job):
+    """Return for how many seconds it has been known that a job has ended."""
+    mark = job.folder / "ended"
+    try:
+        return time.time() - mark.stat().st_mtime
+    except OSError:
+        try:
+            mark.touch()
+        except OSError:
+            # The folder itself is gone: nothing is to come.
+            return LATENCY
+        return 0.0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Submits a job script of Snakemake to Slurm and prints `<Slurm's number>:<name>`; makes nothing twice.
+
+    BK_RESULTS=results/STUDY submit.py JOBSCRIPT
+
+A job of an earlier run that makes the same files from the same study, and runs or has ended well without a Snakemake
+to take note, is returned instead. One that would make some of the files from something else is cancelled, and the new
+job begins when it has ended.
+
+Exit code 1, with one line on stderr, if Slurm refuses the job.
+"""
+
+import hashlib
+import json
+import os
+import re
+import secrets
+import shlex
+import sys
+import time
+from pathlib import Path
+
+from jobs import FOLDER, NO_ANSWER, PATIENCE, PAUSE, Job, ask, known_jobs, live_jobs, one_line
+
+#: Parts of the call in a job script that decide a result; "" is what comes before any option.
+STUDY_OPTIONS = ("", "--snakefile", "--configfiles", "--config")
+#: Options that name the files a job reads.
+WAIT_OPTIONS = ("--wait-for-files", "--wait-for-files-file")
+#: Below the folder of the Snakefile: what decides a result, given the config.
+SOURCES = ("Snakefile", "config/claims.yaml", "src", "workflow")
+DEFAULT_CONFIG = "config/paper.yaml"
+#: What the Snakemake inside a job takes beside the job: MB, and minutes to start on a slow file system.
+SNAKEMAKE_MB, SNAKEMAKE_MINUTES = 250, 5
+
+# SIGTERM comes to all processes of the job: whatever the script says then, the job was ended from outside.
+SCRIPT = """#!/bin/sh
+trap 'ended=143' TERM
+sh {folder}/snakemake.sh
+code=$?
+echo "${{ended:-$code}}" > {folder}/exit.part
+mv {folder}/exit.part {folder}/exit
+exit "${{ended:-$code}}"
+"""
+
+
+def main():
+    """Find or submit the job; return the exit code."""
+    script = Path(sys.argv[1]).read_text()
+    properties = json.loads(re.search("^# properties = (.*)$", script, re.MULTILINE).group(1))
+    options = read_options(script)
+    # Two studies may run in one folder; their jobs have the same names.
+    targets = sorted(f"{os.environ['BK_RESULTS']} {target}" for target in options["--target-jobs"])
+    study = study_digest(options)
+    try:
+        live = live_jobs()
+        same, others = earlier_jobs(targets, study, newest_input(options), live)
+        if same is not None:
+            print(f"{live.get(same.name, 0)}:{same.name}")
+            return 0
+        label = properties["groupid"] if properties["type"] == "group" else properties["rule"]
+        job = Job(f"{label}-{secrets.token_hex(8)}")
+        job.folder.mkdir(parents=True)
+        (job.folder / "snakemake.sh").write_text(script)
+        # The record comes last: with it the folder is complete.
+        (job.folder / "record.json").write_text(json.dumps({"study": study, "targets": targets}))
+        attempt = int(options["--attempt"][0])
+        number = submit(job, requests(properties, attempt), others)
+    except OSError as error:
+        print(f"submit.py: {error}", file=sys.stderr)
+        return 1
+    print(f"{number}:{job.name}")
+    return 0
+
+
+def read_options(script):
+    """Return {option: values} of the Snakemake that a job script calls; what is no option stands under ""."""
+    options = {"": []}
+    option = ""
+    for word in shlex.split(script, comments=True):
+        if word.startswith("--"):
+            option = word
+            options[option] = []
+        else:
+            options[option].append(word)
+    return options
+
+
+def study_digest(options):
+    """Return a digest of all that decides a result: sources, config, and the call of Snakemake."""
+    digest = hashlib.sha256()
+    digest.update(json.dumps([options.get(name) for name in STUDY_OPTIONS]).encode())
+    root = Path(options["--snakefile"][0]).parent
+    files = [Path(path) for path in options.get("--configfiles", [root / DEFAULT_CONFIG])]
+    for name in SOURCES:
+        path = root / name
+        files += [path] if path.is_file() else sorted(path.rglob("*"))
+    for path in files:
+        if path.is_file() and "__pycache__" not in path.parts and "profiles" not in path.parts:
+            digest.update(str(path).encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def newest_input(options):
+    """Return when the latest of the files that a job reads was written, or infinity if one is missing."""
+    files = list(options.get("--wait-for-files", []))
+    for name in options.get("--wait-for-files-file", []):
+        files += Path(name).read_text().splitlines()
+    try:
+        # Snakemake's own folder of this run is among them.
+        return max((path.stat().st_mtime for path in map(Path, files) if not path.is_dir()), default=0.0)
+    except OSError:
+        return float("inf")
+
+
+def earlier_jobs(targets, study, newest, live):
+    """Return the job that makes just these targets, or None, and the numbers of those that new ones must wait for."""
+    others = []
+    for job in known_jobs():
+        record = job.record()
+        if set(targets).isdisjoint(record.get("targets", [])):
+            continue
+        current = record["study"] == study and job.submitted() > newest
+        if current and record["targets"] == targets and (job.name in live or job.exit_code() == 0):
+            return job, []
+        if job.name in live:
+            others.append(live[job.name])
+            if not current:
+                ask("scancel", live[job.name])
+    return None, others
+
+
+def requests(properties, attempt):
+    """Return what a job asks of Slurm. One that is tried again may have had too little memory or time."""
+    resources = properties["resources"]
+    options = [
+        "--nodes=1",
+        "--ntasks=1",
+        f"--cpus-per-task={properties['threads']}",
+        f"--mem={SNAKEMAKE_MB + resources['mem_mb'] * attempt}M",
+        f"--time={SNAKEMAKE_MINUTES + resources['runtime'] * attempt}",
+    ]
+    for name in ("partition", "account", "qos"):
+        if f"slurm_{name}" in resources:
+            options.append(f"--{name}={resources[f'slurm_{name}']}")
+    return options + shlex.split(resources.get("slurm_extra", ""))
+
+
+def submit(job, options, others):
+    """Submit a job that begins when all others have ended; return Slurm's number, or raise OSError if it is refused."""
+    command = ["sbatch", "--parsable", f"--job-name={job.name}", f"--output={job.output}", *options]
+    # Snakemake alone counts attempts and tries again.
+    command.append("--no-requeue")
+    if others:
+        command.append("--dependency=afterany:" + ":".join(others))
+    end = time.monotonic() + PATIENCE
+    while True:
+        answer = ask(*command, input=SCRIPT.format(folder=FOLDER / job.name))
+        if answer.returncode == 0:
+            return answer.stdout.strip().partition(";")[0]
+        if not NO_ANSWER.search(answer.stderr) or time.monotonic() > end:
+            raise OSError(one_line(answer.stderr))
+        time.sleep(PAUSE)
+        # It may have been taken, and the answer lost.
+        live = live_jobs()
+        if job.name in live:
+            return live[job.name]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
