@@ -28,7 +28,12 @@ from burridge_knopoff.config import (
     read_config,
     read_schema,
 )
-from burridge_knopoff.files import display_path
+from burridge_knopoff.files import (
+    check_folder,
+    check_folders,
+    display_path,
+    nearest_folder,
+)
 from burridge_knopoff.friction import LAWS
 from burridge_knopoff.settings import SOLVERS
 from burridge_knopoff.sources import source_fingerprint
@@ -57,8 +62,11 @@ if " " in sys.executable:
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
     )
 
-CLAIMS_FILE = str(Path(workflow.basedir, "config/claims.yaml"))
-CLAIMS_SCHEMA = str(Path(workflow.basedir, "workflow/schemas/claims.schema.yaml"))
+# The same however the Snakefile is named, or the claims would be judged again.
+CLAIMS_FILE = os.path.relpath(Path(workflow.basedir, "config/claims.yaml"))
+CLAIMS_SCHEMA = os.path.relpath(
+    Path(workflow.basedir, "workflow/schemas/claims.schema.yaml")
+)
 
 try:
     read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
@@ -89,6 +97,14 @@ ARGUMENTS = [
 ]
 
 RESULTS = f"results/{STUDY.name}"
+
+# What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
+try:
+    check_folder(os.path.abspath(".snakemake"))
+    nearest_folder(RESULTS)
+except OSError as error:
+    sys.exit(f"{error}")
+
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 
 # Programs that submit jobs tell the studies of a folder apart by it.
@@ -147,9 +163,13 @@ rule all:
 
 
 onstart:
-    write_study_record(
-        RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS)
-    )
+    try:
+        check_folders(RESULTS)
+        write_study_record(
+            RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS)
+        )
+    except OSError as error:
+        sys.exit(f"{error}")
     announce(workflow)
 
 

@@ -1,8 +1,20 @@
 """Files are written whole or not at all."""
 
+import os
+import re
+import signal
+
 import pytest
 
-from burridge_knopoff.files import display_path, write_text, write_whole
+from burridge_knopoff.files import (
+    check_folder,
+    check_folders,
+    check_target,
+    display_path,
+    nearest_folder,
+    write_text,
+    write_whole,
+)
 
 
 def test_a_failed_write_leaves_what_was_there(tmp_path):
@@ -12,9 +24,9 @@ def test_a_failed_write_leaves_what_was_there(tmp_path):
     def fail(name):
         with open(name, "w") as file:
             file.write("half")
-        raise RuntimeError("disk full")
+        raise RuntimeError("NetCDF: HDF error")
 
-    with pytest.raises(OSError, match=r"result\.txt: cannot be written: disk full"):
+    with pytest.raises(OSError, match=r"result\.txt: cannot be written: NetCDF: HDF error \(not for want of space"):
         write_whole(path, fail)
     assert path.read_text() == "old"
     assert [item.name for item in tmp_path.iterdir()] == ["result.txt"]
@@ -28,6 +40,71 @@ def test_an_interrupted_write_leaves_nothing(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         write_whole(tmp_path / "result.txt", interrupt)
     assert list(tmp_path.iterdir()) == []
+
+
+def leftover(path):
+    """Write `path` in a process that is killed just before the file is moved into place; return the names left."""
+    process = os.fork()
+    if not process:
+        write_whole(path, lambda name: (open(name, "w").close(), os.kill(os.getpid(), signal.SIGKILL)))
+    os.waitpid(process, 0)
+    return {item.name for item in path.parent.iterdir()}
+
+
+@pytest.mark.parametrize("name", ["a0.0500.nc", "figure.png", "claims", "[a].txt", "a+b.nc"])
+def test_what_a_killed_writer_left_goes_with_the_next_write(tmp_path, name):
+    (left,) = leftover(tmp_path / name)
+    assert re.fullmatch(rf"\.{re.escape(tmp_path.joinpath(name).stem)}\.part-[0-9a-f]{{8}}(\.\w+)?", left)
+    write_text(tmp_path / name, "whole")
+    assert [item.name for item in tmp_path.iterdir()] == [name]
+
+
+def test_temporary_files_of_others_stay(tmp_path):
+    """Names that begin alike, another suffix, and files that are none of ours."""
+    others = {".a0.05.1.part-0123abcd.nc", ".a0.05.part-0123abcd.pdf", ".a0.05.part-notes.nc", ".a0.05.nc"}
+    for name in others:
+        (tmp_path / name).touch()
+    write_text(tmp_path / "a0.05.nc", "whole")
+    assert {item.name for item in tmp_path.iterdir()} == others | {"a0.05.nc"}
+
+
+def test_two_writers_of_one_file(tmp_path):
+    """The first to finish removes the temporary file of the other, which writes once more."""
+    path = tmp_path / "a.txt"
+    calls = []
+
+    def slow(name):
+        calls.append(name)
+        with open(name, "w") as file:
+            file.write("slow")
+        if len(calls) == 1:
+            write_text(path, "fast")
+
+    write_whole(path, slow)
+    assert len(calls) == 2
+    assert path.read_text() == "slow"
+    assert [item.name for item in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_a_writer_that_never_makes_its_file(tmp_path):
+    with pytest.raises(OSError, match=r"a\.txt: cannot be written: No such file or directory"):
+        write_whole(tmp_path / "a.txt", lambda name: None)
+
+
+def test_folders_that_cannot_be_written_to(tmp_path):
+    (tmp_path / "file").touch()
+    (tmp_path / "link").symlink_to("nowhere")
+    for path, words in (("file", "file is not a folder"), ("link", "link is a link to nowhere, which is not there")):
+        for below in (path, f"{path}/study"):
+            for check in (nearest_folder, check_folder, check_folders):
+                with pytest.raises(OSError, match=f"^{re.escape(str(tmp_path))}/{words}$"):
+                    check(tmp_path / below)
+    with pytest.raises(OSError, match="x.nc: cannot be written: .*file is not a folder$"):
+        check_target(tmp_path / "file" / "x.nc")
+    assert nearest_folder(tmp_path / "not" / "there") == tmp_path
+    check_folders(tmp_path / "not" / "there")
+    with pytest.raises(OSError, match=r"^/proc/self is a folder that cannot be written to: "):
+        check_folder("/proc/self/results")
 
 
 def test_display_path(tmp_path, monkeypatch):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import dropwhile
 from pathlib import Path
 
 #: Of a log only its end is read.
@@ -13,19 +14,25 @@ _LONGEST = 500
 # The class of an error of ours says less than its line.
 _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
 
+_TRACEBACK = "Traceback (most recent call last):"
+
 SILENT = "nothing in its log: it was killed, or could not begin"
 
 
 def last_words(log: str | Path) -> str:
-    """Return the last line of a log that says something: of a traceback the error. Nothing if there is none."""
+    """Return in one line what a log says last: of a traceback the error, else its last line. Nothing if it is empty."""
     try:
         with open(log, "rb") as file:
             file.seek(max(Path(log).stat().st_size - _TAIL, 0))
             text = file.read().decode("utf-8", errors="replace")
     except OSError:
         return ""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    words = _CLASS.sub("", lines[-1]) if lines else ""
+    lines = [line for line in text.splitlines() if line.strip()]
+    if _TRACEBACK in lines:
+        # What is not indented after the calls is the message, which may have several lines.
+        calls = lines[len(lines) - lines[::-1].index(_TRACEBACK) :]
+        lines = [" ".join(line.strip() for line in dropwhile(lambda line: line[0].isspace(), calls))]
+    words = _CLASS.sub("", lines[-1].strip()) if lines else ""
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 

@@ -50,8 +50,10 @@ def source_fingerprint(*entries: str | Path) -> str:
     Raises OSError if a file cannot be read, SyntaxError if one is not Python.
     """
     digest, known = hashlib.sha256(), len(_known())
-    for path in sources_of(*entries):
-        name = path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name
+    paths = sources_of(*entries)
+    names = [path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name for path in paths]
+    # In the order of the names: that of the paths depends on where they lie and on how they are written.
+    for name, path in sorted(zip(names, paths, strict=True)):
         digest.update(f"{name} {code_digest(path)}\n".encode())
     if len(_known()) > known:
         _keep(_known())

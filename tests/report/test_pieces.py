@@ -245,5 +245,5 @@ def test_pictures_keep_every_pixel(tmp_path):
 
 def test_a_picture_that_cannot_be_read_is_named(tmp_path):
     (tmp_path / "noise.png").write_bytes(b"no picture")
-    with pytest.raises(ValueError, match=r"noise\.png: not a readable picture"):
+    with pytest.raises(ValueError, match=r"noise\.png: is not a readable picture"):
         read_picture(tmp_path / "noise.png")

@@ -46,12 +46,19 @@ class Study:
 
     def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
         """Run Snakemake to its end; standard output and error are captured."""
-        environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
-        if self.repository != REPOSITORY:
-            environment["PYTHONPATH"] = str(self.repository / "src")
         return subprocess.run(
-            self.command(*arguments, cores=cores), cwd=self.folder, capture_output=True, text=True, env=environment
+            self.command(*arguments, cores=cores),
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            env=self.environment(),
         )
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment of its commands: the package is that of its repository."""
+        inherited = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+        path = [str(self.repository / "src"), *filter(None, [inherited.get("PYTHONPATH")])]
+        return {**inherited, "PYTHONPATH": os.pathsep.join(path)}
 
     def ok(self, *arguments: str, cores: int = 2) -> str:
         """Run Snakemake, require success, and return all that it wrote."""

@@ -1,12 +1,9 @@
-"""How a study runs: targets, reruns, the same bytes, kill and resume, damaged files."""
+"""How a study runs: targets, reruns, the same bytes."""
 
 import os
 import re
-import signal
+import shutil
 import subprocess
-import time
-
-import pytest
 
 from tests.workflow.conftest import TINY
 
@@ -21,7 +18,24 @@ def test_nothing_to_do(finished):
     assert "Nothing to be done" in finished.ok("-n")
 
 
-def test_the_same_bytes_on_one_core_and_in_another_folder(finished, study):
+def test_nothing_to_do_with_the_snakefile_by_another_path(finished):
+    """As the commands of messages name it: relative to the current folder."""
+    snakefile = str(finished.repository / "Snakefile")
+    relative = os.path.relpath(snakefile, finished.folder)
+    command = [relative if word == snakefile else word for word in finished.command("-n")]
+    run = subprocess.run(command, cwd=finished.folder, capture_output=True, text=True, env=finished.environment())
+    assert "Nothing to be done" in run.stdout + run.stderr
+
+
+def test_the_same_bytes_on_one_core_and_in_a_second_checkout(finished, tmp_path, repository):
+    """The kernel is copied along; benchmarks/faults.py compiles it anew."""
+    checkout = tmp_path / "checkout"
+    skipped = shutil.ignore_patterns(".venv*", "results", ".git", ".*cache", ".hypothesis", ".snakemake", "build")
+    shutil.copytree(repository, checkout, symlinks=True, ignore=skipped)
+    # The commit is recorded in summaries.
+    if (repository / ".git").exists():
+        (checkout / ".git").symlink_to(repository / ".git")
+    study = Study(tmp_path / "study", repository=checkout)
     study.ok(cores=1)
     mine, other = (each.files("points", "summary", "figures") for each in (study, finished))
     assert len(mine) == 16 + 18 + 30
@@ -70,45 +84,6 @@ def test_a_key_of_the_simulations_reruns_them(copy):
 def test_a_wider_grid_keeps_the_points_that_are_there(copy):
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
     assert jobs(copy.ok("-n"))["simulate"] == 4
-
-
-@pytest.mark.parametrize("delay", [0.0, 0.7, 3.0])
-def test_killed_and_resumed(finished, study, delay):
-    """After SIGKILL of the whole process group the next run ends with the bytes of an undisturbed one."""
-    process = subprocess.Popen(
-        study.command(), cwd=study.folder, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    points = study.folder / "results" / "tiny" / "points"
-    while process.poll() is None and not list(points.rglob("a*.nc")):
-        time.sleep(0.01)
-    time.sleep(delay)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-    before = study.files("points") if points.exists() else {}
-    assert all(content == finished.files("points").get(name) for name, content in before.items() if "/a" in name)
-    study.ok("--unlock")
-    study.ok()
-    mine, other = (each.files("points", "summary", "figures") for each in (study, finished))
-    assert {name: content for name, content in mine.items() if "/." not in name} == other
-
-
-@pytest.mark.parametrize("damage", ["truncated", "empty", "noise", "other"])
-def test_a_damaged_point_stops_its_summaries(copy, damage):
-    path = copy.folder / "results" / "tiny" / "points" / "nonlinear" / "minus" / "a0.0500.nc"
-    content = path.read_bytes()
-    other = path.with_name("a0.0800.nc").read_bytes()
-    path.write_bytes(
-        {"truncated": content[: len(content) // 2], "empty": b"", "noise": os.urandom(5000), "other": other}[damage]
-    )
-    run = copy.run("-R", "mean_distance", "--rerun-triggers", "params", "--until", "mean_distance")
-    assert run.returncode != 0
-    assert not (copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc").exists()
-    log = (copy.folder / "results" / "tiny" / "logs" / "mean_distance.log").read_text().strip().splitlines()[-1]
-    assert "points/nonlinear/minus/a0.0500.nc" in log
-    assert "delete it and run snakemake again" in log
-    path.unlink()
-    copy.ok()
-    assert path.read_bytes() == content
 
 
 def test_the_default_config_is_not_merged_into_another(study):

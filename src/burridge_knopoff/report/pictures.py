@@ -10,6 +10,8 @@ from typing import Any
 
 from PIL import Image
 
+from burridge_knopoff.dataset.seal import BadFile
+
 THUMBNAIL_WIDTH = 400
 
 #: Title and alternative text of each figure.
@@ -98,14 +100,14 @@ class Picture:
 def read_picture(path: str | Path) -> Picture:
     """Read a figure; its pixels are kept, in a format that takes a third of the room of PNG.
 
-    Raises ValueError, one line that names the file, if it is not a picture.
+    Raises BadFile if it is not a picture.
     """
     name = Path(path).stem
     try:
         with Image.open(path) as opened:
             shown = opened.convert("RGB")
     except (OSError, SyntaxError) as error:
-        raise ValueError(f"{path}: not a readable picture ({error}); delete it and run snakemake again") from None
+        raise BadFile(path, f"is not a readable picture ({error})") from None
     small = shown.copy()
     small.thumbnail((THUMBNAIL_WIDTH, shown.height), Image.Resampling.LANCZOS)
     title, alternative = _texts(name)

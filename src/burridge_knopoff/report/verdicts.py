@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, one_reason
+from burridge_knopoff.dataset.seal import BadFile
 
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
 SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", FAILS: "✗", NOT_TESTABLE: "–"}
@@ -35,15 +36,15 @@ _TEXTS = ("name", "topic", "statement", "place", "verdict", "reason")
 def read_verdicts(path: str | Path) -> Verdicts:
     """Read the verdicts.
 
-    Raises ValueError, one line that names the file, if it is not such a file, or if its counts are not those of its
-    claims.
+    Raises BadFile if it is not such a file, and ValueError, one line that names the file, if its counts are not those
+    of its claims.
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         claims = [_claim(claim) for claim in content["claims"]]
         stated = {verdict: int(content["counts"].get(verdict, 0)) for verdict in SIGNS}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f"{path}: not a file of verdicts ({type(error).__name__}: {error}); make it again") from None
+        raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
     counts = {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in SIGNS}
     if counts != stated:
         raise ValueError(f"{path}: counts: {stated} is not allowed: the claims have {counts}")

@@ -1,0 +1,214 @@
+"""Faults that a study has to survive: killed, interrupted and broken jobs, full and read-only disks."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import os
+import re
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
+
+import psutil
+
+from tests.workflow.conftest import Study
+
+#: Folders of results/<study> that are compared byte by byte.
+COMPARED = ("points", "summary", "figures", "attractors", "basins", "solvers")
+#: What is being made when a kill hits a stage.
+STAGES = ("points", "attractors", "basins", "solvers", "summary", "figures", "claims", "report")
+#: Touched when Snakemake is started.
+BEGUN = "begun"
+#: A snakemake that neither ends nor gets on.
+PATIENCE = 300.0
+
+
+def stage(path: str) -> str:
+    """Return the stage that makes a file, given below results/<study>."""
+    return "claims" if path.startswith("summary/claims.") else path.split("/")[0].removesuffix(".html")
+
+
+def running(study: Study) -> list[str]:
+    """Return the files, below results/<study>, that jobs are making: those that the last run noted as incomplete."""
+    folder = study.folder / ".snakemake" / "incomplete"
+    begun = (study.folder / BEGUN).stat().st_mtime_ns
+    found = []
+    for path in folder.rglob("*"):
+        # Snakemake may be removing them.
+        with contextlib.suppress(FileNotFoundError):
+            if path.is_file() and path.stat().st_mtime_ns > begun:
+                found.append(base64.urlsafe_b64decode(path.name).decode().split("/", 2)[2])
+    return sorted(found)
+
+
+def stages_running(study: Study) -> set[str]:
+    """Return the stages of the files that jobs are making, or were making when the run was killed."""
+    return {stage(path) for path in running(study)}
+
+
+def temporaries(study: Study) -> list[str]:
+    """Return the files in results/ that have not been moved into place."""
+    results = study.folder / "results"
+    return sorted(str(path.relative_to(results)) for path in results.rglob(".*"))
+
+
+def processes(study: Study) -> list[str]:
+    """Return the commands of the processes that run in the folder of a study."""
+    found = []
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error, OSError):
+            if Path(process.cwd()) == study.folder:
+                found.append(" ".join(process.cmdline()))
+    return found
+
+
+def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.Popen[bytes]:
+    """Start Snakemake as a process group of its own; what it writes goes to the file `screen`."""
+    (study.folder / BEGUN).touch()
+    with (study.folder / "screen").open("wb") as screen:
+        return subprocess.Popen(
+            study.command(*arguments),
+            cwd=study.folder,
+            start_new_session=True,
+            stdout=screen,
+            stderr=subprocess.STDOUT,
+            env={**study.environment(), **(environment or {})},
+        )
+
+
+def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] | None = None) -> bool:
+    """Wait until a condition holds; return False if the process ended before."""
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        if process is not None and process.poll() is not None:
+            return bool(condition())
+        if time.monotonic() > end:
+            raise TimeoutError(f"not within {PATIENCE:g} s")
+        time.sleep(0.005)
+    return True
+
+
+def wait_for_stages(study: Study, stages: Collection[str], process: subprocess.Popen[bytes]) -> bool:
+    """Wait until a job of one of the stages runs; return False if the process ended before."""
+    return wait_for(lambda: not stages_running(study).isdisjoint(stages), process)
+
+
+def flag_named(text: str) -> str:
+    """Return the flag of Snakemake that its own error message names."""
+    named = re.search(r"with the (--[a-z-]+) argument", " ".join(text.split()))
+    assert named, text
+    return named[1]
+
+
+def go_on(study: Study, *arguments: str) -> list[str]:
+    """Run the command again, with the flag that its own error message names, if any; return the flags used."""
+    run = study.run(*arguments)
+    if run.returncode == 0:
+        return []
+    flag = flag_named(run.stderr)
+    study.ok(flag)
+    study.ok(*arguments)
+    return [flag]
+
+
+def failures(text: str) -> dict[str, str]:
+    """Return {log below results/tiny/logs: reason} from the last words of a run that failed."""
+    assert "study tiny: stopped" in text, text
+    lines = text[text.index("study tiny: stopped") :].splitlines()
+    found = [re.fullmatch(r"failed: (.+?): (.*) \(log results/tiny/logs/(\S+)\)", line) for line in lines]
+    return {line[3]: line[2] for line in found if line}
+
+
+def differences(study: Study, other: Study, *folders: str) -> list[str]:
+    """Return the files that the two studies do not have alike, and temporary files."""
+    mine, theirs = (each.files(*(folders or COMPARED)) for each in (study, other))
+    return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))
+
+
+def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
+    """Return the environment in which each Python process whose command holds a key first runs that code."""
+    folder = study.folder / "faults"
+    folder.mkdir()
+    lines = ["import os, signal, sys", "words = ' '.join(sys.orig_argv)"]
+    for words, code in faults.items():
+        lines += [f"if {words!r} in words:", *(f"    {line}" for line in code.strip().splitlines())]
+    (folder / "sitecustomize.py").write_text("\n".join(lines))
+    return {"PYTHONPATH": os.pathsep.join([str(folder), study.environment()["PYTHONPATH"]])}
+
+
+def killed_at_the_move(suffix: str) -> str:
+    """Return code that kills its process, as the kernel does if memory runs out, before a file takes its final name."""
+    return f"""
+replace = os.replace
+def killed(source, target):
+    if str(target).endswith({suffix!r}):
+        os.kill(os.getpid(), signal.SIGKILL)
+    replace(source, target)
+os.replace = killed
+"""
+
+
+def crash(module: str, function: str) -> str:
+    """Return code that breaks a function of the package."""
+    return f"""
+import {module} as module
+def provoked(*arguments, **options):
+    raise RuntimeError("provoked\\nin two lines")
+module.{function} = provoked
+"""
+
+
+def out_of_memory(module: str, megabytes: int) -> str:
+    """Return code that leaves a process, all imports done, so much memory only."""
+    return f"""
+import resource, netCDF4, {module}
+used = int(open("/proc/self/statm").read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+resource.setrlimit(resource.RLIMIT_AS, (used + {megabytes} * 1000000,) * 2)
+"""
+
+
+def no_mounts() -> str:
+    """Return why no file system can be mounted here, or an empty text."""
+    if os.geteuid():
+        return "only root can mount a small or a read-only disk"
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run(["mount", "-t", "tmpfs", "tmpfs", folder], capture_output=True, text=True)
+        if run.returncode:
+            return f"no file system can be mounted: {run.stderr.strip()}"
+        _unmount(Path(folder))
+    return ""
+
+
+@contextlib.contextmanager
+def small_disk(folder: Path, free: int) -> Iterator[Path]:
+    """Put a folder of results on a disk with so many bytes left; yield the file whose removal makes room."""
+    subprocess.run(["cp", "-a", str(folder), f"{folder}.kept"], check=True)
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "tmpfs", str(folder)], check=True)
+    try:
+        subprocess.run(["cp", "-a", f"{folder}.kept/.", str(folder)], check=True)
+        disk = os.statvfs(folder)
+        ballast = folder / "ballast"
+        with ballast.open("wb") as file:
+            os.posix_fallocate(file.fileno(), 0, disk.f_bavail * disk.f_frsize - free)
+        yield ballast
+    finally:
+        subprocess.run(["rm", "-rf", f"{folder}.kept"], check=True)
+        _unmount(folder)
+
+
+@contextlib.contextmanager
+def read_only(folder: Path) -> Iterator[None]:
+    """Let nothing be written into a folder, not even by root."""
+    subprocess.run(["mount", "--bind", str(folder), str(folder)], check=True)
+    try:
+        subprocess.run(["mount", "-o", "remount,ro,bind", str(folder)], check=True)
+        yield
+    finally:
+        _unmount(folder)
+
+
+def _unmount(folder: Path) -> None:
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)

@@ -1,0 +1,226 @@
+"""Damaged and foreign files: the stage that reads one stops and names it, why, and the command that remakes it."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+import yaml
+
+from burridge_knopoff import simulate
+from burridge_knopoff.config import load_study, read_schema
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.seal import BadFile, identity, seal
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
+from burridge_knopoff.summaries.points import Grid, open_point
+from tests.workflow.conftest import TINY
+from tests.workflow.faults import differences, failures, go_on, temporaries
+
+#: A point that every stage reads which reads points.
+POINT = "points/linearized/minus/a0.2000.nc"
+RUN = {"transient": 100, "window": 200, "batches": 4}
+
+
+def cut(content: bytes) -> bytes:
+    """Return the first half."""
+    return content[: len(content) // 2]
+
+
+def noise(size: int) -> bytes:
+    """Return the same noise each time."""
+    return np.random.default_rng(1).bytes(size)
+
+
+def noise_inside(content: bytes) -> bytes:
+    """Return the content with 64 bytes in the middle changed: HDF5 reads it without an error."""
+    middle = len(content) // 2
+    return content[:middle] + noise(64) + content[middle + 64 :]
+
+
+def other_version(path: Path, **attributes: str) -> None:
+    """Let a point file be one that another version has made and sealed."""
+    content = path.read_bytes()
+    path.write_bytes(content[: content.rindex(b"\n#seal ")])
+    with netCDF4.Dataset(path, "a") as dataset:
+        dataset.setncatts(attributes)
+        about = identity(dataset.history, dataset.software, dataset.source_fingerprint)
+    seal(path, about, "completed")
+
+
+def unsealed(content: bytes) -> bytes:
+    """Return the bare netCDF file, as a version without seals, or another program, writes it."""
+    return content[: content.rindex(b"\n#seal ")]
+
+
+def rewrite(path: Path, change) -> None:
+    """Replace a file by what `change` makes of its bytes."""
+    path.write_bytes(change(path.read_bytes()))
+
+
+def other_run(path: Path, a: float = 0.2, initial: str = "minus", **settings) -> None:
+    """Replace a point file by that of another run."""
+    write_point(simulate("linearized", a, initial, **{**RUN, **settings}), path)
+
+
+#: {damage: (what does it to a point file, words of the reason)}
+DAMAGES = {
+    "missing": (Path.unlink, "is missing"),
+    "emptied": (lambda path: path.write_bytes(b""), "is empty"),
+    "truncated": (lambda path: rewrite(path, cut), "cut off"),
+    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "cut off"),
+    "noise": (lambda path: path.write_bytes(noise(5000)), "has no seal"),
+    "noise inside": (lambda path: rewrite(path, noise_inside), "other bytes"),
+    "appended": (lambda path: rewrite(path, lambda content: content + b"\0"), "seal"),
+    "unsealed": (lambda path: rewrite(path, unsealed), "has no seal"),
+    "a text": (lambda path: path.write_text("no netCDF file\n"), "has no seal"),
+    "another a": (lambda path: shutil.copy(path.with_name("a0.2200.nc"), path), "another run"),
+    "another initial state": (lambda path: shutil.copy(path.parents[1] / "plus" / path.name, path), "another run"),
+    "another law": (lambda path: shutil.copy(path.parents[2] / "nonlinear/minus" / path.name, path), "another run"),
+    "another study": (lambda path: other_run(path, transient=90), "another run"),
+    "another a by a hair": (lambda path: other_run(path, a=float(np.nextafter(0.2, 1))), "another run"),
+    "another version": (lambda path: other_version(path, software="burridge-knopoff 0.0.1"), "0.0.1"),
+    "other sources": (lambda path: other_version(path, source_fingerprint="0123456789abcdef"), "other sources"),
+}
+
+
+@pytest.fixture(scope="module")
+def grids(repository):
+    """A function from a folder of results to the grid of its points at a = 0.2, and that of other solvers."""
+    config = yaml.safe_load(TINY)
+    study = load_study(config, read_schema(repository / "workflow/schemas/config.schema.yaml"), "study.yaml")
+    points = {**study.points, "a": {"0.2000": 0.2}}
+    return lambda results: Grid.of(results / "points", points)
+
+
+def readers(results: Path):
+    """Return {stage: function of a grid} of all that reads points."""
+    motion = {
+        "zero_exponent": 5e-4,
+        "chaotic_exponent": 1e-3,
+        "standard_errors": 3,
+        "period_tolerance": 1e-6,
+        "longest_period": 60,
+    }
+    compared = {"relative_tolerance": 0.1, "standard_errors": 3}
+    exponents = open_summary(results / "summary" / "lyapunov.nc")
+    return {
+        "mean_distance": lambda grid: mean_distance.summarize(grid, 1e-6),
+        "bifurcation": bifurcation.summarize,
+        "lyapunov": lambda grid: lyapunov.summarize(grid, 3, 1e-6, motion),
+        "agreement": lambda grid: agreement.summarize(grid, exponents.sel(a=[0.2]), 1e-6, compared),
+        "stick_slip": lambda grid: stick_slip.summarize(grid, 3, **RUN),
+        "solvers": lambda grid: solvers.summarize(grid, {}, 0.01),
+        "figures": lambda grid: open_point(grid, "linearized", "minus", "0.2000"),
+    }
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_no_stage_takes_in_a_bad_point(finished, grids, tmp_path, damage):
+    results = tmp_path / "results" / "tiny"
+    shutil.copytree(finished.folder / "results" / "tiny" / "points", results / "points")
+    shutil.copy(finished.folder / "results" / "tiny" / "study.json", results)
+    spoil, words = DAMAGES[damage]
+    spoil(results / POINT)
+    for stage, read in readers(finished.folder / "results" / "tiny").items():
+        with pytest.raises(BadFile) as caught:
+            read(grids(results))
+        message = str(caught.value)
+        assert message.startswith(f"{results / POINT}: "), stage
+        assert words in message, stage
+        assert re.search(r"; remake it: snakemake -c2 .*--configfile study\.yaml -R \S+$", message), stage
+        assert "\n" not in message, stage
+
+
+def test_the_readers_read_what_is_whole(finished, grids):
+    """Without damage every one of them goes through, so that the test above could fail."""
+    results = finished.folder / "results" / "tiny"
+    for read in readers(results).values():
+        assert read(grids(results)) is not None
+
+
+def remade(study, reasons):
+    """Run exactly the commands that the reasons name."""
+    commands = {re.search(r"; remake it: (.*)$", reason)[1] for reason in reasons}
+    environment = study.environment()
+    environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
+    for number, command in enumerate(sorted(commands), 1):
+        run = subprocess.run(shlex.split(command), cwd=study.folder, capture_output=True, text=True, env=environment)
+        # Each mends what it names, and stops at the next bad file.
+        assert run.returncode == (number < len(commands)), run.stderr
+    return commands
+
+
+def test_every_stage_stops_at_a_bad_file(finished, copy):
+    """The files are newer than what was made of them: the next run reads them. Their own commands mend them."""
+    results = copy.folder / "results" / "tiny"
+    spoiled = {
+        "points/linearized/minus/a0.0800.nc": lambda path: shutil.copy(path.with_name("a0.0500.nc"), path),
+        "solvers/rk4/nonlinear/plus/a0.2000.nc": lambda path: rewrite(path, cut),
+        "attractors/nonlinear.nc": lambda path: rewrite(path, noise_inside),
+    }
+    for path, spoil in spoiled.items():
+        spoil(results / path)
+        os.utime(results / path)
+    run = copy.run()
+    assert run.returncode == 1
+    reasons = failures(run.stderr)
+    assert reasons.keys() >= {
+        *("mean_distance.log", "bifurcation.log", "lyapunov.log", "stick_slip.log", "solvers.log"),
+        *("figure_distance.log", "figure_motion_minus.log", "attractors.log"),
+    }
+    named = set()
+    for log, reason in reasons.items():
+        found = re.fullmatch(r"results/tiny/(\S+): .+; remake it: (snakemake -c2 .* -R results/tiny/(\S+))", reason)
+        assert found, f"{log}: {reason}"
+        assert found[1] == found[3]
+        named.add(found[1])
+    assert named == spoiled.keys()
+    assert not (results / "summary" / "mean_distance.nc").exists()
+    assert len(remade(copy, reasons.values())) == len(spoiled)
+    assert go_on(copy) == []
+    assert differences(copy, finished) == []
+    assert temporaries(copy) == []
+
+
+@pytest.mark.parametrize(
+    ("path", "rule"),
+    [
+        ("points/nonlinear/plus/a0.2200.nc", "mean_distance"),
+        ("summary/lyapunov.nc", "figure_lyapunov"),
+        ("attractors/linearized.nc", "attractors"),
+        ("basins/linearized/a0.0800/tile1.nc", "basins"),
+        ("summary/two_blocks.nc", "claims"),
+        ("summary/orbits.nc", "report"),
+    ],
+)
+def test_a_bad_file_as_old_as_it_was(finished, copy, path, rule):
+    """Nothing tells Snakemake that it has changed: whoever reads it next finds out."""
+    target = copy.folder / "results" / "tiny" / path
+    times = target.stat()
+    rewrite(target, noise_inside)
+    os.utime(target, ns=(times.st_atime_ns, times.st_mtime_ns))
+    run = copy.run("-R", rule, "--until", rule)
+    assert run.returncode == 1
+    reasons = failures(run.stderr).values()
+    assert reasons
+    for reason in reasons:
+        assert reason.startswith(f"results/tiny/{path}: has other bytes than were written; remake it: snakemake -c2 ")
+
+
+def test_a_bad_summary_is_remade(finished, copy):
+    target = copy.folder / "results" / "tiny" / "summary" / "orbits.nc"
+    times = target.stat()
+    rewrite(target, cut)
+    os.utime(target, ns=(times.st_atime_ns, times.st_mtime_ns))
+    run = copy.run("-R", "figure_orbits", "--until", "figure_orbits")
+    (command,) = remade(copy, failures(run.stderr).values())
+    assert command.endswith("-R results/tiny/summary/orbits.nc")
+    assert go_on(copy) == []
+    assert differences(copy, finished) == []

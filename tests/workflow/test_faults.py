@@ -1,0 +1,232 @@
+"""After a kill, a crash, a full or a read-only disk the next run ends with the bytes of an undisturbed one.
+
+benchmarks/faults.py is the longer version.
+"""
+
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+
+import pytest
+
+from tests.workflow.faults import (
+    COMPARED,
+    STAGES,
+    begin,
+    broken,
+    crash,
+    differences,
+    failures,
+    flag_named,
+    go_on,
+    killed_at_the_move,
+    no_mounts,
+    out_of_memory,
+    processes,
+    read_only,
+    running,
+    small_disk,
+    stages_running,
+    temporaries,
+    wait_for,
+    wait_for_stages,
+)
+
+NO_MOUNTS = no_mounts()
+needs_mounts = pytest.mark.skipif(bool(NO_MOUNTS), reason=NO_MOUNTS)
+ATTRACTORS = "results/tiny/attractors/linearized.nc"
+
+
+def test_killed_in_every_stage(finished, study):
+    """SIGKILL of the whole process group, again and again in one study, so that none gets away with a fault."""
+    chance = random.Random(1)
+    left = set(STAGES)
+    flag = ""
+    while left:
+        process = begin(study)
+        assert wait_for_stages(study, left, process), f"not hit: {left}"
+        time.sleep(chance.uniform(0.0, 0.2))
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        left -= stages_running(study)
+        whole = {name: content for name, content in study.files(*COMPARED).items() if "/." not in name}
+        assert whole.items() <= finished.files(*COMPARED).items()
+        flag = flag or flag_named(study.run().stderr)
+        study.ok(flag)
+    assert go_on(study) == []
+    assert differences(study, finished) == []
+    assert temporaries(study) == []
+
+
+def test_interrupted_and_terminated(finished, study):
+    """Neither leaves a job running, nor a lock, nor half a file."""
+    for number, group in (
+        (signal.SIGINT, False),
+        (signal.SIGTERM, True),
+        (signal.SIGTERM, False),
+        (signal.SIGINT, True),
+    ):
+        process = begin(study, ATTRACTORS)
+        assert wait_for(lambda: running(study), process)
+        (os.killpg if group else os.kill)(process.pid, number)
+        assert process.wait() == 1
+        wait_for(lambda: not processes(study))
+        assert "study tiny: stopped" in (study.folder / "screen").read_text()
+        made = study.folder / ATTRACTORS
+        assert not made.exists() or made.read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
+        made.unlink(missing_ok=True)
+    assert go_on(study, ATTRACTORS) == []
+    assert (study.folder / ATTRACTORS).read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
+    assert temporaries(study) == []
+
+
+def test_points_that_die(finished, study):
+    """One is killed, one breaks, one runs out of memory: each is named with reason and log, and the others are made."""
+    faults = {
+        "points/linearized/plus/a0.0800.nc": killed_at_the_move("a0.0800.nc"),
+        "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.simulation", "run"),
+        "points/nonlinear/plus/a0.2000.nc": out_of_memory("burridge_knopoff.dataset.point", 1),
+    }
+    process = begin(study, "points", environment=broken(study, faults))
+    assert process.wait() == 1
+    screen = (study.folder / "screen").read_text()
+    reasons = failures(screen)
+    logs = {
+        "linearized/plus/a0.0800": "killed",
+        "linearized/minus/a0.0500": "RuntimeError: provoked in two lines",
+        "nonlinear/plus/a0.2000": "",
+    }
+    assert reasons.keys() == {f"simulate/{name}.log" for name in logs}
+    for name, words in logs.items():
+        assert words in reasons[f"simulate/{name}.log"], reasons
+    assert re.search("[Mm]emory", reasons["simulate/nonlinear/plus/a0.2000.log"])
+    log = (study.folder / "results/tiny/logs/simulate/linearized/minus/a0.0500.log").read_text()
+    assert "Traceback" in log
+    assert "Traceback" not in screen
+    assert len([name for name in study.files("points") if "/." not in name]) == 13
+    assert len(temporaries(study)) == 1
+    assert go_on(study, "points") == []
+    assert differences(study, finished, "points") == []
+    assert temporaries(study) == []
+
+
+def test_scripts_that_die(finished, copy):
+    """The same of a summary and two figures; one of them is killed between its two files."""
+    results = copy.folder / "results" / "tiny"
+    for name in ("figures/equilibrium.pdf", "figures/distance.png", "summary/stick_slip.nc"):
+        (results / name).unlink()
+    faults = {
+        ".figure_equilibrium.py": killed_at_the_move("equilibrium.png"),
+        ".figure_distance.py": out_of_memory("burridge_knopoff.figures.distance", 1),
+        ".stick_slip.py": crash("burridge_knopoff.summaries.stick_slip", "summarize"),
+    }
+    process = begin(copy, environment=broken(copy, faults))
+    assert process.wait() == 1
+    screen = (copy.folder / "screen").read_text()
+    reasons = failures(screen)
+    assert reasons.keys() == {"figure_equilibrium.log", "figure_distance.log", "stick_slip.log"}
+    assert "killed" in reasons["figure_equilibrium.log"]
+    assert re.search("[Mm]emory", reasons["figure_distance.log"])
+    assert reasons["stick_slip.log"] == "RuntimeError: provoked in two lines"
+    assert "Traceback" in (results / "logs" / "stick_slip.log").read_text()
+    assert "Traceback" not in screen
+    assert not (results / "figures" / "equilibrium.pdf").exists()
+    assert go_on(copy) == []
+    assert differences(copy, finished) == []
+    assert temporaries(copy) == []
+
+
+@needs_mounts
+@pytest.mark.parametrize(
+    ("path", "free", "log"),
+    [
+        ("points/linearized/plus/a0.0800.nc", 16384, "simulate/linearized/plus/a0.0800.log"),
+        ("summary/equilibrium.nc", 8192, "equilibrium.log"),
+        # The first of the two files of the figure still finds room.
+        ("figures/distance.png", 40960, "figure_distance.log"),
+    ],
+)
+def test_a_full_disk(finished, copy, path, free, log):
+    folder = copy.folder / "results" / "tiny" / path.split("/")[0]
+    target = f"results/tiny/{path}"
+    for missing in (copy.folder / target).parent.glob(f"{(copy.folder / target).stem}.*"):
+        missing.unlink()
+    with small_disk(folder, free) as ballast:
+        run = copy.run(target)
+        assert run.returncode == 1
+        reason = failures(run.stderr)[log]
+        assert reason.endswith(f"{path}: cannot be written: No space left on device")
+        assert not (copy.folder / target).exists()
+        assert temporaries(copy) == []
+        ballast.unlink()
+        assert go_on(copy, target) == []
+        assert go_on(copy) == []
+        assert differences(copy, finished) == []
+
+
+@needs_mounts
+def test_results_that_become_read_only(finished, study):
+    process = begin(study, "points")
+    points = study.folder / "results" / "tiny" / "points"
+    assert wait_for(lambda: list(points.rglob("a*.nc")), process)
+    with read_only(study.folder / "results"):
+        assert process.wait() == 1
+        assert "Read-only file system" in (study.folder / "screen").read_text()
+    assert go_on(study, "points") == []
+    assert differences(study, finished, "points") == []
+    assert temporaries(study) == []
+
+
+SNAKEMAKE_SAYS = ("Using ", "Assuming ", "Building ", "Singularity ", "Failed to setup log file: ")
+
+
+def stops_at_once(study, line):
+    """Require that a run ends with one line and that nothing has been made."""
+    run = study.run()
+    lines = [line for line in run.stderr.splitlines() if not line.startswith(SNAKEMAKE_SAYS)]
+    assert run.returncode == 1
+    assert lines == [line], run.stderr
+
+
+@needs_mounts
+def test_read_only_from_the_beginning(study):
+    (study.folder / "results" / "tiny" / "points").mkdir(parents=True)
+    (study.folder / ".snakemake").mkdir()
+    reason = "is a folder that cannot be written to: its file system is read-only"
+    for folder in ("results", "results/tiny/points"):
+        with read_only(study.folder / folder):
+            stops_at_once(study, f"{'results/tiny' if folder == 'results' else folder} {reason}")
+            # What is to be done can still be seen.
+            study.ok("-n")
+    with read_only(study.folder / ".snakemake"):
+        stops_at_once(study, f"{study.folder}/.snakemake {reason}")
+    assert study.files() == {}
+
+
+def test_something_else_in_the_place_of_results(study):
+    results = study.folder / "results"
+    results.write_text("")
+    stops_at_once(study, "results is not a folder")
+    results.unlink()
+    results.mkdir()
+    (results / "tiny").symlink_to("nowhere")
+    stops_at_once(study, "results/tiny is a link to nowhere, which is not there")
+
+
+def test_two_runs_at_once(study):
+    """The second does not begin; the first is not disturbed."""
+    process = begin(study, "points")
+    assert wait_for(lambda: running(study), process)
+    run = study.run("points")
+    assert run.returncode == 1
+    assert "--unlock" in run.stderr
+    assert process.wait() == 0
+
+
+def test_the_disk_is_given_back(tmp_path):
+    """The faults themselves leave nothing mounted."""
+    mounts = subprocess.run(["cat", "/proc/mounts"], capture_output=True, text=True).stdout
+    assert str(tmp_path.parent) not in mounts
