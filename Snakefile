@@ -108,18 +108,13 @@ except OSError as error:
 POINT = f"{RESULTS}/points/{{law}}/{{initial}}/a{{a}}.nc"
 
 # Programs that submit jobs tell the studies of a folder apart by it.
-os.environ["BK_RESULTS"] = RESULTS
+os.environ.update(BK_RESULTS=RESULTS)
 
 
 # Jobs find the `bk` of this environment, activated or not.
 shell.prefix(
     f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
 )
-
-
-def script_sources(name):
-    """Return the fingerprint of a script and of all that it imports: what a rule does, comments left out."""
-    return source_fingerprint(Path(workflow.basedir, f"workflow/scripts/{name}.py"))
 
 
 # The least in which `make setup` works: Python, a C compiler and make. Used only if jobs are to run in containers.
@@ -136,7 +131,7 @@ wildcard_constraints:
     a=r"\d+\.\d+",
 
 
-include: "workflow/rules/groups.smk"
+include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/summarize.smk"
 include: "workflow/rules/attractors.smk"

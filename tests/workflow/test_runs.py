@@ -5,7 +5,7 @@ import re
 import shutil
 import subprocess
 
-from tests.workflow.conftest import TINY
+from tests.workflow.conftest import TINY, Study
 
 
 def jobs(output):

@@ -1,17 +1,6 @@
 # Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
 
 
-def basin_config(*unused):
-    """Return what maps depend on, without some keys of the section of basins."""
-    # Neither the list of maps nor the number of threads changes a map.
-    unused = {*LAWS, "threads", *unused}
-    section = STUDY.config["basins"]
-    return {
-        **{key: STUDY.config[key] for key in (*ATTRACTOR_KEYS, "initial")},
-        "basins": {key: section[key] for key in section if key not in unused},
-    }
-
-
 BASIN_MAPS = [(law, a) for law in LAWS for a in STUDY.config["basins"][law]]
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
