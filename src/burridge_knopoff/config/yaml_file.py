@@ -74,7 +74,9 @@ def read_schema(path: str | Path) -> dict[str, Any]:
     """Return the schema in a YAML file."""
     import yaml
 
-    return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    # By the compiled parser where there is one: every start of Snakemake, on a cluster every job, reads the schema.
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    return yaml.load(Path(path).read_text(encoding="utf-8"), Loader=loader)
 
 
 def _text(path: Path) -> str:
