@@ -38,7 +38,7 @@ initial:
 transient: 200
 window: 400
 batches: 4
-attractors: {{samples: 4, transient: 300, window: 300, time_limit: 2000, pushes: 2}}
+attractors: {{samples: 4, transient: 300, window: 300, time_limit: 2000, pushes: 4}}
 basins: {{linearized: [], nonlinear: []}}
 chains: {{two_blocks: {{a: [0.02, 0.15], samples: 2}}}}
 """

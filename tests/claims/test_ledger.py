@@ -11,9 +11,17 @@ from pathlib import Path
 import pytest
 
 from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
-from burridge_knopoff.claims.verdict import NotTestableError, Range, at_values, by_interval, by_value, with_error
+from burridge_knopoff.claims.verdict import (
+    NOT_TESTABLE,
+    NotTestableError,
+    Range,
+    at_values,
+    by_interval,
+    by_value,
+    with_error,
+)
 from burridge_knopoff.config import ConfigError
-from tests.claims.worlds import A, evidence, paper_world
+from tests.claims.worlds import CONFIG, A, evidence, paper_world
 
 ROOT = Path(__file__).parents[2]
 SCHEMA = ROOT / "workflow/schemas/claims.schema.yaml"
@@ -188,3 +196,23 @@ def test_a_number_holds_within_its_tolerance() -> None:
     assert by_value(0.144, 0.14, 0.005, 0.01) == "holds"
     assert by_value(0.148, 0.14, 0.005, 0.01) == "holds loosely"
     assert by_value(0.16, 0.14, 0.005, 0.01) == by_value(math.nan, 0.14, 0.005, 0.01) == "fails"
+
+
+@pytest.mark.parametrize("missing", [{"minus"}, {"plus"}, {"minus", "plus"}])
+def test_a_study_without_the_papers_states_is_judged_without_an_error(missing: set[str]) -> None:
+    """Its states have other names: what rests on them is not testable, and says so."""
+    names = {name: f"other_{name}" if name in missing else name for name in ("minus", "plus")}
+    summaries = {}
+    for key, dataset in paper_world().items():
+        if "initial" in dataset.dims:
+            dataset = dataset.assign_coords(initial=[names[name] for name in dataset["initial"].values])
+        elif "initial" in dataset and "flag_meanings" in dataset["initial"].attrs:
+            meanings = [names[name] for name in dataset["initial"].attrs["flag_meanings"].split()]
+            dataset["initial"].attrs["flag_meanings"] = " ".join(meanings)
+        summaries[key] = dataset
+    states = {names[name]: state for name, state in CONFIG["initial"].items()}
+    found = ledger("other", read_claims(ROOT / "config/claims.yaml", SCHEMA), evidence(summaries, initial=states), [])
+    reasons = [claim["reason"] for claim in found["claims"] if claim["verdict"] == NOT_TESTABLE]
+    for name in missing:
+        assert f"Not testable here: the study has no initial state {name}." in reasons
+    assert len(reasons) < len(found["claims"])

@@ -91,8 +91,8 @@ def solutions_agree(
     """
     solved, compared, measured, apart = [], [], [], []
     for state in initial:
-        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a, least=1)
         runs = evidence.of_state("lyapunov", state)
+        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a, least=1)
         threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
         for value in solvers["a"].values:
             found = solvers.sel(a=value)
