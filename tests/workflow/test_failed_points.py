@@ -1,0 +1,84 @@
+"""Points that end by a limit are results: the study goes on, and what they leave open is seen everywhere."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff.figures.mean_distance import draw
+from tests.workflow.conftest import Study
+
+#: rk4 at so long a step is unstable: slowly at a = 0.05, before the end of the run at a = 0.2.
+CONFIG = """
+study: limits
+a: [0.05, 0.2]
+initial: {minus: {}, plus: {}}
+solver: {linearized: rk4}
+step: 2
+transient: 30
+window: 60
+batches: 2
+lyapunov_alignment: 10
+attractors: {samples: 2, transient: 300, window: 300, time_limit: 1000, pushes: 4}
+basins: {linearized: [], nonlinear: []}
+solvers: {a: [0.2], step: 0.01}
+chains: {two_blocks: {a: [0.02], samples: 1}}
+"""
+
+
+@pytest.fixture(scope="module")
+def limited(tmp_path_factory):
+    study = Study(tmp_path_factory.mktemp("limits"), CONFIG)
+    study.output = study.ok()
+    return study
+
+
+@pytest.fixture
+def summary(limited):
+    return lambda name: xr.load_dataset(limited.folder / f"results/limits/summary/{name}.nc")
+
+
+def test_the_study_ends_and_its_last_lines_count_them(limited):
+    path = "results/limits/summary/mean_distance.nc"
+    assert f"points: 2 of 8 did not complete: diverged 2 (status in {path})" in limited.output
+    assert "study limits: done in" in limited.output
+
+
+def test_summaries_carry_the_status_and_have_no_value(summary):
+    found = summary("mean_distance")
+    meanings = found["status"].attrs["flag_meanings"].split()
+    failed = found["status"] == meanings.index("diverged")
+    assert failed.sel(law="linearized").values.tolist() == [[False, True], [False, True]]
+    assert not failed.sel(law="nonlinear").any()
+    for name in ("mean_distance", "mean_distance_error"):
+        assert (np.isnan(found[name]) == failed).all()
+    assert (found["synchronized"].where(failed, 0) == 0).all()
+    kind = summary("lyapunov")["kind"]
+    assert (kind.where(failed, -1) == kind.attrs["flag_meanings"].split().index("undetermined") - 1).all()
+    agreement = summary("agreement")
+    assert (agreement["agrees"].sel(a=0.2) == -1).all()
+    assert np.isnan(agreement["difference"].sel(a=0.2)).all()
+
+
+def test_a_figure_leaves_a_gap(summary):
+    figure = draw(summary("mean_distance"), summary("attractors"))
+    drawn = [line.get_ydata() for axes in figure.axes for line in axes.get_lines() if len(line.get_ydata()) == 2]
+    assert any(np.isfinite(y[0]) and np.isnan(y[1]) for y in drawn)
+
+
+def test_the_check_tells_them_from_errors(limited):
+    command = [str(Path(sys.executable).parent / "bk"), "check", "results/limits"]
+    run = subprocess.run(command, cwd=limited.folder, capture_output=True, text=True)
+    lines = run.stdout.splitlines()
+    assert run.returncode == 3
+    assert [line.split()[0] for line in lines[:-1]] == ["failed"] * 2
+    assert lines[0].endswith("points/linearized/minus/a0.2000.nc: ended with status diverged")
+    assert lines[-1].endswith("0 missing, 0 corrupt, 0 stale, 2 failed")
+
+
+def test_the_report_shows_them(limited):
+    page = (limited.folder / "results/limits/report.html").read_text()
+    assert "diverged" in page
