@@ -74,10 +74,7 @@ class Trials:
 
         remake : a command that a message has named; else a flag is taken from Snakemake's own
         """
-        files = study.files()
-        whole = sum(
-            1 for name in files if re.search(r"\.(nc|txt|csv|json|md|pdf|png|html)$", name) and "/." not in name
-        )
+        whole = sum(1 for name in study.files(*COMPARED) if "/." not in name)
         left = len(temporaries(study))
         commands = []
         if remake:
