@@ -27,6 +27,7 @@ sys.path.insert(0, str(REPOSITORY))
 
 from tests.workflow.conftest import Study
 from tests.workflow.faults import (
+    COMPARED,
     STAGES,
     begin,
     differences,
@@ -73,10 +74,7 @@ class Trials:
 
         remake : a command that a message has named; else a flag is taken from Snakemake's own
         """
-        files = study.files()
-        whole = sum(
-            1 for name in files if re.search(r"\.(nc|txt|csv|json|md|pdf|png|html)$", name) and "/." not in name
-        )
+        whole = sum(1 for name in study.files(*COMPARED) if "/." not in name)
         left = len(temporaries(study))
         commands = []
         if remake:
@@ -215,7 +213,15 @@ def clones(trials: Trials) -> None:
         study.repository = clone
         run = study.run(cores=cores)
         good = run.returncode == 0 and not differences(study, trials.finished)
-        row = [f"none, second clone, -c{cores}", "", "", str(len(study.files())), "0", "", "yes" if good else "NO"]
+        row = [
+            f"none, second clone, -c{cores}",
+            "",
+            "",
+            str(len(study.files(*COMPARED))),
+            "0",
+            "",
+            "yes" if good else "NO",
+        ]
         trials.rows.append(row)
 
 
