@@ -183,7 +183,7 @@ def test_a_changed_config_and_points_of_no_grid(results, capsys):
 
 
 DEEP = b"[" * 100_000 + b"]" * 100_000
-WRONG = b'{"arguments": "", "config_file": "", "given": {}, "config": 6, "grid": {}}'
+WRONG = b'{"software": "", "git_commit": "", "arguments": "", "config_file": "", "given": {}, "config": 6, "grid": {}}'
 
 
 @pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}", DEEP, WRONG])

@@ -1,4 +1,4 @@
-"""Where a result comes from: version, module and fingerprint of the sources that made it, the git checkout.
+"""Where a result comes from: version, module and fingerprint of the sources that made it; the git checkout.
 
 Nothing here depends on the user, the host or the time of day, so that the same inputs give the same bytes.
 """
@@ -41,10 +41,12 @@ def git_commit() -> str:
 
 
 def provenance(module: str) -> dict[str, str]:
-    """Return the provenance attributes of what a module of the package makes, by its full name."""
+    """Return the provenance attributes of what a module of the package makes, by its full name.
+
+    The commit is not among them: one that changes a text must not change the bytes of a result.
+    """
     return {
         "software": SOFTWARE,
         "source_module": module,
         "source_fingerprint": source_fingerprint(module),
-        "git_commit": git_commit(),
     }

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.files import display_path, write_text
+from burridge_knopoff.provenance import SOFTWARE, git_commit
 
 if TYPE_CHECKING:
     from burridge_knopoff.config import Study
 
 NAME = "study.json"
 
-
-_KEYS = ("arguments", "config_file", "given", "config", "grid")
+_KEYS = ("software", "git_commit", "arguments", "config_file", "given", "config", "grid")
 
 
 def write_study_record(results: str | Path, study: Study, config_file: str | Path, arguments: str) -> None:
@@ -27,7 +27,10 @@ def write_study_record(results: str | Path, study: Study, config_file: str | Pat
     from burridge_knopoff.config.yaml_file import read_yaml
 
     path = Path(results, NAME)
-    values = (arguments, display_path(config_file), read_yaml(config_file), study.config, study.grid)
+    values = (
+        *(SOFTWARE, git_commit(), arguments, display_path(config_file)),
+        *(read_yaml(config_file), study.config, study.grid),
+    )
     text = json.dumps(dict(zip(_KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -36,6 +39,7 @@ def write_study_record(results: str | Path, study: Study, config_file: str | Pat
 def read_study_record(results: str | Path) -> dict[str, Any]:
     """Return the record of a folder of results.
 
+    software, git_commit : of the last run
     arguments, config_file : as they were recorded
     given, config : the config as it was given, and with all defaults
     grid : {name in file names: value of a}
@@ -49,7 +53,7 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not readable ({error}); run snakemake again, it writes it") from None
-    types = (str, str, dict, dict, dict)
+    types = (str, str, str, str, dict, dict, dict)
     right = isinstance(record, dict) and tuple(record) == _KEYS
     if not right or not all(isinstance(value, kind) for value, kind in zip(record.values(), types, strict=True)):
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")

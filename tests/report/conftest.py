@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from PIL import Image
 
 from burridge_knopoff.chain import Chain
+from burridge_knopoff.claims.ledger import as_json
 from burridge_knopoff.config import Study, load_study, read_schema
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
@@ -72,13 +74,14 @@ def poor(tmp_path_factory, repository) -> Poor:
     for name in ("mean_distance", "orbits", "motion_pair"):
         Image.new("RGBA", (900, 600), "white").save(folder / "figures" / f"{name}.png")
     claims = folder / "summary" / "claims.json"
-    claims.write_text(
+    content = json.loads(
         '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"not testable": 1},'
         ' "claims": [{"name": "none", "topic": "chaos", "statement": "It </script><img src=x onerror=alert(1)>.",'
         ' "place": "Sec. <b onclick=x>1</b>", "verdict": "not testable", "reason": "No run.",'
         ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null}],'
         ' "conventions": {"<u onfocus=x>any</u>": "not testable"}}]}'
     )
+    claims.write_text(as_json(content))
     summaries, figures = (
         {path.stem: path for path in (folder / place).glob(f"*{suffix}")}
         for place, suffix in (("summary", ".nc"), ("figures", ".png"))

@@ -10,6 +10,8 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 from PIL import Image
 
+from burridge_knopoff.claims.ledger import as_json
+from burridge_knopoff.dataset.seal import BadFile
 from burridge_knopoff.figures.branches import COLORS
 from burridge_knopoff.report.basin_maps import basin_maps
 from burridge_knopoff.report.numbers import embedded_json, exact, rounded, text, with_error
@@ -91,10 +93,10 @@ def test_one_reason_for_all_is_said_once(tmp_path):
     for claim in content["claims"]:
         claim.update(verdict="not testable", reason="Not testable here: short runs.", conventions={})
     path = tmp_path / "claims.json"
-    path.write_text(json.dumps(content))
+    path.write_text(as_json(content))
     assert read_verdicts(path).one_reason == "Not testable here: short runs."
     content["claims"][0]["reason"] = "Another."
-    path.write_text(json.dumps(content))
+    path.write_text(as_json(content))
     assert read_verdicts(path).one_reason == ""
 
 
@@ -114,11 +116,20 @@ def test_a_wrong_file_of_verdicts_is_one_line(tmp_path, change, words):
     content = json.loads(CLAIMS.read_text())
     change(content)
     path = tmp_path / "claims.json"
-    path.write_text(json.dumps(content))
+    path.write_text(as_json(content))
     with pytest.raises(ValueError, match="claims.json: ") as caught:
         read_verdicts(path)
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_changed_verdict_is_not_believed(tmp_path):
+    """One word that is still allowed, and counts that fit: only the digest tells."""
+    path = tmp_path / "claims.json"
+    path.write_text(CLAIMS.read_text().replace("0.0", "0.1", 1))
+    assert path.read_text() != CLAIMS.read_text()
+    with pytest.raises(BadFile, match="has other content than was written; remake it: snakemake -c2 -R "):
+        read_verdicts(path)
 
 
 def test_run_times_are_sums_over_the_files_of_a_stage(tmp_path):

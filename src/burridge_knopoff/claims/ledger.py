@@ -16,7 +16,7 @@ import numpy as np
 
 from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
+from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
 from burridge_knopoff.config.message import ConfigError
 from burridge_knopoff.config.study import check_names, check_schema
 from burridge_knopoff.config.yaml_file import read_schema, read_yaml
@@ -172,8 +172,8 @@ def _number(value: float | None) -> float | None:
 
 
 def as_json(content: Mapping[str, Any]) -> str:
-    """Return the ledger as JSON."""
-    return json.dumps(content, ensure_ascii=False, indent=1) + "\n"
+    """Return the ledger as JSON, with a digest of itself."""
+    return json.dumps({**content, "digest": content_digest(content)}, ensure_ascii=False, indent=1) + "\n"
 
 
 def as_csv(content: Mapping[str, Any]) -> str:

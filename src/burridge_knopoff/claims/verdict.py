@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,6 +25,12 @@ MOST_SPANS = 8
 
 # From the best to the worst of those that a rule gives.
 _RANK = (HOLDS, LOOSELY, FAILS)
+
+
+def content_digest(content: Mapping[str, Any]) -> str:
+    """Return 16 hexadecimal digits of the SHA-256 of a ledger, by which a damaged claims.json is known."""
+    text = json.dumps({key: value for key, value in content.items() if key != "digest"}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 class NotTestableError(Exception):

@@ -133,8 +133,6 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     if attributes["solver"] == "rk4":
         attributes["step"] = settings.step
     attributes.update(provenance(__name__))
-    # The sources are told by their fingerprint; a commit that changes a text must not change the bytes of a point.
-    del attributes["git_commit"]
     return attributes
 
 

@@ -12,7 +12,7 @@ import yaml
 
 from burridge_knopoff.config import Study, all_points
 from burridge_knopoff.friction import LAWS
-from burridge_knopoff.provenance import provenance
+from burridge_knopoff.provenance import git_commit, provenance
 from burridge_knopoff.report.numbers import text
 
 #: Distributions whose versions the report states.
@@ -87,7 +87,7 @@ def software() -> list[tuple[str, str]]:
     rows = [
         ("Software", found["software"]),
         ("Source fingerprint of the runs", found["source_fingerprint"]),
-        ("Git commit", found["git_commit"]),
+        ("Git commit", git_commit()),
         ("Python", platform.python_version()),
     ]
     for name in LIBRARIES:

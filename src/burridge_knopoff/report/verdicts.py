@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, one_reason
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, content_digest, one_reason
 from burridge_knopoff.dataset.seal import BadFile
 
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
@@ -41,8 +41,12 @@ def read_verdicts(path: str | Path) -> Verdicts:
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
+        if content["digest"] != content_digest(content):
+            raise BadFile(path, "has other content than was written")
         claims = [_claim(claim) for claim in content["claims"]]
         stated = {verdict: int(content["counts"].get(verdict, 0)) for verdict in SIGNS}
+    except BadFile:
+        raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
     counts = {verdict: sum(claim["verdict"] == verdict for claim in claims) for verdict in SIGNS}
@@ -51,7 +55,7 @@ def read_verdicts(path: str | Path) -> Verdicts:
     topics: dict[str, list[dict[str, Any]]] = {}
     for claim in claims:
         topics.setdefault(claim["topic"], []).append(claim)
-    setting = {key: value for key, value in content.items() if key not in ("claims", "counts")}
+    setting = {key: value for key, value in content.items() if key not in ("claims", "counts", "digest")}
     return Verdicts(counts, topics, setting, one_reason(claims) if len(claims) > 1 else "")
 
 
