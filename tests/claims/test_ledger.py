@@ -18,6 +18,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_interval,
     by_value,
+    content_digest,
     with_error,
 )
 from burridge_knopoff.config import ConfigError
