@@ -1,13 +1,15 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
+# `make kernel`: compile the kernel again.
 # `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
 # `make fuzz`: an hour of broken configs, points and runs.
 
 PYTHON ?= python3
 BIN := .venv/bin
-KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd)
+KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd) \
+	$(addprefix src/burridge_knopoff/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup test benchmark fuzz docs lock clean
+.PHONY: study setup kernel test benchmark fuzz docs lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -27,6 +29,11 @@ endif
 .venv/kernel: .venv/study setup.py pyproject.toml $(KERNEL)
 	$(PIP) install --no-build-isolation --no-deps --editable .
 	@touch $@
+
+# Whatever the times of files say: what is compiled is known by what it was compiled from.
+kernel: .venv/study
+	$(PIP) install --no-build-isolation --no-deps --editable .
+	@touch .venv/kernel
 
 .venv/test: requirements/test.lock .venv/study
 	$(PIP) install --require-hashes --requirement $<

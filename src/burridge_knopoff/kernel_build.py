@@ -12,7 +12,7 @@ KERNEL = PACKAGE / "kernel"
 RECORD = "build.json"
 
 _CHECKOUT = PACKAGE.parent.parent
-REBUILD = "make setup" if (_CHECKOUT / "Makefile").is_file() else "pip install --force-reinstall burridge-knopoff"
+REBUILD = "make kernel" if (_CHECKOUT / "Makefile").is_file() else "pip install --force-reinstall burridge-knopoff"
 
 
 class KernelError(ImportError):

@@ -123,7 +123,7 @@ def test_an_edited_kernel_is_refused_until_it_is_built(studied):
         run = studied.run("-n")
     lines = [line for line in run.stderr.splitlines() if not line.startswith("Using workflow specific profile")]
     assert run.returncode != 0
-    assert lines == ["kernel/series.py: has changed since the kernel was compiled: run `make setup`"]
+    assert lines == ["kernel/series.py: has changed since the kernel was compiled: run `make kernel`"]
 
 
 @pytest.fixture(scope="module")
@@ -154,7 +154,7 @@ def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studi
 def test_a_kernel_that_is_not_compiled_starts_no_study(uncompiled):
     run = uncompiled.run()
     assert run.returncode != 0
-    assert run.stderr.splitlines()[-1] == "the kernel is not compiled: run `make setup`"
+    assert run.stderr.splitlines()[-1] == "the kernel is not compiled: run `make kernel`"
 
 
 #: Changes of keys that make the same rules run again, besides the report.
