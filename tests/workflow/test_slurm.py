@@ -20,7 +20,10 @@ import pytest
 
 from tests.workflow.conftest import REPOSITORY, TINY, Study
 
-MISSING = [program for program in ("sbatch", "slurmctld", "slurmd", "munged") if shutil.which(program) is None]
+# Daemons lie where the path of an ordinary user does not lead.
+PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
+PROGRAMS = ("sbatch", "slurmctld", "slurmd", "munged")
+MISSING = [program for program in PROGRAMS if shutil.which(program, path=PATH) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"Slurm is not installed: {', '.join(MISSING)}")
 
 SCRIPT = REPOSITORY / "tests" / "slurm" / "cluster.sh"
