@@ -1,7 +1,7 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
 # `make kernel`: compile the kernel again.
 # `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
-# `make fuzz`: an hour of broken configs, points and runs.
+# `make faults`, `make fuzz`, `make size`: a study killed 20 times and more; an hour of broken input; 10,000 points.
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -9,7 +9,7 @@ KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kerne
 	$(addprefix src/burridge_knopoff/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup kernel test benchmark fuzz docs lock clean
+.PHONY: study setup kernel test benchmark faults fuzz size docs lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -63,6 +63,12 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/study.py
 	.venv-benchmark/bin/python benchmarks/stages.py
 	.venv-benchmark/bin/python benchmarks/stages.py --target chains
+
+faults: .venv/kernel .venv/test
+	$(BIN)/python benchmarks/faults.py
+
+size: .venv/kernel
+	$(BIN)/python benchmarks/size.py
 
 # An hour on one core; bad inputs lie in fuzzed/.
 fuzz: .venv/kernel .venv-benchmark/ready
