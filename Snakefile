@@ -27,6 +27,7 @@ from burridge_knopoff.config import (
     load_study,
     read_config,
     read_schema,
+    read_yaml,
 )
 from burridge_knopoff.files import (
     check_folder,
@@ -62,14 +63,13 @@ if " " in sys.executable:
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
     )
 
-# The same however the Snakefile is named, or the claims would be judged again.
-CLAIMS_FILE = os.path.relpath(Path(workflow.basedir, "config/claims.yaml"))
-CLAIMS_SCHEMA = os.path.relpath(
-    Path(workflow.basedir, "workflow/schemas/claims.schema.yaml")
-)
+CLAIMS_FILE = Path(workflow.basedir, "config/claims.yaml")
 
 try:
-    read_claims(CLAIMS_FILE, CLAIMS_SCHEMA)
+    read_claims(
+        CLAIMS_FILE, Path(workflow.basedir, "workflow/schemas/claims.schema.yaml")
+    )
+    CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
     STUDY_CONFIG = read_config(workflow.configfiles[0])
     update_config(STUDY_CONFIG, workflow.config_settings.config)

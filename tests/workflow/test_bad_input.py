@@ -118,7 +118,7 @@ def test_a_config_with_any_name_is_read(tmp_path):
 def test_what_is_refused_before_snakemake_looks_is_refused_by_the_snakefile_too(tmp_path):
     """Another display, and with it another reader of the command line, must let nothing pass."""
     study = Study(tmp_path, "__use_yte__: true\n" + GOOD)
-    run = study.run("--logger", "rich")
+    run = study.run("--workflow-profile", "none")
     assert run.returncode == 1
     assert "study.yaml: __use_yte__: unknown key" in run.stderr
     assert not (tmp_path / "results").exists()

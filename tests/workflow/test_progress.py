@@ -121,14 +121,18 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     assert run.returncode != 0
     end = next(n for n, line in enumerate(lines) if line.startswith("study tiny: stopped"))
     assert re.fullmatch(r"study tiny: stopped after \d+ s: 1 job failed, 1 job did not run", lines[end])
-    assert lines[end + 1 : end + 4] == [
-        "failed: mean_distance, log results/tiny/logs/mean_distance.log",
+    told = lines[end + 1]
+    assert told.startswith(
+        f"failed: mean_distance: {point.relative_to(copy.folder)}: is empty; remake it: snakemake -c2 "
+    )
+    assert told.endswith(f" -R {point.relative_to(copy.folder)} (log results/tiny/logs/mean_distance.log)")
+    assert lines[end + 2 : end + 4] == [
         "made: nothing",
         "the same command goes on where this run stopped",
     ]
-    # The log itself, and Snakemake's own words, are there as well.
-    assert "Error in rule mean_distance:" in lines
-    assert "not a readable point file" in run.stderr
+    # It was told when it happened as well, in the same line and without Snakemake's block of all input files.
+    assert lines.count(told) == 2
+    assert "Error in rule" not in run.stderr
 
 
 def test_no_defect_of_the_last_lines_fails_a_run(copy):

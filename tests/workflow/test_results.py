@@ -159,7 +159,7 @@ def test_solvers_summary(results):
     found = {str(path.relative_to(results / "solvers").parent) for path in (results / "solvers").rglob("a*.nc")}
     assert found == {
         f"{way}/{initial}"
-        for way in ("linearized/series", "linearized/rk4", "nonlinear/rk4")
+        for way in ("series/linearized", "rk4/linearized", "rk4/nonlinear")
         for initial in ("minus", "plus")
     }
 

@@ -3,7 +3,6 @@
 
 rule claims:
     input:
-        claims=CLAIMS_FILE,
         summaries=[
             f"{SUMMARY}/{name}.nc"
             for name in (
@@ -38,7 +37,7 @@ rule claims:
         runtime=10,
     params:
         study=STUDY.name,
-        schema=CLAIMS_SCHEMA,
+        claims=CLAIMS,
         config={
             key: STUDY.config[key]
             for key in (
