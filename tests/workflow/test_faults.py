@@ -107,7 +107,8 @@ def test_points_that_die(finished, study):
     assert "Traceback" in log
     assert "Traceback" not in screen
     assert len([name for name in study.files("points") if "/." not in name]) == 13
-    assert len(temporaries(study)) == 1
+    # The killed one left its file; so may the one without memory, if the C library ended it.
+    assert len(temporaries(study)) in (1, 2)
     assert go_on(study, "points") == []
     assert differences(study, finished, "points") == []
     assert temporaries(study) == []

@@ -175,7 +175,9 @@ def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
 
 def test_what_runs_for_another_config_is_cancelled(cluster, tmp_path):
     """A job that was begun for values that have changed since must not count as the one that is wanted."""
-    study, local = Study(tmp_path / "study"), Study(tmp_path / "local", TINY + "sampling: 2\n")
+    # The first runs would take minutes: they are still there when the second Snakemake comes.
+    study = Study(tmp_path / "study", TINY.replace("\ntransient: 100\n", "\ntransient: 300000\n"))
+    local = Study(tmp_path / "local", TINY + "sampling: 2\n")
     first = Run(study, "--until", "points")
     first.until(lambda: cluster.running("points"))
     first.kill()
