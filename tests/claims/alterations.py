@@ -57,19 +57,6 @@ def faster_cloud(world: Summaries) -> None:
     bifurcation["crossing_velocity"].values[of_plus] += 0.5
 
 
-def all_synchronize(world: Summaries) -> None:
-    world["basins"]["branch"].values[...] = 0
-
-
-def far_as_near(share: float) -> Alteration:
-    def mix(world: Summaries) -> None:
-        branch = world["basins"]["branch"].values
-        apart = np.flatnonzero(branch == 1)
-        branch.ravel()[np.random.default_rng(1).permutation(apart)[: int(share * len(apart))]] = 0
-
-    return mix
-
-
 def exponents(value: float, error: float) -> Alteration:
     return both(
         alter("lyapunov", "lyapunov_exponent", value, exponent=0),
@@ -139,8 +126,6 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("first_block_decides", HOLDS, reached(-1, initial="minus", **OTHER)),
     ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
     ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
-    ("phases_decide", FAILS, all_synchronize),
-    ("phases_decide", LOOSELY, far_as_near(0.15)),
     ("regular_below", FAILS, both(alter("lyapunov", "kind", CHAOTIC), alter("attractors", "kind", CHAOTIC))),
     ("regular_below", CONVENTION, alter("lyapunov", "kind", CHAOTIC)),
     ("regular_below", LOOSELY, alter("lyapunov", "kind", CHAOTIC, a=ONE_OF_MANY)),

@@ -47,7 +47,6 @@ def paper_world() -> Summaries:
         "bifurcation": _bifurcation(),
         "agreement": _agreement(),
         "attractors": _attractors(),
-        "basins": _basins(),
         "orbits": _orbits(),
         "stick_slip": _stick_slip(),
         "equilibrium": _equilibrium(),
@@ -166,25 +165,6 @@ def _attractors() -> xarray.Dataset:
         contact=["one_sided", "symmetric"],
         start=["moving", "tested"],
         block=BLOCKS,
-    )
-
-
-def _basins() -> xarray.Dataset:
-    position = np.linspace(-1.5, 1.5, 31)
-    gap = np.abs(position[None, :] - position[:, None])
-    return xarray.Dataset(
-        {
-            "branch": (
-                ("map", "last_position", "first_position"),
-                np.stack([np.where(gap < 0.5, 0, 1)] * 2).astype("i2"),
-            )
-        },
-        {
-            "law": ("map", np.array([0, 1], "i1"), {"flag_values": [0, 1], "flag_meanings": " ".join(LAWS)}),
-            "a": ("map", [0.05, 0.08]),
-            "first_position": position,
-            "last_position": position,
-        },
     )
 
 

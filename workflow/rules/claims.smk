@@ -11,7 +11,6 @@ rule claims:
                 "lyapunov",
                 "agreement",
                 "attractors",
-                *(["basins"] if BASIN_MAPS else []),
                 "orbits",
                 "stick_slip",
                 "equilibrium",

@@ -9,14 +9,7 @@ import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import (
-    Measured,
-    NotTestableError,
-    Range,
-    Verdict,
-    at_values,
-    by_share,
-)
+from burridge_knopoff.claims.verdict import Measured, NotTestableError, Range, Verdict, at_values
 from burridge_knopoff.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
@@ -112,32 +105,8 @@ def _outcomes_differ(one: xarray.DataArray, other: xarray.DataArray) -> float | 
     return float(((one == 0) != (other == 0)).values[known].mean()) if known.any() else None
 
 
-def phases_decide(evidence: Evidence, near: float, far: float, a: Range, share: float, loose_share: float) -> Verdict:
-    """Judge whether states whose end blocks begin close to each other synchronize and those that begin apart do not.
-
-    near, far : largest |U_1(0) − U_3(0)| of close states, and least of those apart, on the maps of basins
-    share, loose_share : the claim holds if this share of either group behaves so on every map, loosely if that one does
-    """
-    evidence.check_blocks()
-    maps = evidence.summary("basins")
-    chosen = np.flatnonzero(a.choose(maps["a"].values))
-    if not len(chosen):
-        raise NotTestableError(f"the study has no map of basins with {a}")
-    gap = np.abs(maps["first_position"].values[None, :] - maps["last_position"].values[:, None])
-    laws = maps["law"].attrs["flag_meanings"].split()
-    measured, texts = [], []
-    for index in chosen:
-        branch = maps["branch"].values[index]
-        close, apart = (branch[(branch >= 0) & group] for group in (gap <= near, gap >= far))
-        if not len(close) or not len(apart):
-            raise NotTestableError("a map of basins does not hold states close together and states apart")
-        place = f"{laws[int(maps['law'].values[index])]}, a = {maps['a'].values[index]:g}"
-        measured.append(Measured(f"share of close states that synchronize, {place}", float((close == 0).mean())))
-        measured.append(Measured(f"share of states apart that do not, {place}", float((apart != 0).mean())))
-        texts.append(f"{100 * measured[-2].value:.0f} % and {100 * measured[-1].value:.0f} % ({place})")
-    least = min(item.value for item in measured)
-    reason = (
-        f"Share of the states with |U₁ − U₃| ≤ {near:g} that synchronize, and of those with |U₁ − U₃| ≥ {far:g} that "
-        f"do not: {'; '.join(texts)}."
+def phases_decide(evidence: Evidence) -> Verdict:
+    """Raise NotTestableError for every study: none tells the phases of oscillations about uniform sliding apart."""
+    raise NotTestableError(
+        "the states of this study differ in positions, not in the phase of an oscillation about uniform sliding"
     )
-    return Verdict(by_share(1.0 if least >= share else least, loose_share), reason, measured)
