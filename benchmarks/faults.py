@@ -144,16 +144,15 @@ def jobs_killed(trials: Trials) -> None:
         process = begin(study)
         wait_for_stages(study, {stage}, process)
 
-        def job(study: Study = study, stage: str = stage) -> str:
+        def job(study: Study = study, stage: str = stage) -> int | None:
             words = {"points": "bk simulate", "attractors": ".attractors_of_law.py", "figures": ".figure_"}[stage]
-            command = ["pgrep", "-f", f"python.*{words}"]
-            return next((pid for pid in subprocess.run(command, capture_output=True, text=True).stdout.split()
-                         if os.path.realpath(f"/proc/{pid}/cwd") == str(study.folder)), "")  # fmt: skip
+            commands = processes(study).items()
+            return next((number for number, command in commands if re.search(f"python.*{words}", command)), None)
 
-        victim = ""
-        while not victim and process.poll() is None:
+        victim = None
+        while victim is None and process.poll() is None:
             victim = job()
-        os.kill(int(victim), signal.SIGKILL)
+        os.kill(victim, signal.SIGKILL)
         process.wait()
         screen = (study.folder / "screen").read_text()
         trials.stopped(study, f"a job of {stage} killed", process.returncode == 1 and bool(failures(screen)))

@@ -1,18 +1,13 @@
 """The report in a browser, read as its readers do: with a pointer, with the keyboard, on a phone, in print."""
 
-import os
-import shutil
-
 import netCDF4
 import pytest
+from playwright import sync_api as playwright
 
 from burridge_knopoff.report.page import write_report
+from tests.optional import launch_chromium, needs
 
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = os.environ.get("CHROMIUM") or next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
-)
-pytestmark = pytest.mark.skipif(not CHROMIUM, reason="no chromium is found; the variable CHROMIUM may name one")
+pytestmark = needs("BK_CHROMIUM")
 
 # Text of every element whose contrast with what lies behind it is below WCAG AA, and none that a chart draws.
 LOW_CONTRAST = """() => {
@@ -50,7 +45,7 @@ FOCUSED = """() => {
 @pytest.fixture(scope="module")
 def browser():
     with playwright.sync_playwright() as tools:
-        browser = tools.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        browser = launch_chromium(tools)
         yield browser
         browser.close()
 

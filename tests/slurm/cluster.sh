@@ -8,6 +8,7 @@
 #
 # After `start`: export SLURM_CONF=FOLDER/slurm.conf. FOLDER/finished.txt tells of every job that has ended.
 set -euo pipefail
+# Daemons lie where the path of an ordinary user does not lead.
 PATH=$PATH:/usr/sbin:/sbin
 
 fail() {
@@ -42,7 +43,8 @@ await() {
 
 settings() {
     local name ports
-    name=$(hostname -s)
+    name=$(uname -n)
+    name=${name%%.*}
     # Two ports that are free now.
     ports=($(python3 -c 'import socket
 taken = [socket.create_server(("127.0.0.1", 0)) for _ in range(2)]

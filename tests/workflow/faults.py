@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import ctypes
 import os
 import re
 import subprocess
@@ -24,6 +25,8 @@ STAGES = ("points", "attractors", "basins", "solvers", "summary", "figures", "cl
 BEGUN = "begun"
 #: A snakemake that neither ends nor gets on.
 PATIENCE = 300.0
+# Flags of Linux's mount(2) and umount2(2).
+READ_ONLY, REMOUNT, BIND, DETACH = 1, 32, 4096, 2
 
 
 def stage(path: str) -> str:
@@ -55,13 +58,13 @@ def temporaries(study: Study) -> list[str]:
     return sorted(str(path.relative_to(results)) for path in results.rglob(".*"))
 
 
-def processes(study: Study) -> list[str]:
-    """Return the commands of the processes that run in the folder of a study."""
-    found = []
+def processes(study: Study) -> dict[int, str]:
+    """Return {number: command} of the processes that run in the folder of a study."""
+    found = {}
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error, OSError):
             if Path(process.cwd()) == study.folder:
-                found.append(" ".join(process.cmdline()))
+                found[process.pid] = " ".join(process.cmdline())
     return found
 
 
@@ -175,9 +178,10 @@ def no_mounts() -> str:
     if os.geteuid():
         return "only root can mount a small or a read-only disk"
     with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run(["mount", "-t", "tmpfs", "tmpfs", folder], capture_output=True, text=True)
-        if run.returncode:
-            return f"no file system can be mounted: {run.stderr.strip()}"
+        try:
+            _mount("tmpfs", Path(folder))
+        except OSError as error:
+            return f"no file system can be mounted: {error.strerror}"
         _unmount(Path(folder))
     return ""
 
@@ -186,7 +190,7 @@ def no_mounts() -> str:
 def small_disk(folder: Path, free: int) -> Iterator[Path]:
     """Put a folder of results on a disk with so many bytes left; yield the file whose removal makes room."""
     subprocess.run(["cp", "-a", str(folder), f"{folder}.kept"], check=True)
-    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "tmpfs", str(folder)], check=True)
+    _mount("tmpfs", folder, options="size=64m")
     try:
         subprocess.run(["cp", "-a", f"{folder}.kept/.", str(folder)], check=True)
         disk = os.statvfs(folder)
@@ -202,13 +206,25 @@ def small_disk(folder: Path, free: int) -> Iterator[Path]:
 @contextlib.contextmanager
 def read_only(folder: Path) -> Iterator[None]:
     """Let nothing be written into a folder, not even by root."""
-    subprocess.run(["mount", "--bind", str(folder), str(folder)], check=True)
+    _mount(str(folder), folder, BIND)
     try:
-        subprocess.run(["mount", "-o", "remount,ro,bind", str(folder)], check=True)
+        _mount("", folder, BIND | REMOUNT | READ_ONLY)
         yield
     finally:
         _unmount(folder)
 
 
+def _mount(source: str, folder: Path, flags: int = 0, options: str = "") -> None:
+    """Mount a source, or a file system of that type, on a folder; raises OSError."""
+    _checked("mount", source.encode(), os.fsencode(folder), source.encode(), ctypes.c_ulong(flags), options.encode())
+
+
 def _unmount(folder: Path) -> None:
-    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+    """Unmount a folder, also if a process still uses it; raises OSError."""
+    _checked("umount2", os.fsencode(folder), DETACH)
+
+
+def _checked(function: str, *arguments: object) -> None:
+    """Call a function of the C library that returns 0 or sets errno: no program has to be installed for it."""
+    if ctypes.CDLL(None, use_errno=True)[function](*arguments):
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))

@@ -3,11 +3,13 @@
 import base64
 import json
 import re
-import shutil
 import zipfile
 
 import pytest
 from docutils.core import publish_doctree
+from playwright.sync_api import sync_playwright
+
+from tests.optional import launch_chromium, needs
 
 CATEGORIES = {
     "Claims": ["claims.csv"],
@@ -73,13 +75,10 @@ def test_the_zip_holds_the_same_files(finished, tmp_path):
     assert sorted(names) == sorted(["report.html", *(name for names in CATEGORIES.values() for name in names)])
 
 
+@needs("BK_CHROMIUM")
 def test_a_browser_without_a_network_shows_it(report):
-    browsers = pytest.importorskip("playwright.sync_api", reason="needs playwright")
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        pytest.skip("needs Debian's chromium")
-    with browsers.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+    with sync_playwright() as playwright:
+        browser = launch_chromium(playwright)
         page = browser.new_context(offline=True).new_page()
         errors = []
         page.on("pageerror", lambda error: errors.append(str(error)))

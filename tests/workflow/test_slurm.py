@@ -7,7 +7,6 @@ import itertools
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import tempfile
@@ -18,13 +17,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.optional import needs, setting
 from tests.workflow.conftest import REPOSITORY, TINY, Study
 
-# Daemons lie where the path of an ordinary user does not lead.
-PATH = f"{os.environ['PATH']}:/usr/sbin:/sbin"
-PROGRAMS = ("sbatch", "slurmctld", "slurmd", "munged")
-MISSING = [program for program in PROGRAMS if shutil.which(program, path=PATH) is None]
-pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"Slurm is not installed: {', '.join(MISSING)}")
+pytestmark = needs("BK_SLURM")
 
 SCRIPT = REPOSITORY / "tests" / "slurm" / "cluster.sh"
 PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm"
@@ -64,6 +60,7 @@ def cluster() -> Iterator[Cluster]:
     # Names of sockets are short.
     with tempfile.TemporaryDirectory(prefix="slurm") as folder, pytest.MonkeyPatch.context() as patch:
         cluster = Cluster(Path(folder) / "cluster")
+        patch.setenv("PATH", f"{os.environ['PATH']}:{setting('BK_SLURM')}")
         patch.setenv("SLURM_CONF", str(cluster.folder / "slurm.conf"))
         try:
             cluster.do("start")

@@ -1,0 +1,37 @@
+"""Programs that some tests use and that nobody has to have.
+
+A test never looks for one: the setting names it, an environment variable. Without the setting the test is skipped, and
+the last lines of the run name test and setting; a setting that leads nowhere lets the test fail.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Playwright
+
+SETTINGS = {
+    "BK_CHROMIUM": "path of a Chromium (Debian: chromium)",
+    "BK_NCDUMP": "path of ncdump (Debian: netcdf-bin)",
+    "BK_SLURM": "folders of the programs of Slurm and munge, for example /usr/bin:/usr/sbin (Debian: slurm-wlm, munge)",
+}
+
+
+def setting(name: str) -> str:
+    """Return what the setting says, empty if it is not set."""
+    return os.environ.get(name, "")
+
+
+def needs(name: str) -> pytest.MarkDecorator:
+    """Return the mark of a test that is skipped without the setting."""
+    return pytest.mark.skipif(not setting(name), reason=f"{name} is not set: {SETTINGS[name]}")
+
+
+def launch_chromium(playwright: Playwright) -> Browser:
+    """Start the Chromium of the setting; Debian's is a script, which calls other programs of its folder."""
+    program = setting("BK_CHROMIUM")
+    path = os.pathsep.join((os.environ["PATH"], str(Path(program).parent)))
+    arguments = ["--no-sandbox", "--disable-gpu"]
+    return playwright.chromium.launch(executable_path=program, args=arguments, env={**os.environ, "PATH": path})

@@ -1,0 +1,23 @@
+"""What `.ci/run` lets the tests use: it is what the README says that they need."""
+
+import os
+import re
+import subprocess
+import sysconfig
+from pathlib import Path
+
+from tests.optional import SETTINGS
+
+
+def test_the_tests_run_with_nothing_but_what_the_readme_names(repository, tmp_path):
+    needed = re.search(r"## Run it\n\n(.*?)\n\n", (repository / "README.md").read_text(), re.DOTALL)[1]
+    names = {name for words in re.findall(r"`(.*?)`", needed) for name in words.split()}
+    compiler = Path(sysconfig.get_config_var("CC").split()[0]).name
+    # In place of `make test`: it tells what it is given.
+    make = tmp_path / "make"
+    make.write_text('#!/usr/bin/env bash\ncd "$PATH" && echo *\n')
+    make.chmod(0o755)
+    path = os.pathsep.join((str(tmp_path), os.environ["PATH"]))
+    environment = {**os.environ, **dict.fromkeys(SETTINGS, ""), "PATH": path}
+    run = subprocess.run([repository / ".ci" / "run"], capture_output=True, text=True, env=environment)
+    assert set(run.stdout.split()) == names | {compiler}, run.stderr
