@@ -7,9 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-CONTACTS = ("one_sided", "symmetric")
-STARTS = ("moving", "tested")
-
 
 @dataclass(frozen=True)
 class InitialState:
@@ -33,14 +30,6 @@ class InitialState:
         if len(self.velocity) != len(self.position):
             raise ValueError(
                 f"velocity: {len(self.velocity)} numbers for {len(self.position)} positions; one a block is needed"
-            )
-
-    def check_contact(self, contact: str) -> None:
-        """Raise ValueError if a block slides backward, which a one-sided contact does not know."""
-        if contact == "one_sided" and min(self.velocity) < 0.0:
-            raise ValueError(
-                f"velocity: {min(self.velocity)!r} is not allowed under contact one_sided: "
-                "blocks only slip forward (≥ 0); contact symmetric allows backward slip"
             )
 
 

@@ -1,13 +1,13 @@
-"""The settings of one run, besides chain, friction law and initial state."""
+"""The settings of one run, besides the model and the initial state."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from burridge_knopoff.chain import MAXIMUM_BLOCKS
-from burridge_knopoff.initial import CONTACTS, STARTS
+from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
+from burridge_knopoff.model.model import STARTS
 
-SOLVERS = ("map", "series", "rk4")
+SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")
 
 #: Numbers that a run keeps of one kind at most: 800 MB.
@@ -22,12 +22,10 @@ MOST_STEPS = 1e10
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run is made of besides chain, friction law and initial state; times in units of 1/ω.
+    """How a run begins, how it is computed, and what is kept of it; times in units of 1/ω.
 
-    v : driver velocity
-    contact : one_sided (a stuck block holds against any pull below 1) or symmetric (it holds while |s| ≤ 1)
     start : moving (every block slips at τ = 0) or tested (the stick rule is applied at τ = 0)
-    solver : map (linearized law only), series or rk4; by default map for the linearized law, series for the nonlinear
+    solver : series, map (closed form, where the model has one) or rk4
     step : step of rk4
     transient, window : J is averaged over [transient, transient + window]
     batches : number of equal batches of the window for the error of ⟨J⟩
@@ -41,10 +39,8 @@ class Settings:
     Raises ValueError, one line, for anything out of range.
     """
 
-    v: float = 0.1
-    contact: str = "one_sided"
     start: str = "moving"
-    solver: str = ""
+    solver: str = "series"
     step: float = 1e-3
     transient: float = 3000.0
     window: float = 7000.0
@@ -58,12 +54,9 @@ class Settings:
     lyapunov_alignment: float = 1000.0
 
     def __post_init__(self) -> None:
-        for key, allowed in (("contact", CONTACTS), ("start", STARTS), ("events", EVENTS)):
+        for key, allowed in (("start", STARTS), ("solver", SOLVERS), ("events", EVENTS)):
             if getattr(self, key) not in allowed:
                 raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: {' | '.join(allowed)}")
-        if self.solver not in ("", *SOLVERS):
-            raise ValueError(f"solver: {self.solver!r} is not allowed: {' | '.join(SOLVERS)}")
-        _check_range("v", self.v, 1e-6, 1e3)
         _check_range("step", self.step, 1e-9, 10.0)
         _check_range("transient", self.transient, 0.0, 1e9)
         _check_range("window", self.window, 1e-3, 1e9)

@@ -1,0 +1,43 @@
+"""Friction laws: one file each, and laws by formula."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from burridge_knopoff.laws.carlson_langer import CarlsonLanger
+from burridge_knopoff.laws.exponential import Exponential
+from burridge_knopoff.laws.law import FormulaLaw, Law
+from burridge_knopoff.laws.linearized import Linearized
+from burridge_knopoff.laws.nonlinear import Nonlinear
+from burridge_knopoff.laws.stribeck import Stribeck
+
+__all__ = ["LAWS", "FormulaLaw", "Law", "law_of"]
+
+#: The laws that are built in, by name.
+LAWS: Mapping[str, type[Law]] = {
+    "linearized": Linearized,
+    "nonlinear": Nonlinear,
+    "carlson_langer": CarlsonLanger,
+    "exponential": Exponential,
+    "stribeck": Stribeck,
+}
+
+
+def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) -> Law:
+    """Return a friction law by its name, at one a.
+
+    description : `formula` and its numbers for a law by formula; for a law that is built in its numbers, and its own
+        name as `law` if it goes by another one
+
+    Raises ValueError if there is no such law, or if the law refuses its numbers.
+    """
+    values = dict(description or {})
+    if "name" in values:
+        raise ValueError(f"{name}.name: not a number of a law")
+    if "formula" in values:
+        return FormulaLaw(a, values.pop("formula"), name=name, **values)
+    kind = values.pop("law", name)
+    if kind not in LAWS:
+        raise ValueError(f"law: {kind!r} is not allowed: {' | '.join(LAWS)}, or a formula")
+    return LAWS[kind](a, name=name, **values)

@@ -1,0 +1,107 @@
+"""Friction laws written as a formula: parsed by Python's own parser, turned into a tape, and never run as code."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Mapping
+
+from burridge_knopoff.laws.tape import SPEED, Builder, Tape, Term, number
+
+FUNCTIONS = ("sqrt", "exp", "log", "tanh")
+SYNTAX = "numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
+LONGEST = 400
+
+# A formula stands in commands and files: one line, and no letters that only look like ours.
+_ALLOWED = re.compile(r"[-+*/().\w ]+", re.ASCII)
+
+
+class FormulaError(ValueError):
+    """A formula that is no friction law; the message says why."""
+
+
+def tape_of(formula: str, values: Mapping[str, float]) -> Tape:
+    """Return the tape of a formula in the speed u.
+
+    values : numbers for all other names, among them `a`
+    Raises FormulaError for what is not allowed in a formula, and for names without a value.
+    """
+    if len(formula) > LONGEST:
+        raise FormulaError(f"at most {LONGEST} characters")
+    if not _ALLOWED.fullmatch(formula):
+        raise FormulaError(f"not a formula: {SYNTAX}")
+    try:
+        tree = ast.parse(formula.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise FormulaError(f"not a formula: {SYNTAX}") from None
+    builder = Builder()
+    try:
+        return builder.tape(_Reader(builder, {"u": SPEED} | {key: number(x) for key, x in values.items()}).read(tree))
+    except (OverflowError, ZeroDivisionError):
+        raise FormulaError("a part of it that does not depend on u is not finite") from None
+
+
+class _Reader:
+    """Reads the syntax tree of a formula."""
+
+    def __init__(self, builder: Builder, names: Mapping[str, Term]) -> None:
+        self.builder = builder
+        self.names = names
+
+    def read(self, node: ast.AST) -> Term:
+        """Return the value of a part of the formula."""
+        builder = self.builder
+        match node:
+            case ast.Expression(body=body):
+                return self.read(body)
+            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool) and abs(value) < 1e300:
+                return number(float(value))
+            case ast.Name(id=name) if name in self.names:
+                return self.names[name]
+            case ast.Name(id=name):
+                raise FormulaError(f"{name}: unknown name; u is the slip speed U', a the friction parameter")
+            case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+                return self.read(operand)
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return builder.multiply(number(-1.0), self.read(operand))
+            case ast.BinOp(left=left, op=ast.Add(), right=right):
+                return builder.add(self.read(left), self.read(right))
+            case ast.BinOp(left=left, op=ast.Sub(), right=right):
+                return builder.add(self.read(left), builder.multiply(number(-1.0), self.read(right)))
+            case ast.BinOp(left=left, op=ast.Mult(), right=right):
+                return builder.multiply(self.read(left), self.read(right))
+            case ast.BinOp(left=left, op=ast.Div(), right=right):
+                return builder.multiply(self.read(left), builder.reciprocal(self.read(right)))
+            case ast.BinOp(left=left, op=ast.Pow(), right=right):
+                return self._power(self.read(left), self.read(right))
+            case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
+                return self._function(name, self.read(argument))
+        raise FormulaError(f"{ast.unparse(node)[:40]}: not allowed in a formula: {SYNTAX}")
+
+    def _power(self, base: Term, exponent: Term) -> Term:
+        if exponent.is_number:
+            value = self.builder.power(base, exponent.shift) if not base.is_number else None
+            return number(_real(base.shift**exponent.shift)) if value is None else value
+        logarithm = number(math.log(_positive(base.shift))) if base.is_number else self.builder.log(base)
+        return self.builder.exp(self.builder.multiply(exponent, logarithm))
+
+    def _function(self, name: str, argument: Term) -> Term:
+        if name == "sqrt":
+            return self._power(argument, number(0.5))
+        if name == "log" and argument.is_number:
+            _positive(argument.shift)
+        found: Term = getattr(self.builder, name)(argument)
+        return found
+
+
+def _real(value: float | complex) -> float:
+    if isinstance(value, complex):
+        raise FormulaError("a root of a negative number")
+    return value
+
+
+def _positive(value: float) -> float:
+    if not value > 0.0:
+        raise FormulaError(f"the logarithm of {value:g}")
+    return value

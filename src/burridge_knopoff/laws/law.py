@@ -1,0 +1,154 @@
+"""What a friction law is: a formula for Φ in the slip speed and the friction parameter a.
+
+Everything else follows from the formula: its slope, the Taylor series of both in the kernel, how a slip starts and
+where friction is least. A law of one's own is a class with a formula, or a formula in a config.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cached_property
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from burridge_knopoff.laws.formula import FormulaError, tape_of
+from burridge_knopoff.laws.tape import Tape
+
+#: Speeds up to which a law has to be analytic; no block of a chain with springs and thresholds of about 1 comes there.
+FASTEST = 10.0
+
+# Friction at rest may be above 1 by the rounding of its formula.
+ROUNDING = 1e-12
+
+# Speeds at which the least friction is first looked for.
+SAMPLES = 256
+
+
+class Law:
+    """Friction Φ on a slipping block at speed U', as a share of the static friction: what all laws have in common.
+
+    a : friction parameter, at least 0
+    name : by which the law is known in a study and in its files; without it that of its class
+    numbers : for the names that the formula uses besides `a` and `u`; without them those of its class
+
+    Raises ValueError where the law is none: a number that is not finite, friction of a block that starts, Φ(0), that is
+    not above 0 and at most 1, or Φ not analytic and finite for all speeds up to FASTEST.
+    """
+
+    #: Φ in the syntax of a config: u is U', a the friction parameter.
+    formula: str
+    #: The same as a reader wants it, in plain text.
+    text: str
+    #: The other numbers of the formula, with their defaults.
+    defaults: ClassVar[Mapping[str, float]] = {}
+
+    def __init__(self, a: float, /, *, name: str = "", **numbers: float) -> None:
+        self.name = name or type(self).__module__.rpartition(".")[2]
+        for key in numbers.keys() - self.defaults.keys():
+            raise ValueError(f"{self.name}.{key}: not a number of this law: {' | '.join(self.defaults) or 'none'}")
+        self._set(a, {**self.defaults, **numbers})
+
+    def _set(self, a: float, numbers: Mapping[str, float]) -> None:
+        for key, value in {"a": a, **numbers}.items():
+            if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(value) < 1e300:
+                raise ValueError(f"{key}: {value!r} is not allowed: a finite number")
+        if a < 0.0:
+            raise ValueError(f"a: {a!r} is not allowed: 0 or more")
+        # Adding 0 turns -0.0 into 0.0: the same number must not make two different files.
+        self.a = float(a) + 0.0
+        self.numbers = {key: float(value) + 0.0 for key, value in numbers.items()}
+        try:
+            self._check()
+        except FormulaError as error:
+            raise ValueError(
+                f"{self.name}: {self.formula!r} is not allowed as friction at a = {self.a:g}: {error}"
+            ) from None
+
+    def _check(self) -> None:
+        if not self.tape.is_analytic(0.0, FASTEST):
+            raise FormulaError(f"it is not analytic and finite for all speeds u from 0 to {FASTEST:g}")
+        start = float(self(0.0))
+        if not 0.0 < start <= 1.0 + ROUNDING:
+            raise FormulaError(f"at u = 0 it is {start:g}: above 0 and at most 1, the static friction")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Law) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __repr__(self) -> str:
+        numbers = "".join(f", {key}={value!r}" for key, value in self.numbers.items())
+        return f"<law {self.name}: {self.formula}, a={self.a!r}{numbers}>"
+
+    @property
+    def _key(self) -> tuple[object, ...]:
+        return self.name, self.formula, self.a, tuple(self.numbers.items())
+
+    def at(self, a: float) -> Self:
+        """Return the same law with another friction parameter."""
+        other = object.__new__(type(self))
+        other.name, other.formula = self.name, self.formula
+        other._set(a, self.numbers)
+        return other
+
+    @cached_property
+    def tape(self) -> Tape:
+        """The operations that make Φ and its slope of a speed."""
+        return tape_of(self.formula, {"a": self.a, **self.numbers})
+
+    def __call__(self, speed: ArrayLike) -> np.ndarray:
+        """Return Φ at speeds U' ≥ 0, elementwise."""
+        speed = np.asarray(speed, dtype=float)
+        return self.tape.run(speed)[0] + np.zeros_like(speed)
+
+    def slope(self, speed: ArrayLike) -> np.ndarray:
+        """Return dΦ/dU' at speeds U' ≥ 0, elementwise; negative where friction weakens."""
+        speed = np.asarray(speed, dtype=float)
+        return self.tape.run(speed)[1] + np.zeros_like(speed)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether Φ is a straight line, so that the motion between events has a closed form."""
+        return self.tape.is_linear
+
+    def least(self, fastest: float) -> float:
+        """Return the least friction at speeds from 0 to the fastest."""
+        speed = np.linspace(0.0, fastest, SAMPLES + 1)
+        # A run without bound may reach speeds at which the law is not defined.
+        with np.errstate(invalid="ignore"):
+            friction, slope = self(speed), self.slope(speed)
+        lowest = int(np.nanargmin(friction))
+        around = slope[max(lowest - 1, 0) : lowest + 2]
+        # Where friction is constant to rounding there is no sign to change.
+        if not (len(around) == 3 and around[0] < 0.0 < around[2]):
+            return float(friction[lowest])
+        from scipy.optimize import brentq
+
+        return float(self(brentq(lambda u: float(self.slope(u)), speed[lowest - 1], speed[lowest + 1], xtol=1e-15)))
+
+
+class FormulaLaw(Law):
+    """A law given by its formula, under a name, with numbers for all names in it but `a` and `u`.
+
+    Raises ValueError as `Law` does, and for a formula with anything in it that is not allowed there.
+    """
+
+    def __init__(self, a: float, formula: str, /, *, name: str = "formula", **numbers: float) -> None:
+        self.name = name
+        self.formula = formula
+        for key in numbers:
+            if key in ("a", "u"):
+                raise ValueError(f"{name}.{key}: not allowed as the name of a number: it has its meaning already")
+            if not re.search(rf"\b{re.escape(key)}\b", formula):
+                raise ValueError(f"{name}.{key}: not in the formula {formula!r}")
+        self._set(a, numbers)
+
+    @property
+    def text(self) -> str:  # type: ignore[override]
+        """The formula with its numbers."""
+        numbers = "".join(f", {key} = {value:g}" for key, value in self.numbers.items())
+        return f"Φ = {self.formula}, u = U′{numbers}"

@@ -1,0 +1,175 @@
+"""The chain: blocks coupled by springs to their neighbours and to the driver, held by static friction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+MAXIMUM_BLOCKS = 1024
+ENDS = ("open", "ring")
+NEIGHBOURS = "neighbours"
+
+#: A strength or a threshold: one number for all, or one each.
+Numbers = float | Sequence[float]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """N blocks of equal mass in a row, or in a ring.
+
+    blocks : N
+    coupling : strength of the springs between neighbours, one number or one a spring: N − 1 with open ends, N in a
+        ring,
+        whose last spring joins the last block to the first
+    pulling : strength D of the springs to the driver, one number or one a block; `neighbours`, as in the paper, makes
+        it
+        the number of a block's neighbours
+    threshold : static friction of the blocks, one number or one each; a block slips against threshold · Φ
+    ends : open or ring
+
+    The spring force on block i is s_i = D_i vτ − (K U)_i with K the graph Laplacian of the springs plus diag(D), so
+    that K·1 = D. With the defaults N = 3 is the paper's chain (Eq. 2), N = 2 the two-block train model that it cites.
+
+    Raises ValueError for a number of blocks, of springs, or a strength that is not allowed.
+    """
+
+    blocks: int = 3
+    coupling: Numbers = 1.0
+    pulling: Numbers | str = NEIGHBOURS
+    threshold: Numbers = 1.0
+    ends: str = "open"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.blocks, bool) or not isinstance(self.blocks, int):
+            raise ValueError(f"blocks: {self.blocks!r} is not a whole number")
+        if not 2 <= self.blocks <= MAXIMUM_BLOCKS:
+            raise ValueError(f"blocks: {self.blocks} is not allowed: 2 to {MAXIMUM_BLOCKS}")
+        if self.ends not in ENDS:
+            raise ValueError(f"chain.ends: {self.ends!r} is not allowed: {' | '.join(ENDS)}")
+        springs = self.blocks - (self.ends == "open")
+        self._check("coupling", springs, f"{springs} springs")
+        self._check("threshold", self.blocks, f"{self.blocks} blocks")
+        if not isinstance(self.pulling, str) or self.pulling != NEIGHBOURS:
+            self._check("pulling", self.blocks, f"{self.blocks} blocks")
+
+    def _check(self, key: str, count: int, of: str) -> None:
+        value = getattr(self, key)
+        several = isinstance(value, Sequence | np.ndarray) and not isinstance(value, str)
+        if several and len(value) != count:
+            raise ValueError(f"chain.{key}: {len(value)} numbers for {of}: one number, or one each")
+        for item in value if several else [value]:
+            is_number = isinstance(item, int | float | np.number) and not isinstance(item, bool)
+            if isinstance(item, str):
+                allowed = f"numbers{f' or {NEIGHBOURS}' * (key == 'pulling')}"
+                raise ValueError(f"chain.{key}: {item!r} is not allowed: {allowed}")
+            if not is_number or not 1e-6 <= item <= 1e6:
+                shown = float(item) if is_number and abs(item) < 1e300 else item
+                raise ValueError(f"chain.{key}: {shown!r} is not allowed: 1e-6 to 1e6")
+        object.__setattr__(self, key, tuple(float(item) for item in value) if several else float(value))
+
+    @cached_property
+    def thresholds(self) -> np.ndarray:
+        """Static friction of each block, shape (blocks,)."""
+        return np.full(self.blocks, self.threshold) if isinstance(self.threshold, float) else np.array(self.threshold)
+
+    @cached_property
+    def before(self) -> np.ndarray:
+        """Strength of the spring to the block before each one, shape (blocks,); 0 at an open end."""
+        strengths = np.zeros(self.blocks)
+        springs = self.blocks - (self.ends == "open")
+        strengths[:springs] = self.coupling
+        return np.roll(strengths, 1)
+
+    @property
+    def after(self) -> np.ndarray:
+        """Strength of the spring to the block after each one, shape (blocks,); 0 at an open end."""
+        return np.roll(self.before, -1)
+
+    @cached_property
+    def driving(self) -> np.ndarray:
+        """Strengths D of the springs to the driver, shape (blocks,)."""
+        if isinstance(self.pulling, str):
+            return (self.before > 0.0).astype(float) + (self.after > 0.0)
+        return np.full(self.blocks, self.pulling) if isinstance(self.pulling, float) else np.array(self.pulling)
+
+    @property
+    def diagonal(self) -> np.ndarray:
+        """Diagonal of K: the strengths of all springs at each block, shape (blocks,)."""
+        return self.before + self.after + self.driving
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """The matrix K, shape (blocks, blocks)."""
+        matrix = np.diag(self.diagonal)
+        for i in range(self.blocks):
+            matrix[i, i - 1] -= self.before[i]
+            matrix[i, (i + 1) % self.blocks] -= self.after[i]
+        return matrix
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the chain is its own mirror image: only then can end blocks, and mirror blocks, move as one."""
+        return all((values == values[::-1]).all() for values in (self.driving, self.thresholds)) and bool(
+            (self.before == self.after[::-1]).all()
+        )
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether one number gives each of coupling, pulling and threshold, and the ends are open."""
+        return (
+            self.ends == "open"
+            and isinstance(self.coupling, float)
+            and (isinstance(self.pulling, float) or self.pulling == NEIGHBOURS)
+            and isinstance(self.threshold, float)
+        )
+
+    @property
+    def damping_limit(self) -> float:
+        """The a below which every mode of slipping blocks oscillates under Φ = 1 − aU', if the chain is uniform."""
+        return 2.0 * math.sqrt(self.driving.min()) / float(self.thresholds[0])
+
+    def force(self, position: np.ndarray) -> np.ndarray:
+        """Return the spring forces −(K U) at τ = 0 for positions U, shape (…, blocks)."""
+        pull = self.before * np.roll(position, 1, axis=-1) + self.after * np.roll(position, -1, axis=-1)
+        return pull - self.diagonal * position
+
+    def sliding_offset(self, friction: float) -> np.ndarray:
+        """Return e with K e = −friction · threshold, shape (blocks,).
+
+        Uniform sliding is U_i = vτ + e_i where Φ(av) is that friction.
+        """
+        load = self._solve(self.thresholds.copy())
+        if self.ends == "ring":
+            # The corners of K are a matrix of rank one more: Sherman and Morrison's formula.
+            corner = np.zeros(self.blocks)
+            corner[0] += 1.0
+            corner[-1] += 1.0
+            other = self._solve(corner)
+            strength = self.before[0]
+            load += strength * other * (load[0] + load[-1]) / (1.0 - strength * (other[0] + other[-1]))
+        if self.is_mirror_symmetric:
+            # To the bit, as the chain is.
+            load = 0.5 * (load + load[::-1])
+        return -friction * load
+
+    def _solve(self, load: np.ndarray) -> np.ndarray:
+        """Return the solution for the tridiagonal part of K; in a ring with its corner strength added at both ends.
+
+        By elimination: LAPACK's last bit depends on where in memory its arguments lie, and with it would every number
+        of a study that is run from another folder.
+        """
+        pivot = self.diagonal
+        strength = self.after
+        if self.ends == "ring":
+            pivot[0] += self.before[0]
+            pivot[-1] += self.before[0]
+        for i in range(1, self.blocks):
+            pivot[i] -= strength[i - 1] * strength[i - 1] / pivot[i - 1]
+            load[i] += strength[i - 1] * load[i - 1] / pivot[i - 1]
+        for i in range(self.blocks - 1, -1, -1):
+            load[i] = (load[i] + (strength[i] * load[i + 1] if i + 1 < self.blocks else 0.0)) / pivot[i]
+        return load

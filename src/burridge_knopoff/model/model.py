@@ -1,0 +1,122 @@
+"""The model: all that the equations of motion need, and a state of all blocks at one instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from burridge_knopoff.laws import Law
+from burridge_knopoff.laws.law import FASTEST
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState
+
+CONTACTS = ("one_sided", "symmetric")
+STARTS = ("moving", "tested")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A chain under a friction law, drawn at a velocity.
+
+    chain, law : see `Chain` and `laws`
+    v : velocity of the driver
+    contact : one_sided (a stuck block holds against any pull below its threshold) or symmetric (it holds while |s| is
+        below it, and slips backward beyond)
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    chain: Chain
+    law: Law
+    v: float = 0.1
+    contact: str = "one_sided"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.v, bool) or not isinstance(self.v, int | float | np.number) or not 1e-6 <= self.v <= 1e3:
+            raise ValueError(f"v: {self.v!r} is not allowed: 1e-06 to 1000")
+        object.__setattr__(self, "v", float(self.v))
+        if self.v > FASTEST and not self.law.tape.is_analytic(0.0, self.v):
+            raise ValueError(f"v: {self.v!r} is not allowed: the law {self.law.name} is not analytic up to that speed")
+        if self.contact not in CONTACTS:
+            raise ValueError(f"contact: {self.contact!r} is not allowed: {' | '.join(CONTACTS)}")
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return self.chain.blocks
+
+    @property
+    def a(self) -> float:
+        """Friction parameter of the law."""
+        return self.law.a
+
+    def at(self, a: float) -> Model:
+        """Return the same model with another friction parameter."""
+        return replace(self, law=self.law.at(a))
+
+    @property
+    def has_closed_form(self) -> bool:
+        """Whether the motion between events is a sum of oscillating modes, as the solver `map` takes it."""
+        return (
+            self.law.is_linear and self.chain.is_uniform and abs(float(self.law.slope(0.0))) < self.chain.damping_limit
+        )
+
+    @property
+    def scale(self) -> float:
+        """Motion is in proportion to v (for the linearized law exactly): factor on distances, given for v = 0.1."""
+        return self.v / 0.1
+
+    @cached_property
+    def sliding_offset(self) -> np.ndarray:
+        """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
+        return self.chain.sliding_offset(float(self.law(self.v)))
+
+    def begin(self, initial: InitialState, start: str = "moving") -> Instant:
+        """Return the state at τ = 0 of a run from an initial state.
+
+        start : moving (every block slips) or tested (a block whose spring force is at most its threshold starts stuck)
+
+        Raises ValueError where the state does not fit the chain, or slips backward under one-sided contact.
+        """
+        if start not in STARTS:
+            raise ValueError(f"start: {start!r} is not allowed: {' | '.join(STARTS)}")
+        if len(initial.position) != self.blocks:
+            raise ValueError(
+                f"blocks: {self.blocks} is not allowed for initial state {initial.name!r}, "
+                f"which has {len(initial.position)} positions"
+            )
+        if self.contact == "one_sided" and min(initial.velocity) < 0.0:
+            raise ValueError(
+                f"velocity: {min(initial.velocity)!r} is not allowed under contact one_sided: "
+                "blocks only slip forward (≥ 0); contact symmetric allows backward slip"
+            )
+        stuck = self.starts_stuck(np.array(initial.position), start)
+        position = np.array(initial.position) - self.sliding_offset
+        return Instant(position, np.where(stuck, 0.0, np.array(initial.velocity)), stuck)
+
+    def starts_stuck(self, position: np.ndarray, start: str) -> np.ndarray:
+        """Return which blocks stick at τ = 0 under a convention of start, of the shape of U(0), (…, blocks)."""
+        # Spring forces from U itself: in co-moving coordinates rounding could move a block across its threshold.
+        return (start == "tested") & (self.chain.force(position) <= self.chain.thresholds)
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """The state of all blocks at one instant of a motion, arrays of shape (blocks,).
+
+    position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : which blocks stick
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    stuck: np.ndarray
+
+    def mirrored(self) -> Instant:
+        """Return the state seen from the other end of the chain."""
+        return Instant(self.position[::-1].copy(), self.velocity[::-1].copy(), self.stuck[::-1].copy())
+
+    def vector(self) -> np.ndarray:
+        """Return positions and velocities in one array, shape (2 blocks,)."""
+        return np.concatenate([self.position, self.velocity])

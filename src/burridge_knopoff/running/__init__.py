@@ -1,0 +1,1 @@
+"""Runs: a solver of a model, its settings, and the trajectory that it leaves."""

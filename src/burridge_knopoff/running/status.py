@@ -1,0 +1,14 @@
+"""How a run ended, in the numbers of the kernel, for all that reads results and needs no kernel."""
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """HALTED at a stop of the block to halt at, RUNNING if it goes on with the next call; the others are final."""
+
+    HALTED = -2
+    RUNNING = -1
+    COMPLETED = 0
+    STEP_LIMIT = 1
+    ACCUMULATING_EVENTS = 2
+    DIVERGED = 3

@@ -1,0 +1,153 @@
+"""What a run leaves: its observables, with errors, named as in the point files."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.status import Status
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """What a run left: model, initial state, settings, status, and observables; arrays have the names of point files.
+
+    Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
+    """
+
+    model: Model
+    initial: InitialState
+    settings: Settings
+    status: str
+    end_time: float
+    event_count: int
+    step_count: int
+    mean_distance: float
+    mean_distance_error: float
+    batch_mean_distance: np.ndarray = field(repr=False)
+    time: np.ndarray = field(repr=False)
+    distance: np.ndarray = field(repr=False)
+    earlier_event_time: np.ndarray = field(repr=False)
+    earlier_event_block: np.ndarray = field(repr=False)
+    earlier_event_kind: np.ndarray = field(repr=False)
+    event_time: np.ndarray = field(repr=False)
+    event_block: np.ndarray = field(repr=False)
+    event_kind: np.ndarray = field(repr=False)
+    event_position: np.ndarray = field(repr=False)
+    event_velocity: np.ndarray = field(repr=False)
+    crossing_time: np.ndarray = field(repr=False)
+    crossing_velocity: np.ndarray = field(repr=False)
+    crossing_direction: np.ndarray = field(repr=False)
+    trajectory_time: np.ndarray = field(repr=False)
+    position: np.ndarray = field(repr=False)
+    velocity: np.ndarray = field(repr=False)
+    least_friction: float = math.nan
+    least_spring_force: float = math.nan
+    window_least_friction: float = math.nan
+    window_least_spring_force: float = math.nan
+    lyapunov_exponent: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
+    lyapunov_error: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
+    batch_lyapunov_exponent: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
+    lyapunov_infinite_count: int = -1
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the run as an xarray Dataset, the same as its point file."""
+        from burridge_knopoff.dataset.point import to_dataset
+
+        return to_dataset(self)
+
+
+def collect(model: Model, initial: InitialState, settings: Settings, runner: Runner, status: Status) -> Trajectory:
+    """Return what a run has left."""
+    measured = runner.observer.results()
+    n = model.blocks
+    offset = model.sliding_offset
+    log = runner.log
+    events = log.events.values()
+    earlier_events = log.earlier_events.values()
+    batch = measured["batch_integral"] * (settings.batches / settings.window)
+    completed = status == Status.COMPLETED
+    if not completed:
+        batch[:] = math.nan
+    lyapunov = _exponents(runner, settings, completed)
+    speed = measured["highest_speed"]
+    force = measured["lowest_force"]
+    least_friction = [model.law.least(value) if value > -1e299 else math.nan for value in (speed.max(), speed[1])]
+    least_force = [float(value) if value < 1e299 else math.nan for value in (force.min(), force[1])]
+    return Trajectory(
+        model=model,
+        initial=initial,
+        settings=settings,
+        status=status.name.lower(),
+        end_time=runner.clock,
+        event_count=log.count,
+        step_count=runner.kernel.steps,
+        mean_distance=float(batch.mean()),
+        mean_distance_error=float(batch.std(ddof=1) / math.sqrt(len(batch))),
+        batch_mean_distance=batch,
+        time=np.asarray(runner.observer.distance_time),
+        distance=measured["distance"],
+        earlier_event_time=log.earlier_events.times(),
+        earlier_event_block=earlier_events[:, 0].astype(np.int16),
+        earlier_event_kind=earlier_events[:, 1].astype(np.int8),
+        event_time=log.events.times(),
+        event_block=events[:, 0].astype(np.int16),
+        event_kind=events[:, 1].astype(np.int8),
+        event_position=events[:, 2 : 2 + n] + offset,
+        event_velocity=events[:, 2 + n :],
+        crossing_time=measured["crossing_time"],
+        crossing_velocity=measured["crossing"][:, 0],
+        crossing_direction=measured["crossing"][:, 1].astype(np.int8),
+        trajectory_time=np.asarray(runner.observer.trajectory_time),
+        position=measured["position"] + offset,
+        velocity=measured["velocity"],
+        least_friction=least_friction[0],
+        least_spring_force=least_force[0],
+        window_least_friction=least_friction[1],
+        window_least_spring_force=least_force[1],
+        **lyapunov,
+    )
+
+
+def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str, Any]:
+    """Return the Lyapunov exponents, their errors and their batch values; NaN where there are none.
+
+    The standard error of the batches, which falls like the root of the window, is right for chaos. In regular motion
+    perturbations may grow like a power of time: from an alignment A through a window T one that grows linearly gains
+    ln(1 + T/(1 + A)), which no run of that length can tell from an exponent of that over T. Both go into the error.
+    """
+    count = settings.lyapunov_exponents
+    batch = np.full((settings.batches, count), np.nan)
+    mean = np.full(count, np.nan)
+    error = np.full(count, np.nan)
+    infinite = -1
+    if completed and count and settings.solver != "rk4":
+        measured = runner.exponents.results()
+        growth, duration = measured["growth"], measured["duration"]
+        filled = duration > 0.0
+        batch[filled] = growth[filled] / duration[filled, None]
+        if filled.any():
+            infinite = measured["lost"]
+            mean = growth.sum(axis=0) / duration.sum()
+        if filled.all():
+            finite = np.isfinite(mean)
+            statistical = batch[:, finite].std(axis=0, ddof=1) / math.sqrt(settings.batches)
+            alignment = min(settings.lyapunov_alignment, settings.transient)
+            resolution = math.log1p(duration.sum() / (1.0 + alignment)) / duration.sum()
+            error[finite] = np.hypot(statistical, resolution)
+    return {
+        "lyapunov_exponent": mean,
+        "lyapunov_error": error,
+        "batch_lyapunov_exponent": batch,
+        "lyapunov_infinite_count": infinite,
+    }

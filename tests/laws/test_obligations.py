@@ -1,0 +1,140 @@
+"""What every law has to do, held against mpmath, SciPy and differences: the laws that are built in, and formulas."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from burridge_knopoff.laws import LAWS, FormulaLaw
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import SERIES_ORDER, Runner, new_friction
+from tests.kernel.flows import carry, directions
+from tests.scipy_flow import scipy_events
+
+#: Every operation and function of a formula, and a drop at the start.
+FORMULAS = {
+    "rational": ("(1 - sigma)*exp(-a*u)/(1 + u**2/4)", {"sigma": 0.02}),
+    "powers": ("0.5 + 0.5*(1 + a*u)**-1.5 - 0.01*u + 0.02*sqrt(1 + u) - 0.02", {}),
+    "functions": ("1 - tanh(a*u)/3 - 0.05*log(1 + u) + (1 + u/9)**(a*u)/10 - 0.1", {}),
+}
+STEEPNESS = (0.0, 0.08, 0.4, 2.5)
+
+
+def laws():
+    for name, kind in LAWS.items():
+        # A steep straight line, which becomes negative, drives blocks ever faster.
+        for a in STEEPNESS[: 3 if kind(1.0).is_linear else 4]:
+            yield pytest.param(kind(a), id=f"{name}-{a}")
+    for name, (formula, numbers) in FORMULAS.items():
+        for a in STEEPNESS[:3]:
+            yield pytest.param(FormulaLaw(a, formula, name=name, **numbers), id=f"{name}-{a}")
+
+
+each_law = pytest.mark.parametrize("law", list(laws()))
+
+
+def exactly(law):
+    """The friction as a function of mpmath numbers, from the text of its formula, which here may run as code."""
+    names = {"a": mpmath.mpf(law.a), **{key: mpmath.mpf(value) for key, value in law.numbers.items()}}
+    functions = {name: getattr(mpmath, name) for name in ("exp", "log", "sqrt", "tanh")}
+    return lambda u: eval(law.formula, {"__builtins__": {}}, {**names, **functions, "u": u}) + mpmath.mpf(0)
+
+
+@each_law
+def test_value_and_slope(law):
+    phi = exactly(law)
+    with mpmath.workdps(40):
+        for speed in (0.0, 0.01, 0.5, 1.7, 6.0):
+            assert abs(float(law(speed)) - phi(mpmath.mpf(speed))) < 1e-14
+            expected = mpmath.diff(phi, mpmath.mpf(speed), direction=1 if speed == 0.0 else 0)
+            assert abs(float(law.slope(speed)) - expected) < 1e-13 * (1 + abs(expected))
+
+
+@each_law
+def test_least_friction(law):
+    for fastest in (0.3, 2.0, 9.0):
+        sampled = law(np.linspace(0.0, fastest, 20001)).min()
+        assert sampled - 1e-6 <= law.least(fastest) <= sampled + 1e-15
+
+
+@each_law
+def test_series_along_a_motion(law):
+    """Taylor coefficients of Φ and its slope along a speed U'(t), in 40 digits."""
+    generator = np.random.default_rng(2)
+    speed = 0.3 * generator.uniform(-1.0, 1.0, 13) * 0.8 ** np.arange(13)
+    speed[0] = 0.4
+    phi = exactly(law)
+    value, slope = new_friction(Model(Chain(3), law), SERIES_ORDER).series(speed)
+    with mpmath.workdps(40):
+        coefficients = [mpmath.mpf(x) for x in speed]
+
+        def along(function):
+            return mpmath.taylor(lambda t: function(mpmath.polyval(coefficients[::-1], t)), 0, len(speed) - 1)
+
+        for found, expected in ((value, along(phi)), (slope, along(lambda u: mpmath.diff(phi, u)))):
+            scale = max(abs(x) for x in expected)
+            assert max(abs(mpmath.mpf(x) - y) for x, y in zip(found.tolist(), expected, strict=True)) <= 1e-12 * scale
+
+
+@each_law
+def test_event_times(law):
+    """Against SciPy, from both states of the paper; near-coincidences, whose order is nobody's, end the comparison."""
+    compared = 0
+    for name in ("minus", "plus"):
+        model = Model(Chain(3), law)
+        start = model.begin(PAPER_STATES[name])
+        expected, _ = scipy_events(model, start, 12.0)
+        solver = Runner(model, keep_events=True)
+        solver.begin(start)
+        solver.run(12.0)
+        time, block, kind = solver.events()
+        times = np.array([event[0] for event in expected])
+        close = np.flatnonzero(np.diff(times) < 1e-4)
+        count = int(close[0]) if len(close) else len(times)
+        assert len(time) >= count
+        assert [(int(i) + 1, int(k)) for i, k in zip(block[:count], kind[:count], strict=True)] == [
+            event[1:] for event in expected[:count]
+        ]
+        assert np.abs(time[:count] - times[:count]).max(initial=0.0) < 1e-7
+        compared += count
+    # Without weakening nothing drives the motion: it dies out in sliding.
+    assert compared > (3 if law.a > 0.0 else -1)
+
+
+@each_law
+def test_tangent_map_through_stops_and_starts(law):
+    """Against differences of the flow; where friction drops at the start, a start is no identity."""
+    model = Model(Chain(3), law)
+    start = model.begin(PAPER_STATES["plus"])
+    checked = 0
+    for end in (2.0, 7.0, 13.5, 16.6):
+        solver, events = carry(model, start, end, directions(start))
+        estimates = []
+        for step in (1e-5, 5e-6):
+            columns = []
+            for direction in np.eye(6):
+                ends = []
+                for side in (step, -step):
+                    vector = start.vector() + side * direction
+                    moved, others = carry(model, Instant(vector[:3], vector[3:], start.stuck), end)
+                    same = [event[1:] for event in others] == [event[1:] for event in events]
+                    ends.append(moved.instant().vector() if same else np.full(6, np.nan))
+                columns.append((ends[0] - ends[1]) / (2.0 * step))
+            estimates.append(np.array(columns).T)
+        coarse, fine = estimates
+        found = solver.perturbations
+        scale = max(1.0, np.abs(found).max())
+        if not np.isfinite(coarse).all() or np.abs(coarse - fine).max() > 1e-5 * scale:
+            continue
+        checked += 1
+        assert np.abs(found - (4.0 * fine - coarse) / 3.0).max() < 1e-5 * scale
+    assert checked >= 2
+
+
+def test_starts_with_a_drop_are_met():
+    """The test above sees starts whose saltation matrix is no identity."""
+    model = Model(Chain(3), FormulaLaw(0.4, "(1 - sigma)*exp(-a*u)", sigma=0.1))
+    start = model.begin(PAPER_STATES["plus"])
+    _, events = carry(model, start, 13.5)
+    assert sum(kind for _, _, kind in events) >= 1

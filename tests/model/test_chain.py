@@ -1,0 +1,96 @@
+"""Chains of any springs: the algebra against dense matrices, what is refused, and the sum of all symmetries."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from burridge_knopoff.model.chain import Chain
+
+
+@st.composite
+def chains(draw):
+    blocks = draw(st.integers(2, 9))
+    ends = draw(st.sampled_from(["open", "ring"]))
+    strength = st.floats(0.1, 5.0)
+
+    def numbers(count):
+        return draw(st.one_of(strength, st.lists(strength, min_size=count, max_size=count)))
+
+    pulling = draw(st.booleans())
+    return Chain(
+        blocks,
+        coupling=numbers(blocks - (ends == "open")),
+        pulling=numbers(blocks) if pulling else "neighbours",
+        threshold=numbers(blocks),
+        ends=ends,
+    )
+
+
+@given(chains())
+def test_the_algebra(chain):
+    matrix, blocks = chain.stiffness, chain.blocks
+    ones = np.ones(blocks)
+    assert (matrix == matrix.T).all()
+    assert np.allclose(matrix @ ones, chain.driving, rtol=0, atol=1e-12)
+    assert np.allclose(np.diag(matrix), chain.diagonal) or (blocks == 2 and chain.ends == "ring")
+    assert np.linalg.eigvalsh(matrix).min() >= chain.driving.min() - 1e-9
+    assert np.allclose(matrix @ chain.sliding_offset(0.7), -0.7 * chain.thresholds, rtol=0, atol=1e-11)
+    position = np.sin(1.0 + 3.0 * np.arange(blocks))
+    assert np.allclose(chain.force(position), -matrix @ position, rtol=0, atol=1e-12)
+
+
+@given(chains())
+def test_mirror_symmetry(chain):
+    matrix, threshold = chain.stiffness, chain.thresholds
+    mirrored = (matrix == matrix[::-1, ::-1]).all() and (threshold == threshold[::-1]).all()
+    assert chain.is_mirror_symmetric == mirrored
+    if mirrored:
+        offset = chain.sliding_offset(0.9)
+        assert (offset == offset[::-1]).all()
+
+
+@given(st.floats(0.1, 5.0), st.floats(0.1, 5.0), st.floats(0.1, 5.0), st.integers(2, 7))
+def test_all_modes_oscillate_below_the_damping_limit(coupling, pulling, threshold, blocks):
+    chain = Chain(blocks, coupling=coupling, pulling=pulling, threshold=threshold)
+    assert chain.is_uniform
+    matrix = chain.stiffness
+    for first in range(blocks):
+        for last in range(first + 1, blocks + 1):
+            least = np.linalg.eigvalsh(matrix[first:last, first:last]).min()
+            assert threshold * chain.damping_limit <= 2.0 * np.sqrt(least) + 1e-9
+
+
+def test_the_chain_of_the_paper():
+    chain = Chain(3)
+    assert chain.stiffness.tolist() == [[2, -1, 0], [-1, 4, -1], [0, -1, 2]]
+    assert chain.driving.tolist() == [1, 2, 1]
+    assert chain.sliding_offset(1.0) == pytest.approx([-5 / 6, -2 / 3, -5 / 6], abs=2e-16)
+    assert chain.damping_limit == 2.0
+    assert Chain(3, ends="ring").driving.tolist() == [2, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"blocks": 1}, "blocks: 1 is not allowed"),
+        ({"blocks": 2.0}, "blocks: 2.0 is not a whole number"),
+        ({"ends": "loose"}, "chain.ends: 'loose'"),
+        ({"coupling": [1.0]}, "chain.coupling: 1 numbers for 2 springs"),
+        ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: 2 numbers for 3 springs"),
+        ({"threshold": [1.0, 2.0]}, "chain.threshold: 2 numbers for 3 blocks"),
+        ({"pulling": "all"}, "chain.pulling: 'all' is not allowed: numbers or neighbours"),
+        ({"threshold": 0.0}, "chain.threshold: 0.0 is not allowed"),
+        ({"coupling": -1.0}, "chain.coupling: -1.0 is not allowed"),
+        ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling: nan is not allowed"),
+        ({"coupling": True}, "chain.coupling: True is not allowed"),
+    ],
+)
+def test_refused(options, message):
+    with pytest.raises(ValueError, match=message) as caught:
+        Chain(**options)
+    assert "\n" not in str(caught.value)
+
+
+def test_arrays_are_taken_as_they_are():
+    assert Chain(3, pulling=np.array([1.0, 2.0, 1.0])).driving.tolist() == [1, 2, 1]
