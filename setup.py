@@ -11,7 +11,7 @@ from setuptools.command.build_ext import build_ext
 
 sys.path.insert(0, "src")
 
-from burridge_knopoff.compilation import COMPILER_FLAGS, DIRECTIVES
+from burridge_knopoff.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
 from burridge_knopoff.kernel_build import RECORD, kernel_sources, write_record
 
 KERNEL = Path("src/burridge_knopoff/kernel")
@@ -42,7 +42,11 @@ setup(
     cmdclass={"build_ext": RecordedBuild},
     ext_modules=cythonize(
         [
-            Extension(f"burridge_knopoff.kernel.{source.stem}", [str(source)], extra_compile_args=list(COMPILER_FLAGS))
+            Extension(
+                f"burridge_knopoff.kernel.{source.stem}",
+                [str(source)],
+                extra_compile_args=[*COMPILER_FLAGS, *vector_flags()],
+            )
             for source in sorted(KERNEL.glob("*.py"))
             if source.stem != "__init__"
         ],

@@ -79,12 +79,10 @@ def test_a_build_that_was_not_finished_is_refused(package, content):
     assert "build.json: cannot be read; the kernel was not compiled whole" in refusal(package)
 
 
-def test_an_uncompiled_kernel_runs_but_no_study_with_it(package):
+def test_an_uncompiled_kernel_is_refused(package):
     for path in (package / "kernel").glob("*.so"):
         path.unlink()
-    change(package / SERIES)
-    assert run(package).stdout == "completed\n"
-    done = run(package, "from burridge_knopoff.kernel_build import check_kernel; check_kernel(compiled=True)")
+    done = run(package)
     assert done.stderr.strip().endswith(
         "KernelError: the kernel is not compiled: run `pip install --force-reinstall burridge-knopoff`"
     )

@@ -1,8 +1,14 @@
 """How the kernel is compiled: as its sources, it decides the numbers."""
 
+import os
+import platform
+
 #: Neither contraction to fused multiply-add nor reassociation: a compiler must not change a result.
 #: docs/performance.md says what that means for the same bits elsewhere.
-COMPILER_FLAGS = ("-O3", "-ffp-contract=off", "-fno-fast-math")
+COMPILER_FLAGS = ("-O3", "-g0", "-ffp-contract=off", "-fno-fast-math")
+
+#: {doubles in a vector: oldest x86-64 processors that have them}. The numbers are the same with each.
+LEVELS = {"2": "-march=x86-64-v2", "4": "-march=x86-64-v3", "8": "-march=x86-64-v4"}
 
 #: Directives for Cython.
 DIRECTIVES = {
@@ -13,3 +19,18 @@ DIRECTIVES = {
     "initializedcheck": False,
     "embedsignature": False,
 }
+
+
+def vector_flags() -> tuple[str, ...]:
+    """Return the flags that choose the vectors: this processor's, or as many lanes as BURRIDGE_KNOPOFF_LANES says.
+
+    Raises ValueError if that is not 2, 4 or 8.
+    """
+    if platform.machine().lower() not in ("x86_64", "amd64"):
+        return ()
+    lanes = os.environ.get("BURRIDGE_KNOPOFF_LANES")
+    if lanes is None:
+        return ("-march=native",)
+    if lanes not in LEVELS:
+        raise ValueError(f"BURRIDGE_KNOPOFF_LANES: {lanes!r} is not allowed: {' | '.join(LEVELS)}")
+    return (LEVELS[lanes],)

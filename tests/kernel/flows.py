@@ -1,77 +1,35 @@
-"""Running the kernel's solvers from one instant to another, with perturbations, for tests of the tangent dynamics."""
+"""Running models from one instant to another, with perturbations, for tests of the tangent dynamics."""
 
 import numpy as np
 
-from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.kernel.exponents import Exponents
-from burridge_knopoff.kernel.observe import Observer
-from burridge_knopoff.simulation import RUNNING, SERIES_ORDER, STEP_LIMIT, new_state
-from burridge_knopoff.stability.flow import NEVER, instant, new_solver
-
-COMPLETED, HALTED = 0, -2
-
-
-def to_end(solver):
-    """Run a solver on until it ends or halts; return why."""
-    while (code := solver.run()) == RUNNING:
-        pass
-    return code
-
-
-def solver_with(model, exponents, *, closed_form=None, keep=False):
-    """Return a solver that carries these exponents; the motion comes from normal modes or from series."""
-    blocks = model.chain.blocks
-    solver = EventDriven(
-        new_state(model.chain, model.friction, model.v, model.contact),
-        EventLog(blocks, 0.0, keep, 1000 * blocks),
-        Observer(blocks, SERIES_ORDER, [NEVER, NEVER], [], []),
-        exponents,
-        SERIES_ORDER,
-        model.friction.law == "linearized" if closed_form is None else closed_form,
-        STEP_LIMIT,
-    )
-    solver.observing = False
-    return solver
-
-
-def closed_form_or_series(model, solver_name, perturbations):
-    """Return a solver for the linearized law that takes the motion from the normal modes or from the series."""
-    exponents = Exponents(model.chain.blocks, perturbations.shape[1], SERIES_ORDER, NEVER, [NEVER, NEVER])
-    exponents.carry(perturbations)
-    return solver_with(model, exponents, closed_form=solver_name == "map", keep=True)
+from burridge_knopoff.running.runner import SERIES_ORDER, Runner
+from burridge_knopoff.running.status import Status
 
 
 def later(model, start, end):
     """Return the instant that a state reaches at time `end`."""
-    solver = new_solver(model)
-    solver.end = end
-    solver.begin(start.position, start.velocity, start.stuck)
-    assert to_end(solver) == COMPLETED
-    return instant(solver)
+    reached = Runner(model).after(start, end)
+    assert reached is not None
+    return reached
 
 
 def growth_from(model, start, end, vectors):
     """Return the exponents' kernel after a run from `start` to `end`, all of it in one batch from τ = 0."""
-    exponents = Exponents(model.chain.blocks, vectors, SERIES_ORDER, 0.0, [0.0, end])
-    solver = solver_with(model, exponents)
-    solver.end = end
-    solver.begin(start.position, start.velocity, start.stuck)
-    assert to_end(solver) == COMPLETED
+    exponents = Exponents(model.blocks, vectors, SERIES_ORDER, 0.0, [0.0, end])
+    solver = Runner(model, exponents=exponents)
+    solver.begin(start)
+    assert solver.run(end) == Status.COMPLETED
     return exponents.results()
 
 
-def carry(model, start, end, perturbations=None):
+def carry(model, start, end, perturbations=None, solver_name="series"):
     """Return the solver at time `end` and the events on the way: a list of (time, block from 1, 0 stop | 1 start)."""
-    blocks = model.chain.blocks
-    log = EventLog(blocks, 0.0, True, 1000 * blocks)
-    solver = new_solver(model, log, perturbations)
-    solver.end = end
-    solver.begin(start.position, start.velocity, start.stuck)
-    assert to_end(solver) == COMPLETED
-    return solver, [
-        (time, int(row[0]), int(row[1])) for time, row in zip(log.events.times(), log.events.values(), strict=True)
-    ]
+    solver = Runner(model, solver_name, keep_events=True, perturbations=perturbations)
+    solver.begin(start)
+    assert solver.run(end) == Status.COMPLETED
+    time, block, kind = solver.events()
+    return solver, list(zip(time.tolist(), (block + 1).tolist(), kind.tolist(), strict=True))
 
 
 def directions(start):

@@ -1,4 +1,4 @@
-"""The kernel uncompiled: the same .py files, imported from a copy without the compiled modules."""
+"""The scalar polynomials of the kernel uncompiled: the same .py files, from a copy without the compiled modules."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ def copy_uncompiled(folder: Path) -> Path:
             target / "burridge_knopoff",
             ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"),
         )
+        # The kernel as a whole is refused uncompiled.
+        (target / "burridge_knopoff" / "kernel" / "__init__.py").write_text("")
     return target
 
 

@@ -6,8 +6,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.running.simulation import simulate
 from tests.independent import events as independent_events
 from tests.reference import reference_events
 

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.kernel.events import EventLog
-from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
-from tests.kernel.flows import growth_from, later, to_end
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff.running.status import Status
+from tests.kernel.flows import growth_from, later
 
 LAWS = ("linearized", "nonlinear")
 SYMMETRIC = InitialState("symmetric", (-0.99, -0.993, -0.99), (0.1, 0.101, 0.1))
@@ -21,7 +22,7 @@ def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
 
     It is measured and set back to `distance` after every interval (Benettin's first method).
     """
-    solvers = new_solver(model), new_solver(model)
+    solvers = Runner(model), Runner(model)
     offset = distance * np.array([1.0, -0.5, 0.3, 0.2, 0.4, -0.1]) / np.linalg.norm([1.0, -0.5, 0.3, 0.2, 0.4, -0.1])
     blocks = model.chain.blocks
     growth = []
@@ -32,10 +33,9 @@ def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
         velocity = np.where(other_stuck, 0.0, np.maximum(vector[blocks:], 0.0))
         reached = []
         for solver, state in zip(solvers, (start, Instant(vector[:blocks], velocity, other_stuck)), strict=True):
-            solver.end = interval
-            solver.begin(state.position, state.velocity, state.stuck)
-            to_end(solver)
-            reached.append(instant(solver))
+            solver.begin(state)
+            solver.run(interval)
+            reached.append(solver.instant())
         start, other_stuck = reached[0], reached[1].stuck
         offset = reached[1].vector() - start.vector()
         length = np.linalg.norm(offset)
@@ -57,9 +57,9 @@ def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
     ],
 )
 def test_two_trajectories_side_by_side(law, initial, a):
-    model = Model(Chain(3), Friction(law, a))
+    model = Model(Chain(3), law_of(law, a))
     run = simulate(law, a, initial, window=14000.0, batches=14, lyapunov_exponents=1, events="none")
-    start = later(model, begin(model, PAPER_STATES[initial]), 3000.0)
+    start = later(model, model.begin(PAPER_STATES[initial]), 3000.0)
     expected, error = side_by_side(model, start, 14000.0)
     assert run.lyapunov_exponent[0] > 5.0 * run.lyapunov_error[0]
     # Four standard errors: five cases fail by chance once in three thousand runs.
@@ -73,7 +73,7 @@ def test_two_trajectories_side_by_side(law, initial, a):
 def test_uniform_sliding(law, blocks, transient):
     """All 2N exponents are aΦ²/2 (Φ² = 1 for the linearized law), half the slope of friction over velocity."""
     a, v = 0.3, 0.1
-    offset = Chain(blocks).sliding_offset(float(Friction(law, a)(v)))
+    offset = Chain(blocks).sliding_offset(float(law_of(law, a)(v)))
     run = simulate(
         law,
         a,
@@ -93,22 +93,17 @@ def test_uniform_sliding(law, blocks, transient):
 
 def symmetric_period(law, a):
     """Return the model, the state just after blocks 1 and 3 have stopped together, the period and their slip time."""
-    model = Model(Chain(3), Friction(law, a))
-    log = EventLog(3, 0.0, True, 3000)
-    solver = new_solver(model, log)
-    solver.end = 2000.0
-    start = begin(model, SYMMETRIC)
-    solver.begin(start.position, start.velocity, start.stuck)
-    to_end(solver)
-    solver.end = 2100.0
-    solver.halting_block = 0
-    assert solver.run() == -2
-    after = instant(solver)
+    model = Model(Chain(3), law_of(law, a))
+    solver = Runner(model, keep_events=True)
+    solver.begin(model.begin(SYMMETRIC))
+    solver.run(2000.0)
+    assert solver.run(2100.0, halting_block=0) == Status.HALTED
+    after = solver.instant()
     first = solver.clock
-    assert solver.run() == -2
+    assert solver.run(2100.0, halting_block=0) == Status.HALTED
     period = solver.clock - first
-    rows, times = log.events.values(), log.events.times()
-    starts = times[(rows[:, 0] == 1) & (rows[:, 1] == 1)]
+    time, block, kind = solver.events()
+    starts = time[(block == 0) & (kind == 1)]
     return model, after, period, solver.clock - starts[-1]
 
 
@@ -140,7 +135,7 @@ def test_transverse_exponent_of_synchrony_from_the_flow(a):
 
 
 def check_transverse(model, expected):
-    run = simulate(model.friction.law, model.friction.a, SYMMETRIC, window=20000.0, transient=2000.0, events="none")
+    run = simulate(model.law, model.a, SYMMETRIC, window=20000.0, transient=2000.0, events="none")
     assert run.distance.max() == 0.0
     # Two exponents are known, in the order of their size: that of the flow itself, 0, and the transverse one.
     for known in (0.0, expected):
@@ -161,9 +156,9 @@ def check_transverse(model, expected):
 )
 def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact):
     """From one instant with m blocks stuck to another the flow maps 2N − m dimensions to as many."""
-    model = Model(Chain(blocks), Friction(law, a), contact=contact)
+    model = Model(Chain(blocks), law_of(law, a), contact=contact)
     wave = tuple(-0.9 + 0.1 * np.sin(1.0 + 2.0 * np.arange(blocks)))
-    start = later(model, begin(model, InitialState("wave", wave, (0.1,) * blocks)), 200.0)
+    start = later(model, model.begin(InitialState("wave", wave, (0.1,) * blocks)), 200.0)
     states = [start]
     for _ in range(800):
         states.append(later(model, states[-1], 0.05))
@@ -175,13 +170,12 @@ def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact)
     duration = 0.05 * (same[-1] - chosen[0])
     assert duration > 10.0
     found = growth_from(model, first, duration, 2 * blocks)
-    solver = new_solver(model, perturbations=np.eye(2 * blocks))
+    solver = Runner(model, perturbations=np.eye(2 * blocks))
     kept = np.concatenate([np.ones(blocks, dtype=bool), ~first.stuck])
-    solver.exponents.carry(np.diag(kept.astype(float)))
-    solver.end = duration
-    solver.begin(first.position, first.velocity, first.stuck)
-    to_end(solver)
-    sign, logarithm = np.linalg.slogdet(solver.tangent.matrix()[np.ix_(kept, kept)])
+    solver.carry(np.diag(kept.astype(float)))
+    solver.begin(first)
+    solver.run(duration)
+    sign, logarithm = np.linalg.slogdet(solver.perturbations[np.ix_(kept, kept)])
     assert sign != 0
     assert found["lost"] == most
     assert np.isneginf(found["growth"][0]).sum() == most
@@ -247,7 +241,7 @@ def test_windows_too_short_for_batches(law, transient, window):
 
 @pytest.mark.parametrize("limit", [10, 2000])
 def test_runs_that_do_not_complete_have_none(monkeypatch, limit):
-    monkeypatch.setattr("burridge_knopoff.simulation.STEP_LIMIT", limit)
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", limit)
     run = simulate("linearized", 0.08, "plus", transient=100.0)
     assert run.status == "step_limit"
     assert np.isnan(run.lyapunov_exponent).all()

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.kernel.events import EventLog
-from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.flow import Instant, Model, new_solver
-from tests.kernel.flows import growth_from, to_end
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.simulation import simulate
+from tests.kernel.flows import carry, growth_from
 
 LAWS = ("linearized", "nonlinear")
 
@@ -48,7 +47,7 @@ def test_growth_like_a_power_of_time_is_within_the_error():
 
 def most_stuck(run, begin_time):
     """Return the most blocks stuck at once after a time; every block slips at τ = 0."""
-    stuck = np.zeros(run.chain.blocks, dtype=bool)
+    stuck = np.zeros(run.model.blocks, dtype=bool)
     most = 0
     following = np.append(run.event_time[1:], np.inf)
     for time, next_time, block, kind in zip(run.event_time, following, run.event_block, run.event_kind, strict=True):
@@ -102,15 +101,11 @@ def test_parts_of_a_chain_lose_perturbations_one_after_the_other():
     Never more than two blocks are stuck at once; but what block 1 has lost block 3 cannot restore, so that the map has
     rank 3. The vectors that are lost are gone: their remainders are rounding and must not pass for finite exponents.
     """
-    model = Model(Chain(3), Friction("linearized", 0.1), 0.1)
+    model = Model(Chain(3), law_of("linearized", 0.1), 0.1)
     start = Instant(np.array([0.17, 0.3, 0.345]), np.array([0.003, 0.0, 0.3]), np.array([False, True, False]))
-    log = EventLog(3, 0.0, True, 3000)
-    solver = new_solver(model, log, np.diag([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]))
-    solver.end = 1.0
-    solver.begin(start.position, start.velocity, start.stuck)
-    to_end(solver)
-    assert [(int(row[0]), int(row[1])) for row in log.events.values()] == [(1, 0), (1, 1), (3, 0)]
-    values = np.linalg.svd(solver.tangent.matrix(), compute_uv=False)
+    solver, events = carry(model, start, 1.0, np.diag([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]))
+    assert [(block, kind) for _, block, kind in events] == [(1, 0), (1, 1), (3, 0)]
+    values = np.linalg.svd(solver.perturbations, compute_uv=False)
     assert (values > 1e-12).sum() == 3
     found = growth_from(model, start, 1.0, 6)
     assert found["lost"] == 3

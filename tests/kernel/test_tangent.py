@@ -8,11 +8,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.linalg import block_diag
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
-from tests.kernel.flows import COMPLETED, HALTED, carry, directions, to_end
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from tests.kernel.flows import carry, directions
 
 LAWS = ("linearized", "nonlinear")
 CONTACTS = ("one_sided", "symmetric")
@@ -20,7 +22,7 @@ STEP = 1e-4
 
 
 def tangent_map(model, start, end):
-    return carry(model, start, end, directions(start))[0].tangent.matrix()
+    return carry(model, start, end, directions(start))[0].perturbations
 
 
 def by_block(events, blocks):
@@ -47,7 +49,7 @@ def differences(model, start, end):
                 solver, events = carry(model, Instant(shifted[:blocks], shifted[blocks:], start.stuck), end)
                 if by_block(events, blocks) != expected:
                     return None
-                ends.append(instant(solver).vector())
+                ends.append(solver.instant().vector())
             columns.append((ends[0] - ends[1]) / (2.0 * step))
         estimates.append(np.array(columns).T)
     coarse, fine = estimates
@@ -68,18 +70,18 @@ def check_against_differences(model, start, end):
     if change > 1e-4 * scale:
         return None
     solver, events = carry(model, start, end, directions(start))
-    assert np.abs(solver.tangent.matrix() - expected).max() < 2e-7 * scale
+    assert np.abs(solver.perturbations - expected).max() < 2e-7 * scale
     return events
 
 
 def drawn(generator, blocks, law, contact):
     """Return a random model, and a state with stuck blocks and, where the contact allows, blocks that slip backward."""
-    model = Model(Chain(blocks), Friction(law, generator.uniform(0.0, 0.6)), generator.uniform(0.02, 0.4), contact)
+    model = Model(Chain(blocks), law_of(law, generator.uniform(0.0, 0.6)), generator.uniform(0.02, 0.4), contact)
     position = generator.uniform(-0.6, 0.6, blocks)
     slowest = 0.02 if contact == "one_sided" else -0.6
     velocity = generator.uniform(slowest, 0.6, blocks)
     velocity[np.abs(velocity) < 0.02] = 0.1
-    force = float(model.friction(model.v)) - model.chain.stiffness @ position
+    force = float(model.law(model.v)) - model.chain.stiffness @ position
     stuck = (generator.random(blocks) < 0.4) & (np.abs(force) < 0.97)
     return model, Instant(position, np.where(stuck, 0.0, velocity), stuck)
 
@@ -102,8 +104,8 @@ def turns(model, events, solver_at):
     signs = []
     for (time, block, kind), (later, other, start) in pairwise(events):
         if (kind, start) == (0, 1) and block == other and time == later:
-            state = instant(solver_at(time))
-            force = float(model.friction(model.v)) - model.chain.stiffness @ state.position
+            state = solver_at(time).instant()
+            force = float(model.law(model.v)) - model.chain.stiffness @ state.position
             signs.append(int(np.sign(force[block - 1])))
     return signs
 
@@ -136,9 +138,9 @@ def test_every_kind_of_event_is_met(law):
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_mirror_blocks_that_stop_and_start_together(law, contact):
     """The flow is smooth there although perturbed runs have the events in either order."""
-    model = Model(Chain(3), Friction(law, 0.08), contact=contact)
+    model = Model(Chain(3), law_of(law, 0.08), contact=contact)
     state = InitialState("symmetric", (-0.99, -0.993, -0.99), (0.1, 0.101, 0.1))
-    events = check_against_differences(model, begin(model, state), 20.0)
+    events = check_against_differences(model, model.begin(state), 20.0)
     assert events is not None
     stops = [time for time, block, kind in events if kind == 0 and block != 2]
     assert len(stops) >= 4
@@ -155,23 +157,23 @@ def test_composition_and_the_direction_of_the_flow(blocks, law, contact, share, 
     whole, events = carry(model, start, end, directions(start))
     half, _ = carry(model, start, share * end, directions(start))
     assume(all(abs(time - share * end) > 1e-6 for time, _, _ in events))
-    later = instant(half)
+    later = half.instant()
     rest = tangent_map(model, later, (1.0 - share) * end)
-    product = rest @ half.tangent.matrix()
+    product = rest @ half.perturbations
     # Of a short slip or a near graze little more than the square root of the digits is left.
     times = [time for time, _, _ in events]
     assume(not any(0.0 < gap < 1e-3 for gap in np.diff(times)))
-    size = np.abs(rest).max() * np.abs(half.tangent.matrix()).max()
-    assert np.abs(whole.tangent.matrix() - product).max() < 1e-9 * size
-    flows = [rate(model, state) for state in (start, instant(whole))]
-    assert np.abs(whole.tangent.matrix() @ flows[0] - flows[1]).max() < 1e-9 * size
+    size = np.abs(rest).max() * np.abs(half.perturbations).max()
+    assert np.abs(whole.perturbations - product).max() < 1e-9 * size
+    flows = [rate(model, state) for state in (start, whole.instant())]
+    assert np.abs(whole.perturbations @ flows[0] - flows[1]).max() < 1e-9 * size
 
 
 def rate(model, state):
     """Return d/dτ of positions and velocities."""
-    force = float(model.friction(model.v)) - model.chain.stiffness @ state.position
+    force = float(model.law(model.v)) - model.chain.stiffness @ state.position
     sign = np.where(state.velocity < 0.0, -1.0, 1.0)
-    acceleration = force - sign * model.friction(np.abs(state.velocity))
+    acceleration = force - sign * model.law(np.abs(state.velocity))
     return np.concatenate([state.velocity - model.v, np.where(state.stuck, 0.0, acceleration)])
 
 
@@ -179,45 +181,42 @@ def rate(model, state):
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 6])
 def test_each_vector_goes_its_way_alone(law, count):
     """The same bits for the first vectors, however many are carried."""
-    model = Model(Chain(3), Friction(law, 0.15), contact="symmetric")
-    start = begin(model, PAPER_STATES["plus"])
+    model = Model(Chain(3), law_of(law, 0.15), contact="symmetric")
+    start = model.begin(PAPER_STATES["plus"])
     everything = tangent_map(model, start, 30.0)
-    some = carry(model, start, 30.0, directions(start)[:, :count])[0].tangent.matrix()
+    some = carry(model, start, 30.0, directions(start)[:, :count])[0].perturbations
     assert some.shape == (6, count)
     assert (some == everything[:, :count]).all()
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_perturbations_change_nothing_of_the_run(law):
-    model = Model(Chain(3), Friction(law, 0.2))
-    start = begin(model, PAPER_STATES["plus"])
+    model = Model(Chain(3), law_of(law, 0.2))
+    start = model.begin(PAPER_STATES["plus"])
     with_them, without = (carry(model, start, 100.0, given) for given in (directions(start), None))
     assert with_them[1] == without[1]
-    assert (instant(with_them[0]).vector() == instant(without[0]).vector()).all()
-    assert with_them[0].steps == without[0].steps
+    assert (with_them[0].instant().vector() == without[0].instant().vector()).all()
+    assert with_them[0].kernel.steps == without[0].kernel.steps
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
     """A block that starts at τ = 0 does not turn round from a stop of the run before."""
-    model = Model(Chain(2), Friction(law, 0.1))
+    model = Model(Chain(2), law_of(law, 0.1))
     first = Instant(np.zeros(2), np.array([0.2, 0.15]), np.zeros(2, dtype=bool))
     # Held beyond their thresholds until τ = 0.
     second = Instant(np.array([-0.4, -0.5]), np.zeros(2), np.ones(2, dtype=bool))
-    used = new_solver(model, perturbations=np.eye(4))
-    used.end = 100.0
-    used.halting_block = 0
-    used.begin(first.position, first.velocity, first.stuck)
-    assert to_end(used) == HALTED
-    used.exponents.carry(directions(second))
-    used.end = 1.0
-    used.begin(second.position, second.velocity, second.stuck)
-    assert to_end(used) == COMPLETED
-    assert (used.tangent.matrix() == tangent_map(model, second, 1.0)).all()
+    used = Runner(model, perturbations=np.eye(4))
+    used.begin(first)
+    assert used.run(100.0, halting_block=0) == Status.HALTED
+    used.carry(directions(second))
+    used.begin(second)
+    assert used.run(1.0) == Status.COMPLETED
+    assert (used.perturbations == tangent_map(model, second, 1.0)).all()
 
 
 def test_all_blocks_stuck_for_long():
     """Under a slow driver: nothing but the positions is left, and they stay."""
-    model = Model(Chain(3), Friction("nonlinear", 0.1), v=1e-5)
+    model = Model(Chain(3), law_of("nonlinear", 0.1), v=1e-5)
     start = Instant(np.array([0.2, 0.21, 0.22]), np.zeros(3), np.ones(3, dtype=bool))
     assert (tangent_map(model, start, 10.0) == block_diag(np.eye(3), np.zeros((3, 3)))).all()

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.running.simulation import simulate
 
 STEPS = (0.1, 0.05, 0.025, 0.0125)
 

@@ -20,6 +20,7 @@ import math
 import cython
 import numpy as np
 
+# Tests run this file and `polynomial` uncompiled, since their methods cannot be called from Python when compiled.
 if cython.compiled:
     from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial
 else:

@@ -1,6 +1,6 @@
 """The distance J(τ) between the two end blocks in phase space, over one piece: its values and its integral.
 
-J = sqrt(d² + d'²) with d = x_N − x_1 is analytic wherever it is not 0. Gauss-Legendre quadrature with m nodes errs by
+J = sqrt(d² + d'²) with d = U_N − U_1 is analytic wherever it is not 0. Gauss-Legendre quadrature with m nodes errs by
 about the Legendre coefficient of degree 2m; those fall geometrically, so the last two that the nodes still resolve,
 squared over the first, tell the error. A panel that fails is halved: near a close approach J is |z| of a complex
 polynomial with a root near the real axis, and the halving closes in on it.
@@ -10,13 +10,13 @@ Reference: L. N. Trefethen, "Is Gauss quadrature better than Clenshaw-Curtis?", 
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, root, splat, vec
 from cython.cimports.libc.math import sqrt
 
 NODES = 16
 MAXIMUM_DEPTH = 40
 RELATIVE_ERROR = 1e-15
 ABSOLUTE_ERROR = 1e-17
-NEGLIGIBLE = 1e-20
 
 # The three-point rule, enough for the cubic pieces of a time-stepping solver, whose own error is larger.
 THREE_POINT = 0.7745966692414834
@@ -47,42 +47,42 @@ def _gauss_legendre(nodes):
 
 
 class Distance:
-    """Polynomials of d and d' on the current piece and the quadrature rule for J."""
+    """Polynomials of d and d' on the current piece and the quadrature rule for J.
 
-    def __init__(self, order: int) -> None:
+    apart : d in uniform sliding; positions are relative to it
+    """
+
+    def __init__(self, order: int, apart: float) -> None:
         self.degree = 0
-        self.position = np.zeros(order + 1)
-        self.velocity = np.zeros(order + 1)
+        self.apart = apart
+        self.position = np.zeros(order + 2)
+        self.velocity = np.zeros(order + 2)
         node, weight, last, previous = _gauss_legendre(NODES)
         self.node = node.astype(float)
         self.weight = (weight / 2).astype(float)
         self.last = ((NODES - 0.5) * weight * last).astype(float)
         self.previous = ((NODES - 1.5) * weight * previous).astype(float)
-        self.position_at = np.zeros(NODES)
-        self.velocity_at = np.zeros(NODES)
-        self.time_at = np.zeros(NODES)
+        self.nodes = Vectors(NODES // LANES)
+        self.nodes.set(self.node)
+        self.value_at_node = Vectors(NODES // LANES)
+        self.values = self.value_at_node.table(1)[0]
         self.resting = False
         self.short = order <= 3
 
-    def load(self, piece, length):
-        """Take d and d' from a piece that is used up to `length`, leaving out terms that cannot matter there."""
+    def load(self, piece):
+        """Take d and d' from a piece."""
         k: cython.Py_ssize_t
-        end: cython.Py_ssize_t = piece.blocks
-        power: cython.double = 1.0
-        largest: cython.double = 0.0
-        scaled: cython.double
-        self.degree = 0
-        self.resting = True
+        end: cython.Py_ssize_t = piece.blocks - 1
+        self.degree = piece.degree
         for k in range(piece.degree + 1):
-            self.position[k] = piece.position[k, end] - piece.position[k, 1]
-            self.velocity[k] = piece.velocity[k, end] - piece.velocity[k, 1]
-            scaled = max(abs(self.position[k]), abs(self.velocity[k])) * power
-            largest = max(largest, scaled)
-            if scaled > NEGLIGIBLE * largest:
-                self.degree = k
-            if k > 0 and scaled > 0.0:
-                self.resting = False
-            power *= length
+            self.position[k] = piece.position[k, end] - piece.position[k, 0]
+            self.velocity[k] = piece.velocity[k, end] - piece.velocity[k, 0]
+        self.position[0] += self.apart
+        self.resting = self.velocity[0] == 0.0
+        k = 1
+        while self.resting and k <= piece.degree:
+            self.resting = self.position[k] == 0.0 and self.velocity[k] == 0.0
+            k += 1
 
     def value(self, t):
         """Return J at time t of the piece."""
@@ -111,29 +111,40 @@ class Distance:
     def _panel(self, start, stop, depth):
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
+        n: cython.Py_ssize_t
         middle: cython.double = 0.5 * (start + stop)
         half: cython.double = 0.5 * (stop - start)
         mean: cython.double = 0.0
         last: cython.double = 0.0
         previous: cython.double = 0.0
         error: cython.double
-        value: cython.double
+        t: vec
+        square: vec
+        position: vec
+        velocity: vec
+        odd_position: vec
+        odd_velocity: vec
+        n = self.degree // 2
+        for j in range(NODES // LANES):
+            t = middle + half * self.nodes.at[j]
+            # Even and odd powers apart, since each sum waits for the last.
+            square = t * t
+            position = splat(self.position[2 * n])
+            velocity = splat(self.velocity[2 * n])
+            odd_position = splat(self.position[2 * n + 1])
+            odd_velocity = splat(self.velocity[2 * n + 1])
+            for k in range(n - 1, -1, -1):
+                position = position * square + self.position[2 * k]
+                velocity = velocity * square + self.velocity[2 * k]
+                odd_position = odd_position * square + self.position[2 * k + 1]
+                odd_velocity = odd_velocity * square + self.velocity[2 * k + 1]
+            position = position + t * odd_position
+            velocity = velocity + t * odd_velocity
+            self.value_at_node.at[j] = root(position * position + velocity * velocity)
         for j in range(NODES):
-            self.time_at[j] = middle + half * self.node[j]
-            self.position_at[j] = self.position[self.degree]
-            self.velocity_at[j] = self.velocity[self.degree]
-        for k in range(self.degree - 1, -1, -1):
-            value = self.position[k]
-            for j in range(NODES):
-                self.position_at[j] = self.position_at[j] * self.time_at[j] + value
-            value = self.velocity[k]
-            for j in range(NODES):
-                self.velocity_at[j] = self.velocity_at[j] * self.time_at[j] + value
-        for j in range(NODES):
-            value = sqrt(self.position_at[j] * self.position_at[j] + self.velocity_at[j] * self.velocity_at[j])
-            mean += self.weight[j] * value
-            last += self.last[j] * value
-            previous += self.previous[j] * value
+            mean += self.weight[j] * self.values[j]
+            last += self.last[j] * self.values[j]
+            previous += self.previous[j] * self.values[j]
         error = last * last + previous * previous
         if error <= (RELATIVE_ERROR * mean + ABSOLUTE_ERROR) * mean or depth >= MAXIMUM_DEPTH:
             return 2.0 * half * mean

@@ -3,7 +3,7 @@ from burridge_knopoff.kernel.exponents cimport Exponents
 from burridge_knopoff.kernel.modes cimport Modes
 from burridge_knopoff.kernel.observe cimport Observer
 from burridge_knopoff.kernel.piece cimport Piece
-from burridge_knopoff.kernel.bernstein cimport SearchedPolynomial
+from burridge_knopoff.kernel.search cimport EventSearch
 from burridge_knopoff.kernel.series cimport Series
 from burridge_knopoff.kernel.state cimport State
 from burridge_knopoff.kernel.tangent cimport Tangent
@@ -20,22 +20,19 @@ cdef class EventDriven:
     cdef double since_tangent
     cdef public Py_ssize_t halting_block
     cdef public double end
-    cdef bint needs_modes
     cdef Series series
     cdef Piece piece
-    cdef SearchedPolynomial polynomial
+    cdef readonly EventSearch search
     cdef Modes modes
     cdef bint closed_form
     cdef readonly double clock
     cdef readonly double clock_rest
     cdef readonly long long steps
     cdef long long step_limit
-    cdef double event_time
     cdef double since_event
 
     cdef void restart(self) noexcept nogil
     cdef int _run(self) noexcept nogil
     cdef void _follow(self, double length, double reach, bint due) noexcept nogil
     cdef double _fastest(self) noexcept nogil
-    cdef Py_ssize_t _first_event(self, double horizon) noexcept nogil
     cdef void _advance(self, double t) noexcept nogil

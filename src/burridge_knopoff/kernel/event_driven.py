@@ -6,42 +6,22 @@ its only approximation is the event time.
 """
 
 import cython
-
-if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
-    from cython.cimports.burridge_knopoff.kernel.events import (
-        ABSURD_SPEED,
-        ACCUMULATING_EVENTS,
-        COMPLETED,
-        DIVERGED,
-        HALTED,
-        RUNNING,
-        STEP_LIMIT,
-        STEPS_PER_CALL,
-    )
-    from cython.cimports.burridge_knopoff.kernel.modes import Modes
-    from cython.cimports.burridge_knopoff.kernel.piece import UNKNOWN, Piece
-    from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
-    from cython.cimports.burridge_knopoff.kernel.series import Series
-    from cython.cimports.burridge_knopoff.kernel.state import YOUNG
-else:
-    from burridge_knopoff.kernel.bernstein import SearchedPolynomial
-    from burridge_knopoff.kernel.events import (
-        ABSURD_SPEED,
-        ACCUMULATING_EVENTS,
-        COMPLETED,
-        DIVERGED,
-        HALTED,
-        RUNNING,
-        STEP_LIMIT,
-        STEPS_PER_CALL,
-    )
-    from burridge_knopoff.kernel.modes import Modes
-    from burridge_knopoff.kernel.piece import UNKNOWN, Piece
-    from burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
-    from burridge_knopoff.kernel.series import Series
-    from burridge_knopoff.kernel.state import YOUNG
-
+from cython.cimports.burridge_knopoff.kernel.events import (
+    ABSURD_SPEED,
+    ACCUMULATING_EVENTS,
+    COMPLETED,
+    DIVERGED,
+    HALTED,
+    RUNNING,
+    STEP_LIMIT,
+    STEPS_PER_CALL,
+)
+from cython.cimports.burridge_knopoff.kernel.modes import Modes
+from cython.cimports.burridge_knopoff.kernel.piece import Piece
+from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
+from cython.cimports.burridge_knopoff.kernel.search import EventSearch
+from cython.cimports.burridge_knopoff.kernel.series import Series
+from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 
 # Without events, perturbations are still to be kept apart now and then.
 LONGEST_FOLLOW = 4.0
@@ -64,15 +44,12 @@ class EventDriven:
         self.halting_block = -1
         self.end = observer.end
         log.carry(exponents.tangent)
-        self.series = Series(state.blocks, order)
+        self.series = Series(state.springs.columns, order)
         self.piece = Piece(state.blocks, order)
-        self.polynomial = SearchedPolynomial(order)
+        self.search = EventSearch(state.blocks, order)
         self.modes = Modes(state.blocks)
         self.closed_form = closed_form
-        # The modes of the slipping blocks carry the perturbations of the linearized law, whatever the solver.
-        self.needs_modes = closed_form or (self.tangent.vectors > 0 and not state.nonlinear)
         self.step_limit = step_limit
-        self.event_time = 0.0
         self.restart()
 
     def begin(self, position, velocity, stuck) -> None:
@@ -102,6 +79,7 @@ class EventDriven:
     def _run(self):
         block: cython.Py_ssize_t
         halting: cython.bint
+        due: cython.bint
         length: cython.double
         reach: cython.double
         remaining: cython.double
@@ -109,7 +87,7 @@ class EventDriven:
         budget: cython.int = STEPS_PER_CALL
         if self.steps == 0:
             self.log.settle(self.state, self.clock)
-            if self.needs_modes:
+            if self.closed_form:
                 self.modes.start(self.state)
         while budget > 0:
             budget -= 1
@@ -122,16 +100,19 @@ class EventDriven:
             self.steps += 1
             if not reach > 0.0 or not self._fastest() < ABSURD_SPEED:
                 return DIVERGED
-            length = min(reach, remaining)
-            block = self._first_event(length)
-            if block >= 0:
-                length = self.event_time
+            # The end of the run has no part in the search: it must not move an event by a bit.
+            block = self.search.first(self.state, self.piece, reach)
+            length = self.search.time
+            if length > remaining:
+                block = -1
+                length = remaining
+            due = block >= 0 or length >= remaining
             if self.observing:
                 self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
             if self.tangent.vectors > 0:
                 self.exponents.begin_within(self.state, self.clock, length)
                 if self.exponents.running:
-                    self._follow(length, reach, block >= 0 or length >= remaining)
+                    self._follow(length, reach, due)
             self.since_event += length
             self._advance(length)
             if self.closed_form:
@@ -145,9 +126,10 @@ class EventDriven:
                 self.log.change(self.state, block, self.clock)
                 self.log.settle(self.state, self.clock)
                 self.since_event = 0.0
-                if self.needs_modes:
+                if self.closed_form:
                     self.modes.start(self.state)
-            if self.exponents.running and self.since_tangent == 0.0:
+            # At events, so that all solvers look after them at the same times.
+            if self.exponents.running and (due or self.since_event >= LONGEST_FOLLOW):
                 self.exponents.follow(self.state, self.clock, length >= remaining)
             if length >= remaining:
                 return COMPLETED
@@ -158,7 +140,7 @@ class EventDriven:
     def _follow(self, length, reach, due):
         """Carry the perturbations along a piece, in strides after which they can be kept apart.
 
-        The closed form of the linearized law spans several pieces: there they wait for an event or LONGEST_FOLLOW.
+        The closed form spans several pieces: there they wait for an event or LONGEST_FOLLOW.
         """
         k: cython.Py_ssize_t
         parts: cython.Py_ssize_t
@@ -167,11 +149,11 @@ class EventDriven:
         if self.exponents.stuck(self.state) == self.state.blocks:
             # However long a slow driver takes, nothing changes.
             return
-        if self.state.nonlinear:
-            parts = self.tangent.load_rates(self.state, self.piece, self.series, length, reach)
+        if not self.closed_form:
+            parts = self.tangent.load_rates(self.state, self.piece, length, reach)
             t = length / parts
             for k in range(1, parts + 1):
-                self.tangent.follow_series(self.state, t, reach)
+                self.tangent.follow_series(self.state, self.piece, t, reach)
                 if k < parts:
                     self.tangent.move_rates(t)
                     self.exponents.follow(self.state, self.clock + k * t, False)
@@ -192,32 +174,6 @@ class EventDriven:
             speed = max(speed, abs(self.state.velocity[i]))
         return speed
 
-    def _first_event(self, horizon):
-        """Return the block that stops or starts first within the horizon, its time in event_time; -1 if none does."""
-        i: cython.Py_ssize_t
-        side: cython.int
-        zeros: cython.Py_ssize_t
-        t: cython.double
-        block: cython.Py_ssize_t = -1
-        self.event_time = horizon
-        for i in range(self.state.blocks):
-            for side in range(1, -2 * self.state.symmetric, -2):
-                if self.state.slip[i] != 0:
-                    self.piece.load_speed(self.state, i, self.polynomial)
-                else:
-                    self.piece.load_gap(self.state, i, side, self.polynomial)
-                # The zeros at the start of the piece are known exactly: a block that has just started has U' = U'' = 0.
-                zeros = self.polynomial.deflate()
-                t = self.polynomial.first_root(self.event_time)
-                if side == 1:
-                    self.piece.highest[i] = UNKNOWN if zeros > 0 else self.polynomial.highest
-                if t >= 0.0 and (t < self.event_time or block < 0):
-                    self.event_time = t
-                    block = i
-                if self.state.slip[i] != 0:
-                    break
-        return block
-
     def _advance(self, t):
         """Move the state on by t along the piece."""
         i: cython.Py_ssize_t
@@ -230,5 +186,5 @@ class EventDriven:
                 continue
             self.state.age[i] += t
             if self.state.age[i] < YOUNG:
-                self.state.velocity[i] = evaluate(self.piece.velocity, i + 1, self.piece.degree, t)
-                self.state.acceleration[i] = evaluate_slope(self.piece.velocity, i + 1, self.piece.degree, t)
+                self.state.velocity[i] = evaluate(self.piece.velocity, i, self.piece.degree, t)
+                self.state.acceleration[i] = evaluate_slope(self.piece.velocity, i, self.piece.degree, t)

@@ -2,12 +2,15 @@ from burridge_knopoff.kernel.record cimport Record
 from burridge_knopoff.kernel.state cimport State
 from burridge_knopoff.kernel.tangent cimport Tangent
 
-cdef int HALTED
-cdef int RUNNING
-cdef int COMPLETED
-cdef int STEP_LIMIT
-cdef int ACCUMULATING_EVENTS
-cdef int DIVERGED
+# The same as `running.status`.
+cpdef enum Status:
+    HALTED = -2
+    RUNNING = -1
+    COMPLETED = 0
+    STEP_LIMIT = 1
+    ACCUMULATING_EVENTS = 2
+    DIVERGED = 3
+
 cdef double ABSURD_SPEED
 cdef int STEPS_PER_CALL
 

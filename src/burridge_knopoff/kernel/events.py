@@ -1,20 +1,8 @@
 """Stops and starts: how they are carried out, kept, and told from an accumulation of events."""
 
 import cython
-
-if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.record import Record
-    from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
-else:
-    from burridge_knopoff.kernel.record import Record
-    from burridge_knopoff.kernel.tangent import Tangent
-
-HALTED = -2
-RUNNING = -1
-COMPLETED = 0
-STEP_LIMIT = 1
-ACCUMULATING_EVENTS = 2
-DIVERGED = 3
+from cython.cimports.burridge_knopoff.kernel.record import Record
+from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 
 STEPS_PER_CALL = 1_000_000
 

@@ -10,12 +10,8 @@ Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 1
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 from cython.cimports.libc.math import cos, log, sqrt
-
-if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
-else:
-    from burridge_knopoff.kernel.tangent import Tangent
 
 # Least time between two orthonormalisations, about that between two events: in a chain of three blocks a stop shortens
 # a vector to 1e-4 of what the others leave of it at worst, in long chains to 1e-11.
@@ -94,17 +90,17 @@ class Exponents:
         self.alive = min(self.tangent.vectors, 2 * state.blocks - self.most_stuck)
         for i in range(state.blocks):
             for c in range(first, self.tangent.vectors):
-                self.tangent.position[i + 1, c] = cos(1.0 + 2.3 * i + 3.7 * c + 1.9 * i * c)
-                self.tangent.velocity[i + 1, c] = cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip[i] != 0)
+                self.tangent.position[c, i] = cos(1.0 + 2.3 * i + 3.7 * c + 1.9 * i * c)
+                self.tangent.velocity[c, i] = cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip[i] != 0)
         self._orthonormalise(False, False)
 
     def _length(self, c):
         """Return the length of vector c."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        for i in range(1, self.tangent.blocks + 1):
-            total += self.tangent.position[i, c] * self.tangent.position[i, c]
-            total += self.tangent.velocity[i, c] * self.tangent.velocity[i, c]
+        for i in range(self.tangent.blocks):
+            total += self.tangent.position[c, i] * self.tangent.position[c, i]
+            total += self.tangent.velocity[c, i] * self.tangent.velocity[c, i]
         return sqrt(total)
 
     def _orthonormalise(self, kept, counted):
@@ -131,17 +127,17 @@ class Exponents:
                 if counted:
                     self.growth[self.batch, c] += log(product)
                 product = 1.0 / product
-            for i in range(1, n + 1):
-                self.tangent.position[i, c] *= product
-                self.tangent.velocity[i, c] *= product
+            for i in range(n):
+                self.tangent.position[c, i] *= product
+                self.tangent.velocity[c, i] *= product
             for d in range(c + 1, self.alive):
                 product = 0.0
-                for i in range(1, n + 1):
-                    product += self.tangent.position[i, c] * self.tangent.position[i, d]
-                    product += self.tangent.velocity[i, c] * self.tangent.velocity[i, d]
-                for i in range(1, n + 1):
-                    self.tangent.position[i, d] -= product * self.tangent.position[i, c]
-                    self.tangent.velocity[i, d] -= product * self.tangent.velocity[i, c]
+                for i in range(n):
+                    product += self.tangent.position[c, i] * self.tangent.position[d, i]
+                    product += self.tangent.velocity[c, i] * self.tangent.velocity[d, i]
+                for i in range(n):
+                    self.tangent.position[d, i] -= product * self.tangent.position[c, i]
+                    self.tangent.velocity[d, i] -= product * self.tangent.velocity[c, i]
 
     def _renew(self, state, clock, completed):
         """Orthonormalise, and go on to the batch in which the time now lies."""

@@ -10,6 +10,7 @@ cdef class Modes:
     cdef Py_ssize_t[::1] last
     cdef Py_ssize_t[::1] row
     cdef Py_ssize_t runs
+    cdef double rate
     cdef double[::1] origin
     cdef double[::1] origin_velocity
     cdef double[::1] drift

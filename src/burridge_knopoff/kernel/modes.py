@@ -1,9 +1,11 @@
-"""Normal modes of the slipping blocks: the paper's mapping between events, in closed form (linearized law).
+"""Normal modes of the slipping blocks: the paper's mapping between events, in closed form.
 
-Stuck blocks cut the chain into runs of slipping blocks that do not feel each other. In a run
+The friction is a straight line, threshold Φ = f − a U' with one threshold for all blocks, and the chain has two ends
+and one strength of the springs between blocks, c. Stuck blocks cut it into runs of slipping blocks that do not feel
+each other. In a run
 
-    x'' = −K x + a x' + b − g v τ,        b_i = Σ x_j(0) over stuck neighbours j (+ 2 where i slips backward),
-                                          g_i = number of stuck neighbours
+    x'' = −K x + a x' + b − g v τ,        b_i = c Σ x_j(0) over stuck neighbours j (+ 2f where i slips backward),
+                                          g_i = c times the number of stuck neighbours
 
 and with K = Q diag(λ) Qᵀ each mode q = Qᵀx is a particular solution p + r τ plus
 
@@ -11,19 +13,16 @@ and with K = Q diag(λ) Qᵀ each mode q = Qᵀx is a particular solution p + r 
 
     r = −v Qᵀg / λ,     p = (a r + Qᵀb) / λ.
 
-Every λ is at least 1 because K·1 = D ≥ 1, so that all modes oscillate for a < 2. The matrix of a run depends on its
+No λ is less than the weakest spring to the driver, because K is that of the springs between blocks plus diag(D): all
+modes oscillate if a < 2 √min D, a < 2 in the paper's chain. The matrix of a run depends on its
 length and on the ends of the chain that it contains only: there are at most 4N of them for any set of slipping blocks,
 each solved once, when it is first met.
 """
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 from cython.cimports.libc.math import cos, exp, sin, sqrt
-
-if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.state import YOUNG
-else:
-    from burridge_knopoff.kernel.state import YOUNG
 
 # Longest run whose modes are refined: long double has no fast matrix product, and beyond this the solution of the
 # modes would take longer than the simulation.
@@ -87,6 +86,9 @@ class Modes:
         factor: cython.double
         other: cython.double
         mirror: cython.Py_ssize_t
+        coupling: cython.double = state.springs.after[0]
+        turned: cython.double = 2.0 * (state.springs.threshold[0] * state.friction.at_rest)
+        self.rate = state.springs.threshold[0] * state.friction.rate
         for i in range(self.blocks):
             self.origin[i] = state.position[i]
             self.origin_velocity[i] = state.velocity[i]
@@ -120,18 +122,18 @@ class Modes:
                     other = self.vector[row + k - first, mirror - first] if mirror != m else 0.0
                     q += factor * state.position[m] + other * state.position[mirror]
                     rate += factor * (state.velocity[m] - state.v) + other * (state.velocity[mirror] - state.v)
-                    push += factor * (2.0 * (state.slip[m] < 0)) + other * (2.0 * (state.slip[mirror] < 0))
+                    push += factor * (turned * (state.slip[m] < 0)) + other * (turned * (state.slip[mirror] < 0))
                     m += 1
                 if first > 0:
-                    left = self.vector[row + k - first, 0]
+                    left = coupling * self.vector[row + k - first, 0]
                 if last < self.blocks - 1:
-                    right = self.vector[row + k - first, last - first]
+                    right = coupling * self.vector[row + k - first, last - first]
                 stuck = left + right
                 q_left = state.position[first - 1] if first > 0 else 0.0
                 q_right = state.position[last + 1] if last < self.blocks - 1 else 0.0
                 push += left * q_left + right * q_right
                 self.drift[k] = -state.v * stuck / self.eigenvalue[row + k - first]
-                self.amplitude[k] = q - (state.a * self.drift[k] + push) / self.eigenvalue[row + k - first]
+                self.amplitude[k] = q - (self.rate * self.drift[k] + push) / self.eigenvalue[row + k - first]
                 self.amplitude_rate[k] = rate - self.drift[k]
 
     def advance(self, state, t):
@@ -152,7 +154,7 @@ class Modes:
         sine: cython.double
         q: cython.double
         rate: cython.double
-        half: cython.double = 0.5 * state.a
+        half: cython.double = 0.5 * self.rate
         growth: cython.double = exp(half * t)
         for i in range(self.blocks):
             if state.slip[i] == 0:
@@ -192,12 +194,13 @@ class Modes:
         """Diagonalise the run's matrix, append eigenvalues and eigenvectors (as rows), and return their first row."""
         length = last - first + 1
         ends = (first == 0, last == self.blocks - 1)
-        stiffness = np.asarray(state.stiffness)[first : last + 1]
+        diagonal = np.asarray(state.springs.diagonal)[first : last + 1]
+        coupling = state.springs.after[0]
         # A run that only the right end closes is the mirror image of one that only the left end closes.
         mirrored = ends[1] and not ends[0]
         if mirrored:
-            stiffness = stiffness[::-1]
-        matrix = np.diag(stiffness) - np.eye(length, k=1) - np.eye(length, k=-1)
+            diagonal = diagonal[::-1]
+        matrix = np.diag(diagonal) - coupling * (np.eye(length, k=1) + np.eye(length, k=-1))
         eigenvalue, vector = np.linalg.eigh(matrix)
         if length <= REFINED:
             eigenvalue, vector = _refined(matrix, eigenvalue, vector)

@@ -2,17 +2,10 @@
 
 import cython
 import numpy as np
-
-if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
-    from cython.cimports.burridge_knopoff.kernel.distance import Distance
-    from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
-    from cython.cimports.burridge_knopoff.kernel.record import Record
-else:
-    from burridge_knopoff.kernel.bernstein import SearchedPolynomial
-    from burridge_knopoff.kernel.distance import Distance
-    from burridge_knopoff.kernel.polynomial import evaluate
-    from burridge_knopoff.kernel.record import Record
+from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
+from cython.cimports.burridge_knopoff.kernel.distance import Distance
+from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
+from cython.cimports.burridge_knopoff.kernel.record import Record
 
 TRANSIENT = 0
 WINDOW = 1
@@ -27,12 +20,13 @@ SEAM = 1e-14
 class Observer:
     """What one run measures.
 
+    apart : U_N − U_1 in uniform sliding
     edge : batch boundaries, shape (batches + 1,); the first is the end of the transient, the last the end of the run
     distance_time : times at which J is sampled, shape (samples,)
     trajectory_time : times at which positions and velocities are sampled, shape (m,)
     """
 
-    def __init__(self, blocks, order, edge, distance_time, trajectory_time) -> None:
+    def __init__(self, blocks, order, apart, edge, distance_time, trajectory_time) -> None:
         self.transient = edge[0]
         self.end = edge[len(edge) - 1]
         self.edge = np.array(edge, dtype=float)
@@ -51,7 +45,7 @@ class Observer:
         self.side = 0
         self.highest_speed = np.full(2, NOTHING)
         self.lowest_force = np.full(2, -NOTHING)
-        self.distance = Distance(order)
+        self.distance = Distance(order, apart)
         self.loaded = False
         self.polynomial = SearchedPolynomial(order)
 
@@ -70,7 +64,7 @@ class Observer:
     def _load_distance(self, piece, length):
         """Load the distance of this piece, once, and only if something asks for it."""
         if not self.loaded:
-            self.distance.load(piece, length)
+            self.distance.load(piece)
             self.loaded = True
 
     def _average(self, piece, clock, clock_rest, length):
@@ -110,8 +104,8 @@ class Observer:
             if t > length:
                 break
             for i in range(piece.blocks):
-                self.trajectory_position[self.next_trajectory, i] = evaluate(piece.position, i + 1, piece.degree, t)
-                self.trajectory_velocity[self.next_trajectory, i] = evaluate(piece.velocity, i + 1, piece.degree, t)
+                self.trajectory_position[self.next_trajectory, i] = evaluate(piece.position, i, piece.degree, t)
+                self.trajectory_velocity[self.next_trajectory, i] = evaluate(piece.velocity, i, piece.degree, t)
             self.next_trajectory += 1
 
     def _cross(self, state, piece, clock, clock_rest, length):
@@ -128,11 +122,13 @@ class Observer:
         start: cython.double = 0.0
         window: cython.double = (self.transient - clock) - clock_rest
         value: cython.double
+        if self.side != 0 and self._keeps_its_side(state, piece, length):
+            return
         self.polynomial.degree = piece.degree
         for k in range(piece.degree + 1):
             total = 0.0
             for i in range(piece.blocks):
-                total += piece.position[k, i + 1]
+                total += piece.position[k, i]
             self.polynomial.coefficient[k] = total
         if self.side == 0:
             self.side = DOWNWARD if self.polynomial.value(max(0.0, window)) < 0.0 else UPWARD
@@ -162,14 +158,31 @@ class Observer:
             self.side = -self.side
             total = 0.0
             for i in range(piece.blocks):
-                total += evaluate(piece.velocity, i + 1, piece.degree, start) - state.v
+                total += evaluate(piece.velocity, i, piece.degree, start) - state.v
             row = self.crossings.append(clock + (clock_rest + start))
             self.crossings.value[row, 0] = total
             self.crossings.value[row, 1] = self.side
 
+    def _keeps_its_side(self, state, piece, length):
+        """Tell whether W cannot come to 0, by the bounds on the speeds of its blocks."""
+        i: cython.Py_ssize_t
+        total: cython.double = 0.0
+        rising: cython.double = -state.v * piece.blocks
+        falling: cython.double = rising
+        for i in range(piece.blocks):
+            total += piece.position[0, i]
+            if state.slip[i] > 0:
+                rising += piece.highest[i]
+            elif state.slip[i] < 0:
+                falling -= piece.highest[i]
+        if self.side > 0:
+            return total + falling * length > SEAM
+        return total + rising * length < -SEAM
+
     def _extreme(self, state, piece, stage, start, stop):
         """Follow the highest slip speed and the lowest spring force on a stuck block, in transient or window."""
         i: cython.Py_ssize_t
+        threshold: cython.double
         for i in range(piece.blocks):
             if state.slip[i] != 0:
                 if piece.highest[i] <= self.highest_speed[stage]:
@@ -178,11 +191,16 @@ class Observer:
                 if start > 0.0:
                     self.polynomial.shift(start)
                 self.highest_speed[stage] = self.polynomial.maximum(stop - start, self.highest_speed[stage])
-            elif piece.highest[i] > 1.0 - self.lowest_force[stage]:
+            else:
+                threshold = state.springs.threshold[i]
+                if piece.highest[i] <= threshold - self.lowest_force[stage]:
+                    continue
                 piece.load_gap(state, i, 1, self.polynomial)
                 if start > 0.0:
                     self.polynomial.shift(start)
-                self.lowest_force[stage] = 1.0 - self.polynomial.maximum(stop - start, 1.0 - self.lowest_force[stage])
+                self.lowest_force[stage] = threshold - self.polynomial.maximum(
+                    stop - start, threshold - self.lowest_force[stage]
+                )
 
     def results(self) -> dict:
         """Return all that was measured as NumPy arrays."""

@@ -1,5 +1,7 @@
+from burridge_knopoff.kernel.springs cimport Springs
 from burridge_knopoff.kernel.polynomial cimport Polynomial
 from burridge_knopoff.kernel.state cimport State
+from burridge_knopoff.kernel.vector cimport Vectors
 
 cdef double UNKNOWN
 
@@ -7,13 +9,22 @@ cdef class Piece:
     cdef readonly Py_ssize_t blocks
     cdef readonly Py_ssize_t order
     cdef public Py_ssize_t degree
+    cdef readonly Py_ssize_t columns
+    cdef Vectors positions
+    cdef Vectors velocities
+    cdef Vectors forces
+    cdef Vectors moved
+    cdef Vectors direction
+    cdef Vectors stuck
+    cdef double[::1] direction_table
+    cdef double[::1] stuck_table
     cdef double[:, ::1] position
     cdef double[:, ::1] velocity
     cdef double[:, ::1] force
 
     cdef double[::1] highest
 
-    cdef void fill_force(self, State state, Py_ssize_t n) noexcept nogil
+    cdef void fill_force(self, Springs springs, Py_ssize_t n) noexcept nogil
     cdef void move(self, State state, double t) noexcept nogil
     cdef void load_speed(self, State state, Py_ssize_t i, Polynomial polynomial) noexcept nogil
     cdef void load_gap(self, State state, Py_ssize_t i, int side, Polynomial polynomial) noexcept nogil

@@ -1,10 +1,10 @@
-"""Taylor series of the motion between two events, for either friction law, with a step that leaves no remainder.
+"""Taylor series of the motion between two events, with a step that leaves no remainder.
 
-Coefficients follow from x' = U' − v and U'' = s − Φ(aU') by recursion; Φ = 1/(1 + aU') by division of series. The step
-comes from the last two coefficients (Jorba and Zou): the last terms that are kept stay below TRUNCATION, and those that
-are left out are smaller still. For the linearized law that is safe by a bound: all derivatives of the motion obey the
-same linear equation, whose energy, with pairs of successive derivatives of all blocks in it, grows at most like
-exp(2aτ) within a step.
+Coefficients follow from x' = U' − v and U'' = s − threshold Φ by recursion, those of Φ from the operations of the law.
+Blocks lie in the lanes of vectors. The step comes from the last two coefficients (Jorba and Zou): the last terms that
+are kept stay below TRUNCATION, and those that are left out are smaller still. For the linearized law that is safe by a
+bound: all derivatives of the motion obey the same linear equation, whose energy, with pairs of successive derivatives
+of all blocks in it, grows at most like exp(2aτ) within a step.
 
 Reference: A. Jorba and M. Zou, "A software package for the numerical integration of ODEs by means of high-order Taylor
 methods", Exp. Math. 14 (2005) 99-117.
@@ -12,120 +12,188 @@ methods", Exp. Math. 14 (2005) 99-117.
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import pow as power
+from cython.cimports.burridge_knopoff.kernel.friction import convolution, prepare, row, settle, slopes
+from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, pulls, thresholds
+from cython.cimports.burridge_knopoff.kernel.state import YOUNG
+from cython.cimports.burridge_knopoff.kernel.vector import Vectors, exponent, index, shuffle, splat, vec
+from cython.cimports.libc.math import ldexp
 
-TRUNCATION = 1e-18
-SPLITTER = 134217729.0
+# Binary digits below 1 at which terms are left out.
+TRUNCATION = 53
+
+# Longest piece, while nothing slips: high powers of it are still numbers.
+LONGEST = 1e9
 
 
 class Series:
-    """Work space of the recursion for chains of `blocks` blocks at the given order.
+    """The recursion for `columns` vectors of blocks at the given order."""
 
-    `friction` holds the series of Φ highest power first and `speed` that of U' lowest power first, so that their
-    product runs through memory one way.
-    """
-
-    def __init__(self, blocks: int, order: int) -> None:
-        self.friction = np.zeros((blocks, order + 1))
-        self.speed = np.zeros((blocks, order + 1))
-        self.slipping = np.zeros(blocks)
+    def __init__(self, columns: int, order: int) -> None:
         self.reciprocal = 1.0 / np.maximum(np.arange(order + 2, dtype=float), 1.0)
-        self.step_power_last = 1.0 / order
-        self.step_power_previous = 1.0 / (order - 1)
+        # Slipping or not, threshold signed by the direction of slip, and friction per speed.
+        self.moving = Vectors(columns)
+        self.signed = Vectors(columns)
+        self.damping = Vectors(columns)
+        # Roots of 2, cut to 30 bits: C libraries differ in the last one.
+        self.last_root = np.floor(2.0 ** (30.0 + np.arange(order) / order)) / 2.0**30
+        self.previous_root = np.floor(2.0 ** (30.0 + np.arange(order - 1) / (order - 1))) / 2.0**30
 
     def expand(self, state, piece):
         """Fill the piece with the motion that starts from the state; return the time for which it is valid."""
         i: cython.Py_ssize_t
-        n: cython.Py_ssize_t
-        order: cython.Py_ssize_t = piece.order
-        blocks: cython.Py_ssize_t = state.blocks
-        a: cython.double = state.a
-        factor: cython.double
-        for i in range(blocks):
-            piece.position[0, i + 1] = state.position[i]
-            piece.velocity[0, i + 1] = state.velocity[i]
-            piece.position[1, i + 1] = state.velocity[i] - state.v
-            piece.velocity[1, i + 1] = 0.0
-            self.slipping[i] = 0.0
-            if state.slip[i] != 0:
-                self.slipping[i] = 1.0
-                piece.velocity[1, i + 1] = state.slip_acceleration(i)
-        piece.fill_force(state, 0)
-        if state.nonlinear:
-            self._start_friction(state, piece)
-        for n in range(1, order):
-            factor = self.reciprocal[n + 1]
-            for i in range(blocks):
-                piece.position[n + 1, i + 1] = piece.velocity[n, i + 1] * factor
-            piece.fill_force(state, n)
-            if state.nonlinear:
-                self._nonlinear(state, piece, n)
+        c: cython.Py_ssize_t
+        young: cython.bint = False
+        columns: cython.Py_ssize_t = piece.columns
+        value: cython.int = state.friction.value
+        linear: cython.bint = state.friction.linear
+        rate: cython.double = state.friction.rate
+        x: cython.pointer[vec] = piece.positions.at
+        u: cython.pointer[vec] = piece.velocities.at
+        s: cython.pointer[vec] = piece.forces.at
+        speed: vec
+        friction: vec
+        slope: vec
+        for i in range(state.blocks):
+            piece.position[0, i] = state.position[i]
+            piece.velocity[0, i] = state.velocity[i]
+            piece.force[0, i] = state.springs.sliding_force[i]
+            piece.stuck_table[i] = state.slip[i] == 0
+            piece.direction_table[i] = state.slip[i]
+            if state.slip[i] != 0 and (state.touching[i] or state.age[i] < YOUNG):
+                young = True
+        for c in range(columns):
+            x[columns + c] = u[c] - state.v
+        for c in range(columns):
+            s[c] = s[c] + pulls(state.springs, x, c)
+            self.moving.at[c] = splat(1.0) - piece.stuck.at[c]
+            # Signed by the direction of slip, as friction is.
+            self.signed.at[c] = piece.direction.at[c] * thresholds(state.springs, c)
+            speed = piece.direction.at[c] * u[c]
+            if linear:
+                friction = state.friction.at_rest - rate * speed
+                slope = splat(-rate)
             else:
-                for i in range(blocks):
-                    piece.velocity[n + 1, i + 1] = (
-                        self.slipping[i] * factor * (piece.force[n, i + 1] + a * piece.velocity[n, i + 1])
-                    )
-        piece.fill_force(state, order)
+                state.friction.start(c, speed)
+                friction = row(state.friction, value, c)[0]
+                slope = slopes(state.friction, c)[value]
+            self.damping.at[c] = self.signed.at[c] * (slope * piece.direction.at[c])
+            u[columns + c] = self.moving.at[c] * (s[c] - self.signed.at[c] * friction)
+            s[columns + c] = pulls(state.springs, x + columns, c)
+        if young:
+            for i in range(state.blocks):
+                if state.slip[i] != 0 and (state.touching[i] or state.age[i] < YOUNG):
+                    piece.velocity[1, i] = state.slip_acceleration(i)
+        if columns == 1:
+            self._extend_one(state, piece)
+        else:
+            self._extend(state, piece)
         return self._step(piece)
 
-    def _start_friction(self, state, piece):
-        """Set the constant and linear terms from which the series of the nonlinear friction grows."""
-        i: cython.Py_ssize_t
-        for i in range(state.blocks):
-            if state.slip[i] != 0:
-                self.friction[i, piece.order] = 1.0 / (1.0 + state.a * abs(state.velocity[i]))
-                self.speed[i, 1] = piece.velocity[1, i + 1]
+    def _extend(self, state, piece):
+        """Fill the rows from 2 on.
 
-    def _nonlinear(self, state, piece, n):
-        """Fill row n + 1 of the velocities: the term of Φ follows from (1 + a |U'|) Φ = 1."""
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        start: cython.Py_ssize_t = piece.order - n
-        first: cython.double
-        second: cython.double
-        third: cython.double
-        fourth: cython.double
+        In row n friction is its slope at the start times U'_n, plus what follows from the rows before: that is ready
+        before U'_n is.
+        """
+        n: cython.Py_ssize_t
+        c: cython.Py_ssize_t
+        columns: cython.Py_ssize_t = piece.columns
+        value: cython.int = state.friction.value
+        x: cython.pointer[vec] = piece.positions.at
+        u: cython.pointer[vec] = piece.velocities.at
+        s: cython.pointer[vec] = piece.forces.at
         factor: cython.double
-        for i in range(state.blocks):
-            if state.slip[i] == 0:
-                piece.velocity[n + 1, i + 1] = 0.0
-                continue
-            # Four sums, which a processor forms at the same time; one would wait for each addition.
-            first = second = third = fourth = 0.0
-            j = 1
-            while j + 3 <= n:
-                first += self.speed[i, j] * self.friction[i, start + j]
-                second += self.speed[i, j + 1] * self.friction[i, start + j + 1]
-                third += self.speed[i, j + 2] * self.friction[i, start + j + 2]
-                fourth += self.speed[i, j + 3] * self.friction[i, start + j + 3]
-                j += 4
-            while j <= n:
-                first += self.speed[i, j] * self.friction[i, start + j]
-                j += 1
-            # Signed by the direction of slip, as friction is.
-            factor = -state.a * ((first + third) + (second + fourth)) * self.friction[i, piece.order]
-            self.friction[i, start] = factor if state.slip[i] > 0 else -factor
-            piece.velocity[n + 1, i + 1] = (piece.force[n, i + 1] - factor) * self.reciprocal[n + 1]
-            self.speed[i, n + 1] = piece.velocity[n + 1, i + 1]
+        force: vec
+        for n in range(1, piece.order):
+            factor = self.reciprocal[n + 1]
+            for c in range(columns):
+                force = s[n * columns + c]
+                if not state.friction.linear:
+                    row(state.friction, 0, c)[n] = splat(0.0)
+                    state.friction.extend(c, n, 0, value)
+                    force = force - self.signed.at[c] * row(state.friction, value, c)[n]
+                    settle(state.friction, c, n, piece.direction.at[c] * u[n * columns + c])
+                u[(n + 1) * columns + c] = (self.moving.at[c] * factor) * (
+                    force - self.damping.at[c] * u[n * columns + c]
+                )
+                x[(n + 1) * columns + c] = u[n * columns + c] * factor
+            for c in range(columns):
+                s[(n + 1) * columns + c] = pulls(state.springs, x + (n + 1) * columns, c)
+
+    def _extend_one(self, state, piece):
+        """Do the same for blocks that lie in one vector, which need not wait for memory."""
+        n: cython.Py_ssize_t
+        order: cython.Py_ssize_t = piece.order
+        value: cython.int = state.friction.value
+        linear: cython.bint = state.friction.linear
+        x: cython.pointer[vec] = piece.positions.at
+        u: cython.pointer[vec] = piece.velocities.at
+        s: cython.pointer[vec] = piece.forces.at
+        lanes: cython.pointer[vec] = state.springs.lanes.at
+        diagonal: vec = lanes[DIAGONAL]
+        before: vec = lanes[BEFORE]
+        after: vec = lanes[AFTER]
+        previous: index = cython.cast(cython.pointer[index], state.springs.from_previous.at)[0]
+        following: index = cython.cast(cython.pointer[index], state.springs.from_next.at)[0]
+        moving: vec = self.moving.at[0]
+        signed: vec = self.signed.at[0]
+        damping: vec = self.damping.at[0]
+        direction: vec = piece.direction.at[0]
+        speed: vec = u[1]
+        shift: vec
+        force: vec = s[1]
+        factor: cython.double
+        hyperbolic: cython.bint = state.friction.hyperbolic
+        line: cython.pointer[vec] = row(state.friction, 1, 0)
+        inverse: cython.pointer[vec] = row(state.friction, 2, 0)
+        line_slope: vec = splat(0.0)
+        inverse_slope: vec = line_slope
+        made: vec
+        scale: cython.double = state.friction.scale
+        if hyperbolic:
+            line_slope = slopes(state.friction, 0)[1]
+            inverse_slope = slopes(state.friction, 0)[2]
+        for n in range(1, order):
+            factor = self.reciprocal[n + 1]
+            shift = speed * factor
+            if hyperbolic:
+                # What `prepare` and `settle` do, without their tables.
+                made = -(convolution(line + 1, inverse, n - 1) * inverse[0])
+                force = force - signed * (scale * made)
+                line[n] = line_slope * (direction * speed)
+                inverse[n] = made + inverse_slope * (direction * speed)
+            elif not linear:
+                prepare(state.friction, 0, n)
+                force = force - signed * row(state.friction, value, 0)[n]
+                settle(state.friction, 0, n, direction * speed)
+            speed = (moving * factor) * (force - damping * speed)
+            force = (
+                before * shuffle(shift, shift, previous) + after * shuffle(shift, shift, following)
+            ) - diagonal * shift
+            u[n + 1] = speed
+            x[n + 1] = shift
+            s[n + 1] = force
 
     def _step(self, piece):
-        """Return the time over which the first neglected terms stay below TRUNCATION (infinite if nothing slips)."""
+        """Return the time over which the last terms that are kept stay below TRUNCATION; LONGEST if nothing slips."""
         i: cython.Py_ssize_t
-        step: cython.double
-        scaled: cython.double
         last: cython.double = 0.0
         previous: cython.double = 0.0
         for i in range(piece.blocks):
-            last = max(last, abs(piece.velocity[piece.order, i + 1]))
-            previous = max(previous, abs(piece.velocity[piece.order - 1, i + 1]))
-        if last == 0.0 and previous == 0.0:
-            return 1e300
+            last = max(last, abs(piece.velocity[piece.order, i]))
+            previous = max(previous, abs(piece.velocity[piece.order - 1, i]))
         if not (last + previous < 1e300):
             return 0.0
-        step = min(
-            1e300 if last == 0.0 else power(TRUNCATION / last, self.step_power_last),
-            1e300 if previous == 0.0 else power(TRUNCATION / previous, self.step_power_previous),
+        return min(
+            _length(last, self.last_root, piece.order), _length(previous, self.previous_root, piece.order - 1), LONGEST
         )
-        # Rounded to 26 bits (Veltkamp's splitting): the C libraries' powers differ in their last bit.
-        scaled = SPLITTER * step
-        return scaled - (scaled - step)
+
+
+def _length(coefficient, root, power):
+    """Return about the time at which this power of it, with its coefficient, is as small as TRUNCATION says."""
+    digits: cython.int
+    if coefficient < 1e-300:
+        return LONGEST
+    digits = -TRUNCATION - (exponent(coefficient) - 1022)
+    whole: cython.int = digits // power if digits >= 0 else -((power - 1 - digits) // power)
+    return ldexp(root[digits - whole * power], whole)

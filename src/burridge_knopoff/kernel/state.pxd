@@ -1,3 +1,6 @@
+from burridge_knopoff.kernel.friction cimport Friction
+from burridge_knopoff.kernel.springs cimport Springs
+
 cdef double COINCIDENCE
 cdef double YOUNG
 cdef double LONG
@@ -5,12 +8,11 @@ cdef double AT_THRESHOLD
 
 cdef class State:
     cdef readonly Py_ssize_t blocks
-    cdef readonly int nonlinear
+    cdef readonly Springs springs
+    cdef readonly Friction friction
     cdef readonly int symmetric
-    cdef readonly double a
+    cdef readonly bint drops
     cdef readonly double v
-    cdef readonly double sliding_friction
-    cdef double[::1] stiffness
     cdef double[::1] position
     cdef double[::1] velocity
     cdef double[::1] acceleration
@@ -21,7 +23,8 @@ cdef class State:
     cdef void place(self, double[::1] position, double[::1] velocity, int[::1] stuck) noexcept nogil
     cdef double spring_force(self, Py_ssize_t i) noexcept nogil
     cdef double force_rate(self, Py_ssize_t i) noexcept nogil
-    cdef double friction(self, double speed) noexcept nogil
+    cdef double start_acceleration(self, Py_ssize_t i) noexcept nogil
+    cdef bint at_threshold(self, Py_ssize_t i, double force) noexcept nogil
     cdef double slip_acceleration(self, Py_ssize_t i) noexcept nogil
     cdef int transition(self, Py_ssize_t i) noexcept nogil
     cdef int pending(self, Py_ssize_t i) noexcept nogil

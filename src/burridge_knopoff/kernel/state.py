@@ -3,9 +3,10 @@
 Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −Φ(av)·1, velocity is U_i' itself, so that a
 stuck block has velocity exactly 0. Because K·1 = D the spring force on block i is
 
-    s_i = D_i vτ − (K U)_i = Φ(av) − (K x)_i
+    s_i = D_i vτ − (K U)_i = threshold_i Φ(av) − (K x)_i
 
-and nothing in the system depends on τ. K is tridiagonal: 2 D_i on the diagonal (D_i neighbours), −1 beside it.
+and nothing in the system depends on τ. A block slips against friction threshold_i Φ, and starts where the spring force
+on it passes threshold_i.
 """
 
 import cython
@@ -31,15 +32,14 @@ class State:
     stopped again) at this very instant. `age` is the time since the start of the present slip.
     """
 
-    def __init__(self, stiffness, a, v, sliding_friction, nonlinear, symmetric) -> None:
-        n = len(stiffness)
+    def __init__(self, springs, friction, v, symmetric) -> None:
+        n = springs.blocks
         self.blocks = n
-        self.a = a
+        self.springs = springs
+        self.friction = friction
         self.v = v
-        self.sliding_friction = sliding_friction
-        self.nonlinear = nonlinear
         self.symmetric = symmetric
-        self.stiffness = np.array(stiffness, dtype=float)
+        self.drops = friction.at_rest < 1.0
         self.position = np.zeros(n)
         self.velocity = np.zeros(n)
         self.acceleration = np.zeros(n)
@@ -72,37 +72,28 @@ class State:
 
     def spring_force(self, i):
         """Return s_i."""
-        pull: cython.double = 0.0
-        if i > 0:
-            pull = self.position[i - 1]
-        if i < self.blocks - 1:
-            pull += self.position[i + 1]
-        return self.sliding_friction + (pull - self.stiffness[i] * self.position[i])
+        return self.springs.sliding_force[i] + self.springs.pull(cython.address(self.position[0]), i)
 
     def force_rate(self, i):
         """Return ds_i/dτ."""
-        rate: cython.double = self.stiffness[i] * (self.velocity[i] - self.v)
-        if i > 0:
-            rate -= self.velocity[i - 1] - self.v
-        if i < self.blocks - 1:
-            rate -= self.velocity[i + 1] - self.v
+        rate: cython.double = self.springs.diagonal[i] * (self.velocity[i] - self.v)
+        rate -= self.springs.before[i] * (self.velocity[self.springs.previous[i]] - self.v)
+        rate -= self.springs.after[i] * (self.velocity[self.springs.next[i]] - self.v)
         return -rate
 
-    def friction(self, speed):
-        """Return Φ(a |U'|)."""
-        if self.nonlinear:
-            return 1.0 / (1.0 + self.a * speed)
-        return 1.0 - self.a * speed
+    def start_acceleration(self, i):
+        """Return |U_i''| of a block that starts at its threshold: 0, exactly, unless friction drops at the start."""
+        return self.springs.threshold[i] * (1.0 - self.friction.at_rest)
 
     def slip_acceleration(self, i):
         """Return U_i'' of a slipping block."""
         if self.touching[i]:
-            return 0.0
+            return self.slip[i] * self.start_acceleration(i)
         if self.age[i] < YOUNG:
             return self.acceleration[i]
-        if self.slip[i] < 0:
-            return self.spring_force(i) + self.friction(-self.velocity[i])
-        return self.spring_force(i) - self.friction(self.velocity[i])
+        return self.spring_force(i) - self.slip[i] * (
+            self.springs.threshold[i] * self.friction.at(self.slip[i] * self.velocity[i])
+        )
 
     def transition(self, i):
         """Let block i stop if it slips and start if it is stuck; return the kind of event: 0 stop, 1 start."""
@@ -115,10 +106,15 @@ class State:
         force: cython.double = self.spring_force(i)
         self.slip[i] = 1 if force > 0.0 else -1
         # A block that stopped beyond its threshold starts again with the acceleration that the excess gives it.
-        if abs(force) - 1.0 <= AT_THRESHOLD * max(1.0, self.stiffness[i] * abs(self.position[i])):
+        if self.at_threshold(i, force):
             self.touching[i] = 1
             self.age[i] = 0.0
         return 1
+
+    def at_threshold(self, i, force):
+        """Tell whether a spring force that starts a block is its threshold, within rounding."""
+        size: cython.double = max(self.springs.threshold[i], self.springs.diagonal[i] * abs(self.position[i]))
+        return abs(force) - self.springs.threshold[i] <= AT_THRESHOLD * size
 
     def pending(self, i):
         """Tell whether block i changes at this very instant: it is past its threshold, or within COINCIDENCE of it."""
@@ -127,7 +123,7 @@ class State:
         direction: cython.int = self.slip[i]
         if direction != 0:
             if self.touching[i]:
-                return direction * self.force_rate(i) < 0.0
+                return not self.drops and direction * self.force_rate(i) < 0.0
             gap = direction * self.velocity[i]
             if gap < 0.0:
                 return True
@@ -135,9 +131,9 @@ class State:
         if self.touching[i]:
             return False
         for side in range(1, -2 * self.symmetric, -2):
-            gap = 1.0 - side * self.spring_force(i)
+            gap = self.springs.threshold[i] - side * self.spring_force(i)
             if gap < 0.0:
                 return True
-            if gap <= COINCIDENCE * self.stiffness[i] and gap < COINCIDENCE * side * self.force_rate(i):
+            if gap <= COINCIDENCE * self.springs.diagonal[i] and gap < COINCIDENCE * side * self.force_rate(i):
                 return True
         return False

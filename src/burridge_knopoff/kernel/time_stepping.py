@@ -2,27 +2,15 @@
 
 import cython
 import numpy as np
-
-if cython.compiled:
-    from cython.cimports.burridge_knopoff.kernel.events import (
-        ABSURD_SPEED,
-        ACCUMULATING_EVENTS,
-        COMPLETED,
-        DIVERGED,
-        RUNNING,
-        STEPS_PER_CALL,
-    )
-    from cython.cimports.burridge_knopoff.kernel.piece import Piece
-else:
-    from burridge_knopoff.kernel.events import (
-        ABSURD_SPEED,
-        ACCUMULATING_EVENTS,
-        COMPLETED,
-        DIVERGED,
-        RUNNING,
-        STEPS_PER_CALL,
-    )
-    from burridge_knopoff.kernel.piece import Piece
+from cython.cimports.burridge_knopoff.kernel.events import (
+    ABSURD_SPEED,
+    ACCUMULATING_EVENTS,
+    COMPLETED,
+    DIVERGED,
+    RUNNING,
+    STEPS_PER_CALL,
+)
+from cython.cimports.burridge_knopoff.kernel.piece import Piece
 
 CUBIC = 3
 
@@ -43,6 +31,13 @@ class TimeStepping:
         self.velocity = np.zeros(n)
         self.speed = np.zeros((4, n))
         self.acceleration = np.zeros((4, n))
+
+    def begin(self, position, velocity, stuck) -> None:
+        """Begin again at τ = 0 from these positions x_i, velocities U_i' and stuck blocks."""
+        self.state.begin(position, velocity, stuck)
+        self.clock = 0.0
+        self.steps = 0
+        self.log.restart()
 
     def run(self) -> int:
         """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended."""
@@ -106,8 +101,8 @@ class TimeStepping:
             self.acceleration[stage, i] = 0.0
             if self.state.slip[i] != 0:
                 direction = self.state.slip[i]
-                self.acceleration[stage, i] = self.state.spring_force(i) - direction * self.state.friction(
-                    direction * self.state.velocity[i]
+                self.acceleration[stage, i] = self.state.spring_force(i) - direction * (
+                    self.state.springs.threshold[i] * self.state.friction.at(direction * self.state.velocity[i])
                 )
 
     def _stage(self, stage, step):
@@ -125,18 +120,16 @@ class TimeStepping:
         change: cython.double
         for i in range(n):
             change = (self.state.position[i] - self.position[i]) / step
-            self.piece.position[0, i + 1] = self.position[i]
-            self.piece.position[1, i + 1] = self.speed[0, i]
-            self.piece.position[2, i + 1] = (3.0 * change - 2.0 * self.speed[0, i] - self.speed[3, i]) / step
-            self.piece.position[3, i + 1] = (self.speed[0, i] + self.speed[3, i] - 2.0 * change) / (step * step)
+            self.piece.position[0, i] = self.position[i]
+            self.piece.position[1, i] = self.speed[0, i]
+            self.piece.position[2, i] = (3.0 * change - 2.0 * self.speed[0, i] - self.speed[3, i]) / step
+            self.piece.position[3, i] = (self.speed[0, i] + self.speed[3, i] - 2.0 * change) / (step * step)
             change = (self.state.velocity[i] - self.velocity[i]) / step
-            self.piece.velocity[0, i + 1] = self.velocity[i]
-            self.piece.velocity[1, i + 1] = self.acceleration[0, i]
-            self.piece.velocity[2, i + 1] = (
-                3.0 * change - 2.0 * self.acceleration[0, i] - self.acceleration[3, i]
-            ) / step
-            self.piece.velocity[3, i + 1] = (self.acceleration[0, i] + self.acceleration[3, i] - 2.0 * change) / (
+            self.piece.velocity[0, i] = self.velocity[i]
+            self.piece.velocity[1, i] = self.acceleration[0, i]
+            self.piece.velocity[2, i] = (3.0 * change - 2.0 * self.acceleration[0, i] - self.acceleration[3, i]) / step
+            self.piece.velocity[3, i] = (self.acceleration[0, i] + self.acceleration[3, i] - 2.0 * change) / (
                 step * step
             )
         for k in range(CUBIC + 1):
-            self.piece.fill_force(self.state, k)
+            self.piece.fill_force(self.state.springs, k)

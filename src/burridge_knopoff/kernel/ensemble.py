@@ -1,0 +1,290 @@
+# cython: auto_pickle=False
+"""Many trajectories of one chain at once: a lane holds a trajectory with its own clock and step.
+
+A lane whose trajectory has ended takes the next one from the list. No number of a trajectory depends on what goes on in
+other lanes, nor on where it ends: the end only cuts off.
+"""
+
+import cython
+import numpy as np
+from cython.cimports.burridge_knopoff.kernel.events import ABSURD_SPEED, ACCUMULATING_EVENTS, COMPLETED, DIVERGED
+from cython.cimports.burridge_knopoff.kernel.friction_series import FrictionSeries
+from cython.cimports.burridge_knopoff.kernel.lane_events import LaneEvents
+from cython.cimports.burridge_knopoff.kernel.lane_series import LaneSeries
+from cython.cimports.burridge_knopoff.kernel.lanes import Lanes
+from cython.cimports.burridge_knopoff.kernel.state import LONG
+from cython.cimports.burridge_knopoff.kernel.vector import (
+    LANES,
+    Vectors,
+    at_most,
+    bits,
+    equal,
+    from_bits,
+    lane_of,
+    largest,
+    less,
+    magnitude,
+    mask,
+    put,
+    select,
+    splat,
+    vec,
+)
+
+# Label of a trajectory that comes close to nothing.
+UNDETERMINED = -1
+
+
+class Ensemble:
+    """Moves trajectories of one chain.
+
+    diagonal, left, right, threshold, sliding_force, v, symmetric, rate_limit : see `Lanes`
+    code, first, second, alpha, beta, gamma, value : the friction law, see `FrictionSeries`
+    order : of the Taylor series, even
+
+    Raises ValueError for another order.
+    """
+
+    def __init__(
+        self,
+        diagonal,
+        left,
+        right,
+        threshold,
+        sliding_force,
+        v: float,
+        symmetric: bool,
+        code,
+        first,
+        second,
+        alpha,
+        beta,
+        gamma,
+        value: int,
+        rate_limit: int,
+        order: int = 20,
+    ) -> None:
+        if order % 2 or order < 10:
+            raise ValueError(f"order: {order} is not allowed: an even number of at least 10")
+        self.blocks = len(diagonal)
+        friction = FrictionSeries(self.blocks, order, code, first, second, alpha, beta, gamma, value)
+        self.lanes = Lanes(diagonal, left, right, threshold, sliding_force, v, symmetric, friction, rate_limit)
+        self.series = LaneSeries(self.blocks, order)
+        self.events = LaneEvents(order)
+        self.point = np.zeros(2 * self.blocks)
+        self.target = Vectors(1)
+        self.steps = 0
+        self.rounds = 0
+
+    def label(self, position, velocity, stuck, clouds, returns, end: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return which cloud each state comes close to, −1 for none by time `end`, and when that was certain.
+
+        position, velocity, stuck : x_i, U_i' and which blocks stick, shape (n, blocks)
+        clouds : Clouds of states (x_i, U_i') at stops of the first block
+        returns : for each cloud how many successive stops of the first block have to be close to it
+        """
+        n = len(position)
+        labels = np.full(n, UNDETERMINED, dtype=np.intc)
+        times = np.zeros(n)
+        self.clouds = clouds
+        self.returns = np.array(returns, dtype=np.intp)
+        self.streak = np.zeros((LANES, clouds.count), dtype=np.intp)
+        self.label_of = labels
+        self.sample_time = np.zeros(0)
+        self.lanes.kept = 0
+        self.end = end
+        self._begin(position, velocity, stuck, times, np.zeros(n, dtype=np.intc), np.zeros(n, dtype=np.int64))
+        return labels, times
+
+    def run(self, position, velocity, stuck, times, events: int = 0) -> dict[str, np.ndarray]:
+        """Return the states of all trajectories at some times, and their first events.
+
+        times : one at least, ascending; a state is that before the events of the same instant; the last is the end
+        events : how many are kept of each trajectory
+
+        Keys: position, velocity, slip of shape (n, times, blocks), after the last of a trajectory's times NaN or 0;
+        status (COMPLETED or why a trajectory ended), end (when it did) and event_count of shape (n,); event_time,
+        event_block (from 1) and event_kind (0 stop, 1 start) of shape (n, events), NaN or 0 where there was none.
+        """
+        n = len(position)
+        shape = (n, len(times), self.blocks)
+        result = {
+            "position": np.full(shape, np.nan),
+            "velocity": np.full(shape, np.nan),
+            "slip": np.zeros(shape, dtype=np.int8),
+            "status": np.zeros(n, dtype=np.intc),
+            "end": np.zeros(n),
+            "event_count": np.zeros(n, dtype=np.int64),
+            "event_time": np.full((n, events), np.nan),
+            "event_block": np.zeros((n, events), dtype=np.intc),
+            "event_kind": np.zeros((n, events), dtype=np.intc),
+        }
+        self.label_of = np.zeros(0, dtype=np.intc)
+        self.sample_time = np.array(times, dtype=float)
+        self.sample_position, self.sample_velocity = result["position"], result["velocity"]
+        self.sample_slip = result["slip"]
+        self.next_sample = np.zeros(LANES, dtype=np.intp)
+        self.lanes.kept = events
+        self.lanes.event_time, self.lanes.event_block = result["event_time"], result["event_block"]
+        self.lanes.event_kind = result["event_kind"]
+        self.end = self.sample_time[len(times) - 1]
+        self._begin(position, velocity, stuck, result["end"], result["status"], result["event_count"])
+        return result
+
+    def _begin(self, position, velocity, stuck, time, status, count) -> None:
+        """Run all trajectories, with what is known of each at its end in these arrays."""
+        self.position = np.ascontiguousarray(position, dtype=float)
+        self.velocity = np.ascontiguousarray(velocity, dtype=float)
+        self.stuck = np.ascontiguousarray(stuck, dtype=np.intc)
+        self.time, self.status, self.event_count = time, status, count
+        self.next_member = 0
+        self.active = self.fresh = from_bits(0)
+        with cython.nogil:
+            self._run()
+
+    def _run(self):
+        """Go on until every trajectory has ended."""
+        self._refill()
+        while bits(self.active):
+            self.rounds += 1
+            if bits(self.fresh):
+                self.lanes.settle(self.fresh)
+            self._finish(self.active & self.lanes.accumulating, ACCUMULATING_EVENTS)
+            self.series.expand(self.lanes)
+            self._visit(self._move())
+            self._refill()
+
+    def _move(self):
+        """Move every lane to its next event, or as far as its series goes; return where the first block has stopped."""
+        i: cython.Py_ssize_t
+        zero: vec = splat(0.0)
+        fastest: vec = zero
+        slipped: vec = self.lanes.slip.at[0]
+        length: vec
+        left: vec
+        total: vec
+        ended: mask
+        event: mask
+        for i in range(self.blocks):
+            fastest = largest(fastest, magnitude(self.lanes.velocity.at[i]))
+        ended = less(zero, self.series.reach.at[0]) & less(fastest, splat(ABSURD_SPEED))
+        self._finish(self.active & ~ended, DIVERGED)
+        self.events.find(self.lanes, self.series, self.active)
+        length = self.events.time.at[0]
+        if len(self.sample_time) > 0:
+            self._sample()
+        left = (self.end - self.lanes.clock.at[0]) - self.lanes.clock_rest.at[0]
+        ended = self.active & at_most(left, length)
+        if bits(ended):
+            self.lanes.clock.at[0] = select(ended, splat(self.end), self.lanes.clock.at[0])
+            self._finish(ended, COMPLETED)
+        self.series.move(self.lanes, length, self.active)
+        left = self.lanes.clock.at[0]
+        total = left + (self.lanes.clock_rest.at[0] + length)
+        self.lanes.clock_rest.at[0] = (left - total) + (self.lanes.clock_rest.at[0] + length)
+        self.lanes.clock.at[0] = total
+        event = self.active & at_most(zero, self.events.block.at[0])
+        for i in range(self.blocks):
+            ended = event & equal(self.events.block.at[0], splat(cython.cast(cython.double, i)))
+            if bits(ended):
+                self.lanes.change(i, ended)
+        self.lanes.settle(event)
+        return event & ~equal(slipped, zero) & equal(self.lanes.slip.at[0], zero)
+
+    def _sample(self):
+        """Keep the states at the times that lie within the coming step."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        lane: cython.int
+        due: cython.int
+        ahead: vec
+        x: vec
+        w: vec
+        while True:
+            ahead = (self.target.at[0] - self.lanes.clock.at[0]) - self.lanes.clock_rest.at[0]
+            due = bits(self.active & at_most(ahead, self.events.time.at[0]))
+            if not due:
+                return
+            for i in range(self.blocks):
+                x = self.series.at_time(self.series.position, i, ahead)
+                w = self.series.at_time(self.series.velocity, i, ahead)
+                for lane in range(LANES):
+                    if due >> lane & 1:
+                        k = self.next_sample[lane]
+                        self.sample_position[self.lanes.member[lane], k, i] = lane_of(x, lane)
+                        self.sample_velocity[self.lanes.member[lane], k, i] = lane_of(w, lane)
+                        self.sample_slip[self.lanes.member[lane], k, i] = cython.cast(
+                            cython.schar, lane_of(self.lanes.slip.at[i], lane)
+                        )
+            for lane in range(LANES):
+                if due >> lane & 1:
+                    self._aim(lane, self.next_sample[lane] + 1)
+
+    def _aim(self, lane, k):
+        """Let the k-th time of a lane be the next at which its state is kept."""
+        self.next_sample[lane] = k
+        put(self.target.at, lane, self.sample_time[k] if k < self.sample_time.shape[0] else LONG)
+
+    def _visit(self, where):
+        """Look at the returns of some lanes; a lane is done when enough of them have been near one cloud."""
+        i: cython.Py_ssize_t
+        cloud: cython.Py_ssize_t
+        lane: cython.int
+        returned: cython.int = bits(where & self.active)
+        if len(self.label_of) == 0:
+            return
+        for lane in range(LANES):
+            if not returned >> lane & 1:
+                continue
+            for i in range(self.blocks):
+                self.point[i] = lane_of(self.lanes.position.at[i], lane)
+                self.point[self.blocks + i] = lane_of(self.lanes.velocity.at[i], lane)
+            for cloud in range(self.clouds.count):
+                if not self.clouds.near(cloud, self.point):
+                    self.streak[lane, cloud] = 0
+                    continue
+                self.streak[lane, cloud] += 1
+                if self.streak[lane, cloud] >= self.returns[cloud]:
+                    self.label_of[self.lanes.member[lane]] = cloud
+                    self._finish(from_bits(1 << lane), COMPLETED)
+                    break
+
+    def _finish(self, where, status):
+        """End the trajectories of some lanes."""
+        lane: cython.int
+        ending: cython.int = bits(where)
+        if not ending:
+            return
+        for lane in range(LANES):
+            if ending >> lane & 1:
+                self.time[self.lanes.member[lane]] = lane_of(self.lanes.clock.at[0], lane)
+                self.status[self.lanes.member[lane]] = status
+                self.event_count[self.lanes.member[lane]] = cython.cast(
+                    cython.longlong, lane_of(self.lanes.count.at[0], lane)
+                )
+        self.active = self.active & ~where
+
+    def _refill(self):
+        """Let the next trajectories begin in the lanes that are free."""
+        lane: cython.int
+        i: cython.Py_ssize_t
+        free: cython.int = ~bits(self.active)
+        self.fresh = from_bits(0)
+        for lane in range(LANES):
+            if not free >> lane & 1 or self.next_member >= self.position.shape[0]:
+                continue
+            self.lanes.place(
+                lane,
+                self.next_member,
+                self.position[self.next_member],
+                self.velocity[self.next_member],
+                self.stuck[self.next_member],
+            )
+            if len(self.label_of) > 0:
+                for i in range(self.clouds.count):
+                    self.streak[lane, i] = 0
+            else:
+                self._aim(lane, 0)
+            self.next_member += 1
+            self.fresh = self.fresh | from_bits(1 << lane)
+        self.active = self.active | self.fresh

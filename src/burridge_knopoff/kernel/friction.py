@@ -1,0 +1,130 @@
+"""Friction as the kernel computes it: the operations of a law's tape, on numbers and on Taylor series in lanes.
+
+An operation makes one register of earlier ones, register 0 being the slip speed; see `laws.tape`. A coefficient of a
+register follows from coefficients of the same and of lower order, by the recurrences of the reference (in the .pxd).
+
+Reference: A. Griewank and A. Walther, "Evaluating Derivatives" (SIAM 2008), Chapter 13.
+"""
+
+import cython
+import numpy as np
+from cython.cimports.burridge_knopoff.kernel.friction import (
+    EXP,
+    LINEAR,
+    MULTIPLY,
+    POWER,
+    RECIPROCAL,
+    fill,
+    row,
+    slopes,
+)
+from cython.cimports.burridge_knopoff.kernel.vector import Vectors, lane_of, splat
+from cython.cimports.libc.math import exp, log
+from cython.cimports.libc.math import pow as power
+
+# Rounding of friction at rest.
+ROUNDING = 1e-12
+
+# Codes and registers of a multiple of the reciprocal of a straight line.
+HYPERBOLIC = [(LINEAR, 0, -1), (RECIPROCAL, 1, -1), (LINEAR, 2, -1)]
+
+
+class Friction:
+    """One law for `columns` vectors of blocks.
+
+    operations, constants : the tape, shape (n, 3) each; value, slope : registers of Φ and of its slope
+    linear : whether Φ is the straight line Φ(0) − rate·U'; it then needs no series
+    rate : −dΦ/dU' at rest; steepest : largest modulus of threshold times slope that occurs
+    """
+
+    def __init__(self, operations, constants, value, slope, linear, rate, steepest, columns, order) -> None:
+        self.operation = np.array(operations, dtype=np.intc)
+        self.constant = np.array(constants, dtype=float)
+        self.value = value
+        self.slope = slope
+        self.linear = linear
+        # Whether Φ is a multiple of the reciprocal of a straight line, the most usual law, which has a loop of its own.
+        shape = [tuple(operation) for operation in operations[:value]]
+        self.hyperbolic = shape in (HYPERBOLIC, HYPERBOLIC[:2])
+        self.scale = constants[value - 1][0] if len(shape) == 3 else 1.0
+        self.rate = rate
+        self.steepest = steepest
+        self.columns = columns
+        self.length = order + 1
+        self.reciprocal = 1.0 / np.maximum(np.arange(order + 2, dtype=float), 1.0)
+        self.register = Vectors((len(operations) + 1) * columns * self.length)
+        # One over the leading coefficient of the register that a power or a logarithm reads.
+        self.inverse = Vectors((len(operations) + 1) * columns)
+        self.slopes = Vectors((value + 1) * columns)
+        self.number = np.zeros(len(operations) + 1)
+        self.at_rest = self.at(0.0)
+        if abs(self.at_rest - 1.0) < ROUNDING:
+            # As friction at rest is 1: rounding must not make a block start with an acceleration.
+            self.at_rest = 1.0
+
+    def at(self, speed):
+        """Return Φ at a speed."""
+        r: cython.Py_ssize_t
+        code: cython.int
+        p: cython.double
+        made: cython.double
+        second: cython.Py_ssize_t
+        self.number[0] = speed
+        for r in range(self.value):
+            code = self.operation[r, 0]
+            p = self.number[self.operation[r, 1]]
+            second = self.operation[r, 2]
+            if code == LINEAR:
+                made = self.constant[r, 0] * p + self.constant[r, 2]
+                if second >= 0:
+                    made += self.constant[r, 1] * self.number[second]
+            elif code == MULTIPLY:
+                made = p * self.number[second]
+            elif code == RECIPROCAL:
+                made = 1.0 / p
+            elif code == POWER:
+                made = power(p, self.constant[r, 0])
+            elif code == EXP:
+                made = exp(p)
+            else:
+                made = log(p)
+            self.number[r + 1] = made
+        return self.number[self.value]
+
+    def start(self, column, speed):
+        """Fill coefficient 0 of all registers from a speed, and their derivatives by it."""
+        r: cython.int
+        row(self, 0, column)[0] = speed
+        self.extend(column, 0, 0, self.value)
+        # In a series whose speed is linear in time, with slope 1, coefficients of first order are the derivatives.
+        row(self, 0, column)[1] = splat(1.0)
+        self.extend(column, 1, 0, self.value)
+        for r in range(self.value + 1):
+            slopes(self, column)[r] = row(self, r, column)[1]
+
+    def extend(self, column, n, first, last):
+        """Do the work of `fill` where it need not be inline."""
+        fill(self, column, n, first, last)
+
+    def complete(self, column, count):
+        """Fill coefficients 0 … count − 1 of the registers of the slope, when those of Φ are complete."""
+        r: cython.int
+        n: cython.Py_ssize_t
+        for r in range(self.value, self.slope):
+            for n in range(count):
+                fill(self, column, n, r, r + 1)
+
+    def series(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the Taylor coefficients of Φ and of its slope along a motion, each of the shape of those of the speed.
+
+        speed : coefficients of the speed, lowest power first, shape (n,), n at most order + 1
+        """
+        n: cython.Py_ssize_t
+        value = np.zeros(len(speed))
+        slope = np.zeros(len(speed))
+        for n in range(len(speed)):
+            row(self, 0, 0)[n] = splat(speed[n])
+            self.extend(0, n, 0, max(self.value, self.slope))
+            value[n] = lane_of(row(self, self.value, 0)[n], 0)
+            slope[n] = lane_of(row(self, self.slope, 0)[n], 0)
+        return value, slope

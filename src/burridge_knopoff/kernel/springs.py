@@ -1,0 +1,65 @@
+"""The springs of a chain and the static friction of its blocks: the forces on blocks at given positions.
+
+In co-moving coordinates x_i = U_i − vτ − e_i, with e the positions of uniform sliding, the spring force on block i is
+
+    s_i = f_i − (K x)_i,    f_i = threshold_i Φ(av),
+
+with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to the blocks before and after it.
+A ring has a spring between the last block and the first.
+"""
+
+import numpy as np
+from cython.cimports.burridge_knopoff.kernel.springs import THRESHOLD
+from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors
+
+
+class Springs:
+    """Springs of a chain of N blocks; all arrays have shape (blocks,).
+
+    diagonal : K_ii; before, after : strengths of the springs to the blocks i − 1 and i + 1, 0 where there is none
+    threshold : static friction; sliding_force : spring force f_i in uniform sliding
+
+    Blocks also lie side by side in the lanes of vectors, LANES of them to each of `columns`; lanes beyond the last
+    block have no springs and a threshold of 1, which nothing reaches.
+    """
+
+    def __init__(self, diagonal, before, after, threshold, sliding_force) -> None:
+        n = len(diagonal)
+        self.blocks = n
+        self.diagonal = np.array(diagonal, dtype=float)
+        self.before = np.array(before, dtype=float)
+        self.after = np.array(after, dtype=float)
+        self.threshold = np.array(threshold, dtype=float)
+        self.sliding_force = np.array(sliding_force, dtype=float)
+        self.previous = np.roll(np.arange(n), 1).astype(np.intp)
+        self.next = np.roll(np.arange(n), -1).astype(np.intp)
+        # Bound of Gershgorin on the largest eigenvalue of K.
+        self.stiffest = float((np.asarray(diagonal) + before + after).max())
+        columns = (n + LANES - 1) // LANES
+        self.columns = columns
+        self.lanes = Vectors(4 * columns)
+        table = np.zeros((4, columns * LANES))
+        table[THRESHOLD] = 1.0
+        table[:, :n] = diagonal, before, after, threshold
+        self.lanes.set(table.ravel())
+        # Where a lane finds its neighbour: in the vector of the column before, or after, or in its own.
+        previous = np.tile(np.arange(LANES) + LANES - 1, (columns, 1))
+        previous[0, 0] = (n - 1) % LANES
+        following = np.tile(np.arange(LANES) + 1, (columns, 1))
+        following[-1, (n - 1) % LANES] = LANES if columns > 1 else 0
+        if columns == 1:
+            previous[0, 1:] -= LANES
+            following[0] %= LANES
+        self.from_previous = Vectors(columns)
+        self.from_previous.set(previous.ravel().astype(np.int64).view(float))
+        self.from_next = Vectors(columns)
+        self.from_next.set(following.ravel().astype(np.int64).view(float))
+
+    def pull(self, displacement, i):
+        """Return −(K x)_i for a row of displacements x, or of their rates.
+
+        The neighbours are added first, so that a mirrored state has mirrored forces to the bit.
+        """
+        return (
+            self.before[i] * displacement[self.previous[i]] + self.after[i] * displacement[self.next[i]]
+        ) - self.diagonal[i] * displacement[i]
