@@ -1,23 +1,38 @@
 """A map of basins in one call: the settings are the config's defaults, and the labels those of whole runs."""
 
+from dataclasses import asdict, fields
+
 import numpy as np
 import pytest
 
-from burridge_knopoff import InitialState, simulate
-from burridge_knopoff.basins import MOTION, SEARCH, SYNCHRONIZATION_THRESHOLD, basin_map
-from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
+from burridge_knopoff.basins import basin_map
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.stability.chains import Sample, Watch
+from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings
 
 
 def test_settings_are_the_schema_defaults(repository):
     from burridge_knopoff.config import read_schema
 
     schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
-    for section, mine in (("attractors", SEARCH), ("motion", MOTION)):
-        defaults = {key: item["default"] for key, item in schema[section]["properties"].items()}
-        for key, value in mine.items():
-            assert list(np.atleast_1d(value)) == list(np.atleast_1d(defaults[key])), key
-        assert set(defaults) - set(mine) <= {"samples", "seed"}
-    assert schema["synchronization_threshold"]["default"] == SYNCHRONIZATION_THRESHOLD
+    motion = {**schema["motion"]["properties"], "synchronization_threshold": schema["synchronization_threshold"]}
+    chains = schema["chains"]["properties"]
+    watched = {key: chains[key] for key in ("time_limit", "synchronization_distance")}
+    drawn = {key: item for key, item in chains.items() if key in {item.name for item in fields(Sample)}}
+    basins = {key: item for key, item in schema["basins"]["properties"].items() if key in asdict(BasinSettings())}
+    for mine, theirs, other in (
+        (SEARCH, schema["attractors"]["properties"], set()),
+        (MOTION, motion, set()),
+        (BasinSettings(), basins, {"initial"}),
+        (Watch(), watched, {"pair_distance"}),
+        (Sample(), drawn, {"start"}),
+    ):
+        values = asdict(mine)
+        assert set(theirs) | other == set(values)
+        for key in set(values) - other:
+            assert list(np.atleast_1d(values[key])) == list(np.atleast_1d(theirs[key]["default"])), key
+    assert Watch().pair_distance == schema["synchronization_threshold"]["default"]
 
 
 def test_labels_are_those_of_whole_runs():
@@ -42,7 +57,8 @@ def test_labels_are_those_of_whole_runs():
     ("options", "words"),
     [
         ({"law": "cubic"}, "linearized | nonlinear"),
-        ({"a": 2.0}, "0 ≤ a < 2"),
+        ({"a": None}, "a: None"),
+        ({"a": -1.0}, "0 or more"),
         ({"a": 0.0}, "no attractor"),
         ({"initial": "middle"}, "minus | plus"),
         ({"v": 0.0}, "v: 0.0"),
@@ -50,6 +66,10 @@ def test_labels_are_those_of_whole_runs():
         ({"pixels": 0}, "pixels: 0"),
         ({"threads": 0}, "threads: 0"),
         ({"first_position": (1.0, 1.0)}, "first_position"),
+        ({"window": 0.0}, "window: 0.0"),
+        ({"windows": 10.0}, "windows: not allowed"),
+        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "beside a model"),
+        ({"chain": Chain(4)}, "initial state 'minus'"),
         ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
     ],
 )
@@ -58,3 +78,19 @@ def test_bad_input_is_refused_in_one_line(options, words):
         basin_map(**{"law": "linearized", "a": 0.08, "pixels": 2, "samples": 3, **options})
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_model_of_its_own():
+    """Labels of a map for a law by formula in an asymmetric chain, and a short form that says the same."""
+    law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
+    chain = Chain(3, coupling=(1.0, 1.2))
+    model = Model(chain, law, v=0.12)
+    basins, attractors = basin_map(model, pixels=4, samples=10, transient=2000.0)
+    again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, pixels=4, samples=10, transient=2000.0)
+    assert basins.identical(again[0])
+    assert attractors.identical(again[1])
+    assert attractors["law"].values.tolist() == ["formula"]
+    assert basins["law"].attrs["flag_meanings"] == "formula"
+    assert (attractors["side"] == 0).all()
+    assert set(np.unique(attractors["symmetry"])) <= {-1, 2}
+    assert basins["undetermined_count"].item() < 8

@@ -5,22 +5,52 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 __version__ = "0.1.0"
-__all__ = ["Chain", "Friction", "InitialState", "Settings", "Trajectory", "simulate"]
+__all__ = [
+    "Chain",
+    "FormulaLaw",
+    "InitialState",
+    "Law",
+    "Model",
+    "Settings",
+    "Trajectory",
+    "basin_map",
+    "find_attractors",
+    "label_states",
+    "law_of",
+    "simulate",
+    "synchronized_orbit",
+    "transverse_exponent",
+]
 
 if TYPE_CHECKING:
-    from burridge_knopoff.chain import Chain
-    from burridge_knopoff.friction import Friction
-    from burridge_knopoff.initial import InitialState
-    from burridge_knopoff.settings import Settings
-    from burridge_knopoff.simulation import Trajectory, simulate
+    from burridge_knopoff.basins import basin_map
+    from burridge_knopoff.laws import FormulaLaw, Law, law_of
+    from burridge_knopoff.model.chain import Chain
+    from burridge_knopoff.model.initial import InitialState
+    from burridge_knopoff.model.model import Model
+    from burridge_knopoff.running.settings import Settings
+    from burridge_knopoff.running.simulation import simulate
+    from burridge_knopoff.running.trajectory import Trajectory
+    from burridge_knopoff.stability.attractors import find_attractors
+    from burridge_knopoff.stability.basins import label_states
+    from burridge_knopoff.stability.chains import transverse_exponent
+    from burridge_knopoff.stability.family import synchronized_orbit
 
 _HOME = {
-    "Chain": "chain",
-    "Friction": "friction",
-    "InitialState": "initial",
-    "Settings": "settings",
-    "Trajectory": "simulation",
-    "simulate": "simulation",
+    "Chain": "model.chain",
+    "FormulaLaw": "laws",
+    "InitialState": "model.initial",
+    "Law": "laws",
+    "Model": "model.model",
+    "Settings": "running.settings",
+    "Trajectory": "running.trajectory",
+    "basin_map": "basins",
+    "find_attractors": "stability.attractors",
+    "label_states": "stability.basins",
+    "law_of": "laws",
+    "simulate": "running.simulation",
+    "synchronized_orbit": "stability.family",
+    "transverse_exponent": "stability.chains",
 }
 
 

@@ -3,101 +3,95 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import InitialState, initial_state
-from burridge_knopoff.settings import Settings
+from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState, initial_state
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.stability.settings import MOTION, POSITIONS, BasinSettings, MotionSettings, SearchSettings
 
 if TYPE_CHECKING:
     import xarray
 
-#: Settings of the search for attractors, and how kinds of motion are told: the defaults of the config's sections
-#: `attractors` and `motion`, and of `synchronization_threshold`.
-SEARCH: dict[str, Any] = {
-    "position": (-1.5, 1.5),
-    "velocity": (0.0, 0.2),
-    "transient": 3000,
-    "window": 3000,
-    "time_limit": 20000,
-    "resolution": 1e-3,
-    "pushes": 16,
-}
-MOTION: dict[str, Any] = {
-    "zero_exponent": 5e-4,
-    "chaotic_exponent": 1e-3,
-    "standard_errors": 3,
-    "period_tolerance": 1e-6,
-    "longest_period": 60,
-}
-SYNCHRONIZATION_THRESHOLD = 1e-6
-
 
 def basin_map(
-    law: str,
-    a: float,
+    law: Model | Law | str,
+    a: float | None = None,
     initial: str | InitialState = "minus",
     *,
     pixels: int = 64,
-    first_position: Sequence[float] = (-1.5, 1.5),
-    last_position: Sequence[float] = (-1.5, 1.5),
+    first_position: Sequence[float] = POSITIONS,
+    last_position: Sequence[float] = POSITIONS,
+    chain: Chain | None = None,
     v: float = 0.1,
     contact: str = "one_sided",
     start: str = "moving",
     samples: int = 100,
     seed: int = 1,
     threads: int = 1,
+    motion: MotionSettings = MOTION,
+    **search: Any,
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
-    """Return a map of basins and its attractors, in the form of `basins.nc` and `attractors.nc`, for one law and a.
+    """Return a map of basins and its attractors, in the form of `basins.nc` and `attractors.nc`, for one model.
 
-    initial : gives all but U_1(0) and U_N(0): minus or plus (the paper's) or an InitialState; the chain follows from it
+    law : a Model, which has its own a, chain, v and contact; or a law at this a: the name of one that is built in, or a
+        `Law`
+    initial : gives all but U_1(0) and U_N(0): minus or plus (the paper's) or an InitialState
+    chain : without one the paper's springs, as many blocks as the initial state has; v, contact : see `Model`
+    start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
-    samples, seed : initial states from which attractors are looked for, drawn from the box of `SEARCH`; an attractor
-        that none of them reaches stays unknown, and its basin undetermined (−1)
+    samples, seed : initial states from which attractors are looked for; an attractor that none of them reaches stays
+        unknown, and its basin undetermined (−1)
     threads : of the labelling; they change no label
+    search : other settings of `SearchSettings` by name; motion : how kinds of motion are told
 
-    The uncertainty exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is
-    not allowed.
+    The map `branch` of the first Dataset has the shape (1, pixels, pixels), U_N(0) along the rows. The uncertainty
+    exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is not allowed, and
+    where no attractor is found.
     """
     from burridge_knopoff.summaries import attractors as attractor_summary
     from burridge_knopoff.summaries import basins as basin_summary
 
     state = initial_state(initial) if isinstance(initial, str) else initial
-    friction = Friction(law, a)
-    Settings(v=v, contact=contact, start=start)
-    state.check_contact(contact)
-    for name, value, least in (("pixels", pixels, 1), ("samples", samples, 0), ("threads", threads, 1)):
-        if value < least:
-            raise ValueError(f"{name}: {value!r} is not allowed: {least} or more")
-    for name, (low, high) in (("first_position", first_position), ("last_position", last_position)):
-        if not low < high:
-            raise ValueError(f"{name}: [{low}, {high}] is not allowed: [low, high] with low < high")
-    states = {state.name: {"position": state.position, "velocity": state.velocity}}
-    config = {
-        "v": v,
-        "contact": contact,
-        "start": start,
-        "initial": states,
-        "synchronization_threshold": SYNCHRONIZATION_THRESHOLD,
-        "motion": MOTION,
-        "attractors": {**SEARCH, "samples": samples, "seed": seed},
-        "basins": {
-            "pixels": pixels,
-            "first_position": tuple(first_position),
-            "last_position": tuple(last_position),
-            "initial": state.name,
-            "pairs": 0,
-            "tiles": 1,
-        },
-    }
-    attractors = attractor_summary.merge([attractor_summary.one_law(law, [friction.a], states, config)])
+    model = _model(law, a, state, chain, v, contact)
+    known = {item.name for item in fields(SearchSettings)}
+    for key in search:
+        if key not in known:
+            raise ValueError(f"{key}: not allowed as a setting of the search: {' | '.join(sorted(known))}")
+    settings = SearchSettings(samples=samples, seed=seed, **search)
+    plane = BasinSettings(
+        pixels=pixels,
+        initial=state,
+        first_position=first_position,
+        last_position=last_position,
+        pairs=0,
+        tiles=1,
+        threads=threads,
+    )
+    options = settings, motion, start
+    attractors = attractor_summary.merge([attractor_summary.one_law(model, [model.a], [state], *options)])
     if not (attractors["branch"] >= 0).any():
         raise ValueError(
-            f"a: {a!r} is not allowed: no attractor was found, from {samples} sampled states (none is at 0)"
+            f"a: {model.a!r} is not allowed: no attractor was found, from {samples} sampled states (none is at 0)"
         )
-    tile = basin_summary.tile(attractors, law, friction.a, 0, config, threads)
-    pairs = basin_summary.pairs(attractors, law, friction.a, config, threads)
-    basins = basin_summary.merge([(law, friction.a, [tile], pairs)], config)
+    tile = basin_summary.tile(attractors, model, 0, plane, *options)
+    pairs = basin_summary.pairs(attractors, model, plane, *options)
+    basins = basin_summary.merge([(model, [tile], pairs)], [model.law.name], plane, settings.time_limit, start)
     for dataset in (attractors, basins):
         dataset.attrs["history"] = "burridge_knopoff.basins.basin_map"
     return basins, attractors
+
+
+def _model(
+    law: Model | Law | str, a: float | None, state: InitialState, chain: Chain | None, v: float, contact: str
+) -> Model:
+    if isinstance(law, Model):
+        if (a, chain, v, contact) != (None, None, 0.1, "one_sided"):
+            raise ValueError("a, chain, v, contact: not allowed beside a model, which has its own")
+        return law
+    if a is None:
+        raise ValueError("a: None is not allowed but beside a model: 0 or more")
+    chain = Chain(len(state.position)) if chain is None else chain
+    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), v, contact)

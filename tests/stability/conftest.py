@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Model
 
 
 @pytest.fixture(scope="package")
 def families():
-    """{law: Family} at v = 0.1."""
-    return {law: Family(Model(Chain(3), Friction(law, 0.0))) for law in LAWS}
+    """{law: Family} of the paper's laws at v = 0.1."""
+    return {law: Family(Model(Chain(3), law_of(law, 0.0))) for law in PAPER_LAWS}

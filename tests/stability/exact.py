@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from burridge_knopoff.stability.flow import instant
 from burridge_knopoff.stability.orbit import flow
 from tests.reference import reference_run
 
@@ -12,7 +11,7 @@ SHIFT = 2.0**-40
 
 def slipping_state(orbit):
     """Return (U, U') of the orbit a quarter of its slip after the start of blocks 1 and 3: all blocks slip there."""
-    state = instant(flow(orbit.model, orbit.reference, orbit.times(0, 1)[0] + 0.25 * orbit.lateral_slip_time)[0])
+    state = flow(orbit.model, orbit.reference, orbit.times(0, 1)[0] + 0.25 * orbit.lateral_slip_time)[0].instant()
     assert not state.stuck.any()
     assert state.velocity.min() > 0.01
     return (state.position + orbit.model.sliding_offset).tolist(), state.velocity.tolist()
@@ -20,9 +19,9 @@ def slipping_state(orbit):
 
 def after_a_period(orbit, position, velocity, a=None):
     """Return the reference run over a period of the orbit; U is relative to the driver at both ends."""
-    friction = orbit.model.friction
-    a = friction.a if a is None else a
-    return reference_run(friction.law, a, position, velocity, v=orbit.model.v, end=orbit.period)
+    law = orbit.model.law
+    a = law.a if a is None else a
+    return reference_run(law.name, a, position, velocity, v=orbit.model.v, end=orbit.period)
 
 
 def exact_transverse_multiplier(orbit):

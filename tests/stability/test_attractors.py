@@ -5,50 +5,41 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.attractors import Search
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.stability.attractors import Search, find_attractors
 from burridge_knopoff.stability.continuation import branches, same_numbers
-from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, label
 from burridge_knopoff.stability.motion import CHAOTIC, QUASIPERIODIC
-from burridge_knopoff.stability.sampling import fraction_interval, sample_states
-from burridge_knopoff.stability.steady import lies_on, measure, visit
-from tests.sections import MOTION
+from burridge_knopoff.stability.motion import SYNCHRONIZED as KIND_SYNCHRONIZED
+from burridge_knopoff.stability.sampling import fraction_interval, sample_states, sampled_states
+from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.stability.steady import distance, is_near, least_distance, lies_on, measure, visit
 
-SETTINGS = {
-    "transient": 2000.0,
-    "window": 1500.0,
-    "resolution": 1e-3,
-    "time_limit": 20000.0,
-    "seed": 3,
-    "pushes": 8,
-}
+SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, pushes=8)
 
 
 def model(law="linearized", a=0.08):
-    return Model(Chain(3), Friction(law, a))
+    return Model(Chain(3), law_of(law, a))
 
 
 def states(count, seed=5):
-    position, velocity = sample_states(3, count, (-1.5, 1.5), (0.0, 0.2), seed)
-    return [InitialState("sample", tuple(u), tuple(w)) for u, w in zip(position, velocity, strict=True)]
+    return sampled_states(3, count, (-1.5, 1.5), (0.0, 0.2), seed)
 
 
 @pytest.fixture(scope="module")
 def search():
     """The attractors of the linearized law at a = 0.08, found from a few states."""
-    found = Search(model(), SETTINGS, 1e-6, MOTION)
-    found.labels([begin(model(), state) for state in states(40)])
+    found = Search(model(), SETTINGS)
+    found.labels([model().begin(state) for state in states(40)])
     return found
 
 
 def test_labels_hold_for_whole_runs(search):
     """What is decided after some hundred time units is what a run of 8000 ends in."""
     chosen = states(60, seed=11)
-    labels, times = label(search.model, search.attractors, [begin(search.model, state) for state in chosen], 20000.0)
+    labels, times = label(search.model, search.attractors, [search.model.begin(state) for state in chosen], 20000.0)
     assert (labels >= 0).all()
     assert np.median(times) < 500.0
     reached = set()
@@ -62,8 +53,8 @@ def test_labels_hold_for_whole_runs(search):
 
 def test_mirrored_states_reach_mirrored_attractors():
     """Beyond the loss of synchrony, at a = 0.1, there is a mirror pair."""
-    found = Search(model(a=0.1), SETTINGS, 1e-6, MOTION)
-    starts = [begin(found.model, state) for state in states(30)]
+    found = Search(model(a=0.1), SETTINGS)
+    starts = [found.model.begin(state) for state in states(30)]
     labels = found.labels(starts)
     partners = np.array([attractor.partner for attractor in found.attractors])
     assert (partners[partners] == np.arange(len(partners))).all()
@@ -75,14 +66,14 @@ def test_mirrored_states_reach_mirrored_attractors():
 
 def test_an_unstable_motion_is_no_attractor():
     """A symmetric state stays symmetric for ever, though the synchronized motion is unstable at a = 0.1."""
-    found = Search(model(a=0.1), SETTINGS, 1e-6, MOTION)
-    symmetric = begin(found.model, InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
-    assert measure(found.model, symmetric, 2000.0, 1000.0, 1e-6, MOTION).mean_distance == 0.0
+    found = Search(model(a=0.1), SETTINGS)
+    symmetric = found.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
+    assert measure(found.model, symmetric, 2000.0, 1000.0, MOTION).mean_distance == 0.0
     assert visit(found.model, symmetric, 2000.0, 1000.0).settled(1e-6, 1e-3)
     index = found.reach(symmetric)
     assert found.attractors[index].symmetry == ASYMMETRIC
     assert found.attractors[index].motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
-    stable = Search(model(a=0.08), SETTINGS, 1e-6, MOTION)
+    stable = Search(model(a=0.08), SETTINGS)
     index = stable.reach(symmetric)
     assert stable.attractors[index].symmetry == SYNCHRONIZED
 
@@ -113,8 +104,8 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
 
 def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
     """Nonlinear law, a = 0.2075: `minus` ends on an orbit of period 11 returns, most neighbours in chaos around it."""
-    found = Search(model("nonlinear", 0.2075), {**SETTINGS, "transient": 3000.0, "window": 3000.0}, 1e-6, MOTION)
-    starts = [begin(found.model, state) for state in (*states(30), PAPER_STATES["minus"], PAPER_STATES["plus"])]
+    found = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
+    starts = [found.model.begin(state) for state in (*states(30), PAPER_STATES["minus"], PAPER_STATES["plus"])]
     labels = found.labels(starts)
     means = [attractor.motion.mean_distance for attractor in found.attractors]
     for initial, index in (("minus", labels[-2]), ("plus", labels[-1])):
@@ -127,9 +118,10 @@ def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
 @pytest.mark.parametrize("v", [0.001, 5.0])
 def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
     """All positions and velocities are in proportion to v."""
-    reference = Search(model(a=0.05), SETTINGS, 1e-6, MOTION)
-    scaled = Search(Model(Chain(3), Friction("linearized", 0.05), v), SETTINGS, 1e-6 * v / 0.1, MOTION)
-    starts = [begin(reference.model, state) for state in states(25)]
+    reference = Search(model(a=0.05), SETTINGS)
+    motion = MotionSettings(synchronization_threshold=1e-6 * v / 0.1)
+    scaled = Search(Model(Chain(3), law_of("linearized", 0.05), v), SETTINGS, motion)
+    starts = [reference.model.begin(state) for state in states(25)]
     factor = v / 0.1
     others = [Instant(factor * start.position, factor * start.velocity, start.stuck) for start in starts]
     first, second = reference.labels(starts), scaled.labels(others)
@@ -139,9 +131,9 @@ def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
 
 def test_nothing_is_reached_where_nothing_ever_stops():
     """Without weakening of friction, near uniform sliding, no block ever stops."""
-    found = Search(model(a=0.0), SETTINGS, 1e-6, MOTION)
+    found = Search(model(a=0.0), SETTINGS)
     sliding = InitialState("sliding", (-0.83, -0.66, -0.84), (0.1, 0.1, 0.1))
-    assert found.labels([begin(found.model, sliding)]).tolist() == [-1]
+    assert found.labels([found.model.begin(sliding)]).tolist() == [-1]
     assert found.attractors == []
 
 
@@ -209,21 +201,105 @@ def test_branches_of_two_laws_that_look_alike_carry_one_number():
         2: dict.fromkeys(range(4), (0.142, middle)),
         3: {1: (0.141, free), 2: (0.3, middle)},
     }
-    assert same_numbers(first, second, 0.01) == {0: 0, 1: 2, 2: 1, 3: 3}
-    assert same_numbers(first, first, 0.01) == {0: 0, 1: 1, 2: 2}
-    assert same_numbers({}, second, 0.01) == {0: 0, 1: 1, 2: 2, 3: 3}
+    assert same_numbers(first, second, 0.01, 2) == {0: 0, 1: 2, 2: 1, 3: 3}
+    assert same_numbers(first, first, 0.01, 2) == {0: 0, 1: 1, 2: 2}
+    assert same_numbers({}, second, 0.01, 0) == {0: 0, 1: 1, 2: 2, 3: 3}
+    # Numbers that a law between them has taken are left to it.
+    assert same_numbers(first, second, 0.01, 5) == {0: 0, 1: 2, 2: 1, 3: 6}
 
 
 def test_weak_chaos_is_told_from_a_torus():
     """λ1 is 0.0019 at a = 0.1325: in the usual window its error hides it, and the motion looks like one on a torus."""
-    model = Model(Chain(3), Friction("linearized", 0.1325), 0.1, "one_sided")
-    start = begin(model, PAPER_STATES["minus"], "moving")
-    steady = measure(model, start, 20_000.0, 3000.0, 1e-6, MOTION)
+    weak = model(a=0.1325)
+    steady = measure(weak, weak.begin(PAPER_STATES["minus"]), 20_000.0, 3000.0, MOTION)
     run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
     assert steady.kind == CHAOTIC
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
     assert steady.exponent[0] == pytest.approx(run.lyapunov_exponent[0], abs=6e-4)
     assert abs(steady.mean_distance - run.mean_distance) < 2e-4
-    torus = Model(Chain(3), Friction("linearized", 0.05), 0.1, "one_sided")
-    steady = measure(torus, begin(torus, PAPER_STATES["plus"], "moving"), 20_000.0, 3000.0, 1e-6, MOTION)
+    torus = model(a=0.05)
+    steady = measure(torus, torus.begin(PAPER_STATES["plus"]), 20_000.0, 3000.0, MOTION)
     assert steady.kind == QUASIPERIODIC
+
+
+@pytest.mark.parametrize(
+    "found_model",
+    [
+        Model(Chain(3), law_of("stribeck", 0.1)),
+        Model(Chain(3), FormulaLaw(0.1, "s + (1 - s)/(1 + a*u/(1 - s))**2", s=0.5)),
+        Model(Chain(3, coupling=(1.0, 1.3), threshold=(1.0, 0.9, 1.1)), law_of("nonlinear", 0.1)),
+        Model(Chain(4, ends="ring", pulling=1.5), law_of("exponential", 0.1)),
+    ],
+    ids=["stribeck", "formula", "asymmetric", "ring"],
+)
+def test_attractors_of_any_model_are_what_runs_end_in(found_model):
+    """Whole runs from drawn states have the mean distance of the attractor that each is said to reach."""
+    settings = dataclasses.replace(SETTINGS, samples=12)
+    given = InitialState("given", (-0.9,) * found_model.blocks, (0.1,) * found_model.blocks)
+    attractors, labels = find_attractors(found_model, settings, starts=[given])
+    assert labels.shape == (13,)
+    assert len(attractors) >= 1
+    assert (labels >= 0).sum() >= 10
+    if not found_model.chain.is_mirror_symmetric:
+        assert {(item.symmetry, item.partner) for item in attractors} == {
+            (ASYMMETRIC, k) for k in range(len(attractors))
+        }
+    options = Settings(transient=8000.0, window=3000.0, batches=6, events="none", lyapunov_exponents=0)
+    drawn = sampled_states(found_model.blocks, 12, settings.position, settings.velocity, settings.seed)
+    for state, index in list(zip(drawn, labels, strict=False))[:5]:
+        if index >= 0:
+            run = simulate(found_model, state, options)
+            expected = attractors[index].motion
+            error = 5.0 * (run.mean_distance_error + expected.mean_distance_error)
+            assert run.mean_distance == pytest.approx(expected.mean_distance, abs=1e-3 + error)
+
+
+def test_synchrony_of_a_long_period_is_synchrony():
+    """Strong coupling: the outer blocks move as one, and the middle block repeats after many of their periods only."""
+    strong = Model(Chain(3, coupling=2.0), FormulaLaw(0.03, "1/(1 + a*u)**2"))
+    attractors, _ = find_attractors(strong, dataclasses.replace(SEARCH, samples=10))
+    as_one = [item for item in attractors if item.symmetry == SYNCHRONIZED]
+    assert len(as_one) == 1
+    assert as_one[0].motion.section_period == 0
+    assert as_one[0].motion.kind == KIND_SYNCHRONIZED
+
+
+def test_a_bound_changes_no_distance_within_it():
+    """And whether a set is near another is what its distance says, at the limit and either side of it."""
+    generator = np.random.default_rng(8)
+    for size in (9, 20, 21, 200):
+        first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))
+        least, far = least_distance(first, second), distance(first, second)
+        assert least_distance(first, second, least) == least
+        assert least_distance(first, second, 0.999 * least) == np.inf
+        for limit in (0.5 * far, 0.9999 * far, far, 1.0001 * far, 2.0 * far):
+            assert is_near(first, second, limit) == (far <= limit)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: SearchSettings(samples=-1), "samples: -1"),
+        (lambda: SearchSettings(seed=1.5), "seed: 1.5"),
+        (lambda: SearchSettings(position=(0.0,)), "position: (0.0,)"),
+        (lambda: SearchSettings(position=[0.0, "1"]), "position: [0.0, '1']"),
+        (lambda: SearchSettings(velocity=(-0.1, 0.2)), "velocity: (-0.1, 0.2)"),
+        (lambda: SearchSettings(transient=0.0), "transient: 0.0"),
+        (lambda: SearchSettings(time_limit=float("nan")), "time_limit: nan"),
+        (lambda: SearchSettings(resolution=1.0), "resolution: 1.0"),
+        (lambda: SearchSettings(pushes=True), "pushes: True"),
+        (lambda: MotionSettings(zero_exponent=-1e-3), "zero_exponent: -0.001"),
+        (lambda: MotionSettings(period_tolerance=0.0), "period_tolerance: 0.0"),
+        (lambda: MotionSettings(longest_period=0), "longest_period: 0"),
+        (lambda: MotionSettings(synchronization_threshold=0.0), "synchronization_threshold: 0.0"),
+        (lambda: BasinSettings(pixels=0), "pixels: 0"),
+        (lambda: BasinSettings(pixels=2, tiles=3), "tiles: 3"),
+        (lambda: BasinSettings(first_position=(1.0, 0.0)), "first_position: (1.0, 0.0)"),
+        (lambda: BasinSettings(pairs=-1), "pairs: -1"),
+    ],
+)
+def test_settings_out_of_range_are_refused_in_one_line(make, words):
+    with pytest.raises(ValueError, match="is not allowed") as caught:
+        make()
+    assert str(caught.value).startswith(words)
+    assert "\n" not in str(caught.value)

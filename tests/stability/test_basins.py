@@ -1,50 +1,33 @@
 """Basins: the same labels with any threads and tiles; uncertainty exponents of known boundaries."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.stability.settings import MOTION, BasinSettings
 from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 from burridge_knopoff.summaries import attractors, basins
-from tests.sections import MOTION
 from tests.stability.test_attractors import SETTINGS
 
-CONFIG = {
-    "v": 0.1,
-    "contact": "one_sided",
-    "start": "moving",
-    "synchronization_threshold": 1e-6,
-    "motion": MOTION,
-    "attractors": {**SETTINGS, "samples": 25, "position": [-1.5, 1.5], "velocity": [0.0, 0.2]},
-    "initial": {
-        "minus": {"position": [-0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]},
-        "plus": {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]},
-    },
-    "basins": {
-        "linearized": [0.08],
-        "nonlinear": [],
-        "pixels": 16,
-        "pairs": 300,
-        "initial": "minus",
-        "first_position": [-1.5, 1.5],
-        "last_position": [-1.5, 1.5],
-        "tiles": 1,
-        "threads": 1,
-    },
-}
+SEARCH = replace(SETTINGS, samples=25)
+PLANE = BasinSettings(pixels=16, pairs=300, tiles=1)
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
+FOUND = (SEARCH, MOTION, "moving")
 
 
 @pytest.fixture(scope="module")
 def known():
-    return attractors.merge([attractors.one_law("linearized", [0.08, 0.1], CONFIG["initial"], CONFIG)])
+    return attractors.merge([attractors.one_law(MODEL, [0.08, 0.1], list(PAPER_STATES.values()), *FOUND)])
 
 
-def whole(known, tiles, threads):
-    config = {**CONFIG, "basins": {**CONFIG["basins"], "tiles": tiles, "threads": threads}}
-    parts = [basins.tile(known, "linearized", 0.08, number, config, threads) for number in range(tiles)]
-    near = basins.pairs(known, "linearized", 0.08, config, threads)
-    return basins.merge([("linearized", 0.08, parts, near)], config)
+def whole(known, tiles, threads, model=MODEL):
+    basin_settings = replace(PLANE, tiles=tiles, threads=threads)
+    parts = [basins.tile(known, model, number, basin_settings, *FOUND) for number in range(tiles)]
+    near = basins.pairs(known, model, basin_settings, *FOUND)
+    return basins.merge([(model, parts, near)], ["linearized", "other"], basin_settings, SEARCH.time_limit, "moving")
 
 
 def test_any_number_of_threads_and_tiles_gives_the_same_labels(known):
@@ -103,8 +86,7 @@ def exponent_of(label, count):
 def test_without_attractors_nothing_is_determined(known):
     none = known.sel(a=[0.08]).assign_coords(a=[0.0])
     none["branch"].values[...] = -1
-    parts = [basins.tile(none, "linearized", 0.0, 0, CONFIG, 1)]
-    merged = basins.merge([("linearized", 0.0, parts, basins.pairs(none, "linearized", 0.0, CONFIG, 1))], CONFIG)
+    merged = whole(none, 1, 1, MODEL.at(0.0))
     assert (merged["branch"] == -1).all()
     assert merged["undetermined_count"].item() == 16 * 16
     assert (merged["pair_count"] == 0).all()

@@ -9,10 +9,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.chains import (
     INTERVAL,
     NOT_SYNCHRONIZED,
@@ -26,18 +25,17 @@ from burridge_knopoff.stability.chains import (
     watch_chain,
     watch_state,
 )
-from burridge_knopoff.stability.flow import Instant, Model, begin, instant, new_solver
 
 V = 0.1
 SAMPLE = Sample(samples=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=2)
 
 
 def model(blocks, a, law="linearized"):
-    return Model(Chain(blocks), Friction(law, a), V)
+    return Model(Chain(blocks), law_of(law, a), V)
 
 
 def fate(chain, state, watch):
-    return watch_state(chain, new_solver(chain), begin(chain, state), watch)
+    return watch_state(Runner(chain), chain.begin(state), watch)
 
 
 def two_block_exponent(a):
@@ -93,7 +91,7 @@ def two_block_exponent_by_scipy(law, a):
 def test_transverse_exponent_of_two_blocks(law, a):
     """The error is that of the phases at which the window begins and ends: it falls with the window's length."""
     chain = model(2, a, law)
-    state = begin(chain, InitialState("state", (-1.0, -0.9), (0.1, 0.1)))
+    state = chain.begin(InitialState("state", (-1.0, -0.9), (0.1, 0.1)))
     exponent, error = transverse_exponent(chain, state, 2000.0, 10_000.0)
     assert exponent == pytest.approx(two_block_exponent_by_scipy(law, a), abs=2e-4)
     assert error < 1e-3
@@ -125,15 +123,9 @@ def test_transverse_exponent_against_two_trajectories(blocks, law):
     Antisymmetric parts only, so that errors of second order, which are symmetric, do not count.
     """
     chain = model(blocks, 0.2, law)
-    solver = new_solver(chain)
-    state = begin(chain, SAMPLE.initial(blocks)[0])
+    runner = Runner(chain)
+    state = chain.begin(SAMPLE.initial(blocks)[0])
     exponent, _ = transverse_exponent(chain, state, 100.0, 200.0)
-
-    def after_ten(state):
-        solver.begin(state.position, state.velocity, state.stuck)
-        solver.end = 10.0
-        assert solver.run() == 0
-        return instant(solver)
 
     state = symmetrized(state)
     direction = np.cos(1.0 + 2.3 * np.arange(2 * blocks))
@@ -143,8 +135,10 @@ def test_transverse_exponent_against_two_trajectories(blocks, law):
         tables = 0.5 * (tables - tables[:, ::-1])
         tables[1, state.stuck] = 0.0
         tables *= 1e-7 / np.linalg.norm(tables)
-        other = after_ten(Instant(state.position + tables[0], state.velocity + tables[1], state.stuck)).vector()
-        state = symmetrized(after_ten(state))
+        other = runner.after(
+            Instant(state.position + tables[0], state.velocity + tables[1], state.stuck), 10.0
+        ).vector()
+        state = symmetrized(runner.after(state, 10.0))
         direction = other - state.vector()
         tables = direction.reshape(2, -1)
         logarithms.append(math.log(np.linalg.norm(0.5 * (tables - tables[:, ::-1])) / 1e-7))
@@ -215,7 +209,7 @@ def test_symmetrized_and_pair_distances():
 
 def test_a_watched_chain_is_its_states_one_by_one():
     watch = Watch(time_limit=1000.0)
-    results = watch_chain(3, ["linearized"], [0.05, 0.2], SAMPLE, watch, V, "one_sided")
+    results = watch_chain([model(3, 0.0)], [0.05, 0.2], SAMPLE, watch)
     assert results["outcome"].shape == (1, 2, SAMPLE.samples)
     assert results["symmetric_exponent"].shape == (1, 2, SAMPLE.symmetric_samples)
     for j, a in enumerate((0.05, 0.2)):
@@ -223,3 +217,46 @@ def test_a_watched_chain_is_its_states_one_by_one():
             assert results["outcome"][0, j, k] == fate(model(3, a), state, watch).outcome
     assert (results["symmetric_exponent"][0, 0] < 0.0).all()
     assert (results["symmetric_exponent"][0, 1] > 0.0).all()
+
+
+def test_a_chain_without_mirror_blocks_is_refused():
+    chain = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.05))
+    state = chain.begin(InitialState("state", (-1.0, -0.9, -1.0), (0.1, 0.1, 0.1)))
+    for call in (
+        lambda: transverse_exponent(chain, state, 10.0, 10.0),
+        lambda: watch_state(Runner(chain), state),
+        lambda: watch_chain([chain], [0.05]),
+    ):
+        with pytest.raises(ValueError, match=r"^chain: .*mirror"):
+            call()
+
+
+def test_a_ring_synchronizes_by_its_transverse_exponent():
+    """Four blocks in a ring with a formula for friction: what the exponent says is what the states do."""
+    law = FormulaLaw(0.02, "1/(1 + a*u)**2")
+    ring = Model(Chain(4, ends="ring"), law)
+    fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial(4)[:4]]
+    for one in fates:
+        assert one.outcome != SYNCHRONIZED or one.transverse_exponent < 0.0
+    start = symmetrized(ring.begin(InitialState("state", (-1.0, -0.9, -0.9, -1.0), (0.1, 0.1, 0.1, 0.1))))
+    exponent, _ = transverse_exponent(ring, start, 500.0, 1000.0)
+    assert math.isfinite(exponent)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Watch(time_limit=100.0), "time_limit: 100.0"),
+        (lambda: Watch(pair_distance=0.0), "pair_distance: 0.0"),
+        (lambda: Sample(samples=0), "samples: 0"),
+        (lambda: Sample(samples=3), "symmetric_samples: 4"),
+        (lambda: Sample(position=(1.0, 1.0)), "position: (1.0, 1.0)"),
+        (lambda: Sample(velocity=(-0.1, 1.0)), "velocity: (-0.1, 1.0)"),
+        (lambda: Sample(start="soon"), "start: 'soon'"),
+    ],
+)
+def test_settings_out_of_range_are_refused_in_one_line(make, words):
+    with pytest.raises(ValueError, match="is not allowed") as caught:
+        make()
+    assert str(caught.value).startswith(words)
+    assert "\n" not in str(caught.value)

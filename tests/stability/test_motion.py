@@ -13,7 +13,7 @@ from burridge_knopoff.stability.motion import (
     section_closed,
     section_period,
 )
-from tests.sections import MOTION
+from burridge_knopoff.stability.settings import MOTION
 
 
 @pytest.mark.parametrize("period", [1, 2, 3, 7, 40])
@@ -70,7 +70,7 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
 )
 def test_kinds(mean_distance, period, exponents, error, kind):
     errors = np.full(len(exponents), error)
-    assert motion_kind(mean_distance, 1e-6, period, np.array(exponents), errors, MOTION) == kind
+    assert motion_kind(mean_distance, period, np.array(exponents), errors, MOTION) == kind
 
 
 def test_sections_that_repeat_after_however_many_points():

@@ -1,22 +1,16 @@
-"""The attractors of one chain at one a: found from initial states, told apart by their returns, each with its radius.
-
-The radius of an attractor is the distance from its returns within which a trajectory is certain to stay: it is less
-than half the way to any other attractor, and trajectories that were pushed off by that much at random have come back.
-"""
+"""The attractors of one model: found from initial states, and told apart by their returns."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.stability.flow import Instant, Model
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.labels import (
     ASYMMETRIC,
-    CLOSE_RETURNS,
-    PATIENT_RETURNS,
     SYMMETRIC,
     SYNCHRONIZED,
     UNDETERMINED,
@@ -27,25 +21,25 @@ from burridge_knopoff.stability.labels import (
     spread,
 )
 from burridge_knopoff.stability.motion import CHAOTIC
+from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
+from burridge_knopoff.stability.sampling import sampled_states
+from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import (
-    SPACINGS,
     Returns,
-    SteadyMotion,
-    distance,
-    instant_of,
+    is_near,
     least_distance,
     lies_on,
     measure,
     visit,
 )
 
-# Longest transient, in those of the config, for a motion that is still settling.
+# Longest transient, in those of the settings, for a motion that is still settling.
 PATIENCE = 16
 
 # Drift, in resolutions, with which a motion that has not settled may still show a set.
 LOOSE = 10.0
 
-# Window, in those of the config, for a motion that is not periodic.
+# Window, in those of the settings, for a motion that is not periodic.
 FILLING = 4
 
 # Mean distance, in resolutions, below which a motion is next to synchrony.
@@ -56,8 +50,6 @@ TRIALS = 2
 
 # Trajectories that are followed without finding anything new before the others are left to what is known.
 FRUITLESS = 3
-
-LARGEST_RADIUS = 0.02
 
 # Transients through which chaos has to last, and states ascribed to it that are followed.
 LASTING = 33
@@ -81,38 +73,60 @@ SMALLEST_RADIUS = 1e-5
 # attract from one side only, and next to nothing of the other.
 TINY_RADIUS = 1e-8
 
-# Pushed trajectories have come back when they are this many times closer than they were pushed.
-RECOVERY = 10.0
 
-# Pushed trajectories that are followed at once: one that does not come back spares the others.
-GROUP = 4
+def find_attractors(
+    model: Model,
+    settings: SearchSettings = SEARCH,
+    motion: MotionSettings = MOTION,
+    *,
+    starts: Sequence[InitialState] = (),
+    start: str = "moving",
+) -> tuple[list[Attractor], np.ndarray]:
+    """Return the attractors of a model, and the index among them that each initial state reaches.
+
+    settings : how they are looked for, and how many initial states are drawn; motion : how kinds of motion are told
+    starts : initial states besides those that are drawn
+    start : moving or tested, see `Model.begin`
+
+    The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
+    nothing that settles. What no state reaches is not found, and a motion on which the first block never stops is not
+    told: attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
+    """
+    search = Search(model, settings, motion)
+    labels = search.labels(search.starts(starts, start))
+    return search.attractors, labels
 
 
 @dataclass
 class Search:
     """Finds the attractors of one model.
 
-    settings : the config's section `attractors`
-    threshold, motion : the config's synchronization_threshold and section `motion`
+    motion : how kinds of motion are told
     attractors : those found so far; vain : trajectories followed without finding one
     """
 
     model: Model
-    settings: Mapping[str, Any]
-    threshold: float
-    motion: Mapping[str, Any]
+    settings: SearchSettings = SEARCH
+    motion: MotionSettings = MOTION
     attractors: list[Attractor] = field(default_factory=list)
     vain: int = 0
 
     @property
     def resolution(self) -> float:
         """Distance below which attractors are not told apart."""
-        return self.settings["resolution"] * self.model.scale
+        return self.settings.resolution * self.model.scale
 
     @property
     def tolerance(self) -> float:
         """Distance within which the returns of a closed orbit repeat."""
-        return self.motion["period_tolerance"] * min(1.0, self.model.scale)
+        return self.motion.period_tolerance * min(1.0, self.model.scale)
+
+    def starts(self, given: Sequence[InitialState], start: str) -> list[Instant]:
+        """Return where the drawn states, and after them those that are given, begin."""
+        settings = self.settings
+        box = settings.position, settings.velocity
+        drawn = sampled_states(self.model.blocks, settings.samples, *box, settings.seed)
+        return [self.model.begin(state, start) for state in (*drawn, *given)]
 
     def labels(self, starts: Sequence[Instant], check: bool = True) -> np.ndarray:
         """Return the index of the attractor that each state reaches, adding attractors that were not known yet.
@@ -125,7 +139,7 @@ class Search:
         undecided = list(range(len(starts)))
         while True:
             found, _ = label(
-                self.model, self.attractors, [starts[k] for k in undecided], QUICK * self.settings["transient"]
+                self.model, self.attractors, [starts[k] for k in undecided], QUICK * self.settings.transient
             )
             undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
             if not self._discover([starts[k] for k in undecided]):
@@ -155,8 +169,8 @@ class Search:
         If one settles elsewhere, something that was not known lies within the radius: it is known then, and the radius
         of the attractor that the state was ascribed to is halved.
         """
-        narrow = [replace(item, radius=self._recovered(item.motion, item.radius)) for item in self.attractors]
-        closer, _ = label(self.model, narrow, starts, self.settings["time_limit"])
+        narrow = [replace(item, radius=recovered(item.motion, item.radius)) for item in self.attractors]
+        closer, _ = label(self.model, narrow, starts, self.settings.time_limit)
         doubtful = np.flatnonzero((closer != labels) & (labels != UNDETERMINED)).tolist()
         verified = True
         for k in doubtful[:FRUITLESS]:
@@ -166,11 +180,6 @@ class Search:
                 for index in {int(labels[k]), attractor.partner}:
                     self.attractors[index] = replace(self.attractors[index], radius=attractor.radius / 2)
         return verified
-
-    @staticmethod
-    def _recovered(motion: SteadyMotion, radius: float) -> float:
-        """Return how close to an attractor a trajectory has to come after a push by that radius."""
-        return max(SPACINGS * motion.spacing, radius / RECOVERY)
 
     def _discover(self, starts: Sequence[Instant]) -> bool:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
@@ -186,12 +195,12 @@ class Search:
 
     def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:
         """Return the index of the attractor, among those known, that each state reaches; −1 for none of them."""
-        labels, _ = label(self.model, self.attractors, starts, self.settings["time_limit"])
+        labels, _ = label(self.model, self.attractors, starts, self.settings.time_limit)
         return labels
 
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
-        generator = np.random.default_rng(self.settings["seed"])
+        generator = np.random.default_rng(self.settings.seed)
         resolution = self.resolution
         for _ in range(TRIALS):
             found = self._settle(start)
@@ -203,7 +212,7 @@ class Search:
                 return index
             # Closed orbits on a slow set are part of it.
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow and distance(found.returns, attractor.motion.returns) <= resolution:
+                if attractor.slow and is_near(found.returns, attractor.motion.returns, resolution):
                     return index
             index = len(self.attractors)
             if self._add(found):
@@ -216,17 +225,20 @@ class Search:
         """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
         settings = self.settings
         closed = found.closed(self.tolerance)
-        window = settings["window"] * (1 if closed else FILLING)
-        motion = measure(self.model, found.instant(), settings["transient"], window, self.threshold, self.motion)
+        window = settings.window * (1 if closed else FILLING)
+        motion = measure(self.model, found.instant(), settings.transient, window, self.motion)
         if motion is None:
             return False
         if motion.kind == CHAOTIC and not closed:
             # Chaos may be a transient of any length: one trajectory has to last.
-            lasting = visit(self.model, found.instant(), LASTING * settings["transient"], settings["window"])
+            lasting = visit(self.model, found.instant(), LASTING * settings.transient, settings.window)
             if lasting is None or lasting.closed(self.tolerance):
                 return lasting is not None and self._add(lasting)
         index = len(self.attractors)
-        if motion.mean_distance < self.threshold:
+        mirror = self.model.chain.is_mirror_symmetric
+        if not mirror:
+            new = [Attractor(motion, ASYMMETRIC, index)]
+        elif motion.mean_distance < self.motion.synchronization_threshold:
             new = [Attractor(motion, SYNCHRONIZED, index)]
         elif self._symmetric(found):
             new = [Attractor(motion.symmetrized(), SYMMETRIC, index)]
@@ -236,19 +248,22 @@ class Search:
         if self._accept(new, SMALLEST_RADIUS):
             return True
         # Synchrony that does not attract is unstable. Other motion may lie on one set that does as a whole.
-        if motion.mean_distance < SYNCHRONY * self.resolution:
+        if mirror and motion.mean_distance < SYNCHRONY * self.resolution:
             return False
-        slow = Attractor(spread(self.model, motion, settings), SYMMETRIC, index, slow=True)
+        symmetry = SYMMETRIC if mirror else ASYMMETRIC
+        slow = Attractor(spread(self.model, motion, settings), symmetry, index, slow=True)
         return self._accept([slow], SMALLEST_RADIUS) or (closed and self._accept(new, TINY_RADIUS))
 
     def _accept(self, new: Sequence[Attractor], least: float) -> bool:
         """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
         before = list(self.attractors)
         self.attractors = [*before, *new]
-        self._bound_radii()
+        self.attractors = bounded(self.model, self.attractors, self.tolerance)
         # A slow set in which an attractor is known already is none of its own.
-        overlapping = new[0].slow and self._midst(len(before))
-        radius = 0.0 if overlapping else self._captured(len(before), least)
+        overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance)
+        radius = 0.0
+        if not overlapping:
+            radius = captured(self.model, self.attractors, len(before), least, self.tolerance, self.settings)
         if radius == 0.0:
             self.attractors = before
             return False
@@ -259,10 +274,10 @@ class Search:
     def _settle(self, start: Instant) -> Returns | None:
         """Return where a state returns to when it has settled, or None if it does not settle."""
         found = None
-        transient, window = self.settings["transient"], self.settings["window"]
+        transient, window = self.settings.transient, self.settings.window
         tolerance, resolution = self.tolerance, self.resolution
         longest = PATIENCE * window
-        while transient <= PATIENCE * self.settings["transient"]:
+        while transient <= PATIENCE * self.settings.transient:
             found = visit(self.model, start, transient, window)
             if found is None:
                 return None
@@ -270,7 +285,8 @@ class Search:
             closed, settled = found.closed(tolerance), found.settled(tolerance, resolution)
             # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
             # like a set of its own; and a chaotic transient may still end.
-            filled = window >= FILLING * self.settings["window"] and self._symmetric(found)
+            whole = self._symmetric(found) or not self.model.chain.is_mirror_symmetric
+            filled = window >= FILLING * self.settings.window and whole
             if settled and (closed or filled or window == longest):
                 return found
             if not settled:
@@ -282,59 +298,6 @@ class Search:
 
     def _symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image."""
-        return least_distance(found.returns, found.mirror_returns) < self.resolution
-
-    def _bound_radii(self) -> None:
-        """Bound all radii by the distances between the attractors.
-
-        Chaos with a closed orbit in its midst keeps its radius but asks for patience: who comes to the orbit is told
-        first.
-        """
-        for index, attractor in enumerate(self.attractors):
-            radius = min(attractor.radius, LARGEST_RADIUS * self.model.scale)
-            midst = self._midst(index)
-            for k, other in enumerate(self.attractors):
-                if k != index and k not in midst and index not in self._midst(k):
-                    radius = min(radius, 0.4 * least_distance(attractor.motion.returns, other.motion.returns))
-            returns = PATIENT_RETURNS if midst else attractor.close_returns
-            self.attractors[index] = replace(attractor, radius=radius, close_returns=returns)
-
-    def _midst(self, index: int) -> list[int]:
-        """Return the closed orbits that lie in the midst of chaos, or of a slow set."""
-        motion = self.attractors[index].motion
-        if motion.kind != CHAOTIC and not self.attractors[index].slow:
-            return []
-        return [
-            k
-            for k, other in enumerate(self.attractors)
-            if k != index
-            and other.motion.spacing <= self.tolerance
-            and least_distance(motion.returns, other.motion.returns) <= SPACINGS * motion.spacing
-        ]
-
-    def _captured(self, index: int, least: float) -> float:
-        """Return a radius from which all of a number of random pushes come back, at most the present one.
-
-        0 if there is none of `least` or more.
-        """
-        motion = self.attractors[index].motion
-        radius = self.attractors[index].radius
-        midst = self._midst(index)
-        generator = np.random.default_rng(self.settings["seed"])
-        while radius >= least * self.model.scale:
-            close = self._recovered(motion, radius)
-            narrow = [replace(item, radius=min(item.radius, close)) for item in self.attractors]
-            if midst:
-                narrow[index] = replace(narrow[index], close_returns=CLOSE_RETURNS)
-            left = self.settings["pushes"]
-            while left > 0:
-                chosen = generator.integers(len(motion.returns), size=min(GROUP, left))
-                starts = [pushed(instant_of(motion.returns[k]), radius, generator) for k in chosen]
-                reached, _ = label(self.model, narrow, starts, self.settings["time_limit"])
-                if not np.isin(reached, [index, *midst]).all():
-                    break
-                left -= len(chosen)
-            else:
-                return radius
-            radius /= 2
-        return 0.0
+        if not len(found.mirror_returns):
+            return False
+        return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.simulation import starts_stuck
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractors import FILLING
-from burridge_knopoff.stability.flow import Instant, Model
-from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, new_proximity, spread
+from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, label_together, spread
 from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
+from burridge_knopoff.stability.settings import SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import measure
 
 CLOSED = (SYNCHRONIZED, PERIODIC)
@@ -28,7 +25,7 @@ SAME_MEAN = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class KnownAttractors:
-    """The attractors of one law and a, with the branch and the side of each."""
+    """The attractors of one model, with the branch and the side of each, shape (attractors,)."""
 
     model: Model
     attractors: list[Attractor]
@@ -36,24 +33,27 @@ class KnownAttractors:
     side: np.ndarray
 
 
-def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mapping[str, Any]) -> KnownAttractors:
-    """Return the attractors of one law and a from their summary; their returns are computed again from its states.
+def known_attractors(
+    summary: xarray.Dataset, model: Model, settings: SearchSettings, motion: MotionSettings
+) -> KnownAttractors:
+    """Return the attractors of a model from their summary; their returns are computed again from its states.
 
-    config : the config's v, contact, synchronization_threshold and the sections attractors and motion
+    summary : `attractors.nc`, which has the law of the model, by its name, and its a
+    settings, motion : those that the summary was made with
+
+    Raises ValueError if an attractor of the summary does not last.
     """
+    law, a = model.law.name, model.a
     found = summary.sel(law=law, a=a)
-    model = Model(Chain(found.sizes["block"]), Friction(law, a), config["v"], config["contact"])
-    settings = config["attractors"]
     slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
-    threshold, motion = config["synchronization_threshold"], config["motion"]
     attractors = []
     for slot in slots:
         one = found.isel(attractor=slot)
         velocity = one["velocity"].values
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         closed = one["kind"].item() in CLOSED
-        window = settings["window"] * (1 if closed else FILLING)
-        steady = measure(model, start, settings["transient"], window, threshold, motion)
+        window = settings.window * (1 if closed else FILLING)
+        steady = measure(model, start, settings.transient, window, motion)
         if steady is None:
             raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
         error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + SAME_MEAN * model.scale
@@ -74,28 +74,37 @@ def known_attractors(summary: xarray.Dataset, law: str, a: float, config: Mappin
 
 
 def label_states(
-    known: KnownAttractors, position: np.ndarray, velocity: np.ndarray, start: str, time_limit: float, threads: int = 1
+    model: Model,
+    attractors: Sequence[Attractor],
+    position: np.ndarray,
+    velocity: np.ndarray,
+    *,
+    start: str = "moving",
+    time_limit: float = SEARCH.time_limit,
+    threads: int = 1,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return which attractor each initial state reaches, its index or −1, and the time τ at which that was certain.
+    """Return which attractor each initial state reaches, and the time τ at which that was certain, both of shape (n,).
 
-    position, velocity : U(0) and U'(0), shape (n, blocks); start : convention of start
+    attractors : as `find_attractors` returns them
+    position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
+    time_limit : by which a state has to reach one of them
     threads : trajectories are shared out among so many; each is followed alone, so that no label depends on them
+
+    A label is the index of an attractor, or −1 where none is reached: everywhere, if there is none.
     """
-    model = known.model
-    stuck = starts_stuck(model.chain, position, start)
+    stuck = model.starts_stuck(position, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
     times = np.zeros(len(position))
-    tables = (
-        np.ascontiguousarray(position - model.sliding_offset),
-        np.where(stuck, 0.0, velocity),
-        stuck.astype(np.intc),
-        labels,
-        times,
-    )
+    if not attractors:
+        return labels, times
+    offset = position - model.sliding_offset
     edges = np.linspace(0, len(position), threads + 1).astype(int)
 
     def work(first: int, last: int) -> None:
-        new_proximity(model, known.attractors, time_limit).label(*(table[first:last] for table in tables))
+        part = slice(first, last)
+        labels[part], times[part] = label_together(
+            model, attractors, offset[part], velocity[part], stuck[part], time_limit
+        )
 
     with ThreadPoolExecutor(threads) as pool:
         for task in [pool.submit(work, first, last) for first, last in pairwise(edges)]:

@@ -21,11 +21,11 @@ import numpy as np
 from scipy.optimize import root_scalar
 from scipy.stats import linregress
 
-from burridge_knopoff.kernel.observe import Observer
-from burridge_knopoff.simulation import SERIES_ORDER
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Instant, instant, new_solver
-from burridge_knopoff.stability.orbit import ALL, HALTED, SYMMETRIC, Orbit, OrbitError, after, find_orbit, run, solve
+from burridge_knopoff.stability.orbit import ALL, SYMMETRIC, Orbit, OrbitError, after, find_orbit, solve
 from burridge_knopoff.stability.transition import RELATIVE, apart
 
 # Rounding of positions, which g carries divided by the asymmetry.
@@ -59,7 +59,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
             raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {critical!r}")
         a = float(a)
         state, period = constrained(a)
-        end = after(new_solver(family.with_a(a)), state, period)
+        end = after(Runner(family.model_at(a)), state, period)
         return float(end.position[0] - end.position[2]) / asymmetry - 1.0
 
     noise = ROUNDING / abs(asymmetry)
@@ -69,7 +69,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {critical!r}")
     a = float(found.root)
     state, period = constrained(a)
-    return find_orbit(family.with_a(a), state, period, ALL)
+    return find_orbit(family.model_at(a), state, period, ALL)
 
 
 def leading_modulus(orbit: Orbit) -> float:
@@ -81,10 +81,10 @@ def leading_modulus(orbit: Orbit) -> float:
 
 def mean_distance(orbit: Orbit) -> float:
     """Return ⟨J⟩ over one period of an orbit."""
-    observer = Observer(orbit.model.chain.blocks, SERIES_ORDER, [0.0, orbit.period], [], [])
-    solver = new_solver(orbit.model, observer=observer)
-    solver.begin(orbit.reference.position, orbit.reference.velocity, orbit.reference.stuck)
-    run(solver)
+    observer = new_observer(orbit.model, [0.0, orbit.period])
+    runner = Runner(orbit.model, observer=observer)
+    runner.begin(orbit.reference)
+    runner.run()
     return float(observer.results()["batch_integral"][0]) / orbit.period
 
 
@@ -125,16 +125,12 @@ def sweep(family: Family, values: np.ndarray) -> np.ndarray:
 
 def _settled(family: Family, a: float, state: Instant) -> Instant:
     """Return the first state after a time at a in which blocks 1 and 3 have both just come to stick."""
-    solver = new_solver(family.with_a(a))
-    solver.end = SWEEP_TIME
-    solver.begin(state.position, state.velocity, state.stuck)
-    run(solver)
-    solver.end = 2.0 * SWEEP_TIME
+    runner = Runner(family.model_at(a))
+    after(runner, state, SWEEP_TIME)
     for block in (0, 2, 0, 2):
-        solver.halting_block = block
-        if run(solver) != HALTED:
+        if runner.run(2.0 * SWEEP_TIME, halting_block=block) != Status.HALTED:
             break
-        now = instant(solver)
+        now = runner.instant()
         if now.stuck[0] and now.stuck[2]:
             return now
     raise OrbitError(f"a = {a!r}: blocks 1 and 3 do not stick at once any more")

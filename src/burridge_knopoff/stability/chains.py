@@ -2,6 +2,7 @@
 
 Blocks i and j = N + 1 − i are mirror blocks. The distance of a pair is J_i = sqrt((U_i' − U_j')² + (U_i − U_j)²), J of
 the paper for the end blocks; the mirror distance is the largest of them. For odd N the middle block belongs to no pair.
+All of this is for chains that are their own mirror images; others are refused.
 """
 
 from __future__ import annotations
@@ -13,14 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.settings import Settings
-from burridge_knopoff.simulation import run
-from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, begin, instant, new_solver
-from burridge_knopoff.stability.sampling import sample_states
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import STARTS, Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.checks import LONGEST, check_count, check_number, interval
+from burridge_knopoff.stability.sampling import sampled_states
+from burridge_knopoff.stability.settings import POSITIONS, VELOCITIES
 
 OUTCOMES = {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}
 UNDETERMINED, NOT_SYNCHRONIZED, SYNCHRONIZED = OUTCOMES
@@ -47,14 +49,21 @@ BATCHES = 5
 class Watch:
     """How long a state is watched and when it counts as synchronized.
 
-    time_limit : a state that has not synchronized by then has not; multiple of INTERVAL
+    time_limit : a state that has not synchronized by then has not; looked at each INTERVAL
     synchronization_distance : mirror distance at which the motion has synchronized, if its perturbations shrink
     pair_distance : a pair of a motion that is not synchronized counts as synchronized below this
+
+    Raises ValueError, one line, for anything out of range.
     """
 
     time_limit: float = 10_000.0
     synchronization_distance: float = 1e-12
     pair_distance: float = 1e-6
+
+    def __post_init__(self) -> None:
+        check_number("time_limit", self.time_limit, 200.0, LONGEST)
+        check_number("synchronization_distance", self.synchronization_distance, 1e-14, 1e-3)
+        check_number("pair_distance", self.pair_distance, 0.0, 1.0, above=True)
 
     @property
     def quarter(self) -> float:
@@ -99,17 +108,21 @@ def symmetrized(state: Instant) -> Instant:
     return Instant(0.5 * (state.position + state.position[::-1]), np.where(stuck, 0.0, velocity), stuck)
 
 
-def watch_state(model: Model, solver: EventDriven, start: Instant, watch: Watch) -> Fate:
+def watch_state(runner: Runner, start: Instant, watch: Watch = Watch()) -> Fate:
     """Watch a state until it has synchronized or the time limit is over.
 
-    solver : a solver of the model without perturbations, for any number of states
+    runner : `Runner(model)`, for any number of states
+
+    Raises ValueError if the chain is not its own mirror image.
     """
-    solver.begin(start.position, start.velocity, start.stuck)
+    model = runner.model
+    _check_mirror(model)
+    runner.begin(start)
     history: list[np.ndarray] = []
     for check in range(1, round(watch.time_limit / INTERVAL) + 1):
-        if not _run_until(solver, check * INTERVAL):
+        if runner.run(check * INTERVAL) != Status.COMPLETED:
             return Fate(UNDETERMINED)
-        state = instant(solver)
+        state = runner.instant()
         distances = pair_distances(state)
         history.append(distances)
         nearest = float(distances.max())
@@ -122,7 +135,7 @@ def watch_state(model: Model, solver: EventDriven, start: Instant, watch: Watch)
     undetermined = last.max() < FALLING * before.max()
     exponent = math.nan
     if last.max() < NEAR:
-        exponent, error = transverse_exponent(model, instant(solver), ALIGNMENT, watch.quarter)
+        exponent, error = transverse_exponent(model, runner.instant(), ALIGNMENT, watch.quarter)
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(
         UNDETERMINED if undetermined else NOT_SYNCHRONIZED,
@@ -133,19 +146,22 @@ def watch_state(model: Model, solver: EventDriven, start: Instant, watch: Watch)
     )
 
 
-def transverse_exponent(model: Model, state: Instant, alignment: float, window: float) -> tuple[float, float]:
+def transverse_exponent(
+    model: Model, state: Instant, alignment: float = ALIGNMENT, window: float = Watch().quarter
+) -> tuple[float, float]:
     """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
 
     The state is made symmetric, and an antisymmetric perturbation is carried along exactly (see `kernel.tangent`). The
     exponent is its mean rate of growth over the window, which begins after a time of alignment; the standard error is
     that of BATCHES equal batches. Negative: mirror blocks that are near each other synchronize. NaN if the run fails,
-    −∞ if the perturbation vanishes.
+    −∞ if the perturbation vanishes. Raises ValueError if the chain is not its own mirror image.
     """
-    blocks = model.chain.blocks
+    _check_mirror(model)
+    blocks = model.blocks
     index = np.arange(2 * blocks)
     # A direction of no special symmetry but this one.
     perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
-    solver = new_solver(model, perturbations=perturbation)
+    runner = Runner(model, perturbations=perturbation)
     steps = max(1, round(window / BATCHES / RENEWAL))
     growth = np.zeros(BATCHES)
     state = symmetrized(state)
@@ -155,13 +171,13 @@ def transverse_exponent(model: Model, state: Instant, alignment: float, window: 
         if length == 0.0:
             return -math.inf, math.nan
         perturbation /= length
-        solver.tangent.load(perturbation)
-        solver.begin(state.position, state.velocity, state.stuck)
-        if not _run_until(solver, RENEWAL):
+        runner.carry(perturbation)
+        after = runner.after(state, RENEWAL)
+        if after is None:
             return math.nan, math.nan
         # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
-        state = symmetrized(instant(solver))
-        perturbation = _antisymmetric(solver.tangent.matrix())
+        state = symmetrized(after)
+        perturbation = _antisymmetric(runner.perturbations)
         if step >= 0:
             growth[step // steps] += 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
     rate = growth / (steps * RENEWAL)
@@ -174,52 +190,61 @@ class Sample:
 
     position, velocity : (low, high) of every U_i(0) and every U_i'(0)
     symmetric_samples : from how many of them, made symmetric, symmetric motion begins
+
+    Raises ValueError, one line, for anything out of range.
     """
 
-    samples: int
-    seed: int
-    position: Sequence[float]
-    velocity: Sequence[float]
-    symmetric_samples: int
+    samples: int = 40
+    seed: int = 1
+    position: Sequence[float] = POSITIONS
+    velocity: Sequence[float] = VELOCITIES
+    symmetric_samples: int = 4
     start: str = "moving"
 
+    def __post_init__(self) -> None:
+        check_count("samples", self.samples, 1, 100_000)
+        check_count("seed", self.seed, 0, 2**32 - 1)
+        object.__setattr__(self, "position", interval("position", self.position))
+        object.__setattr__(self, "velocity", interval("velocity", self.velocity, least=0.0))
+        check_count("symmetric_samples", self.symmetric_samples, 0, self.samples)
+        if self.start not in STARTS:
+            raise ValueError(f"start: {self.start!r} is not allowed: {' | '.join(STARTS)}")
+
     def initial(self, blocks: int) -> list[InitialState]:
-        """Return the initial states of a chain."""
-        drawn = sample_states(blocks, self.samples, self.position, self.velocity, self.seed)
-        return [
-            InitialState(f"state{number}", tuple(position), tuple(velocity))
-            for number, (position, velocity) in enumerate(zip(*drawn, strict=True), 1)
-        ]
+        """Return the initial states of a chain of that many blocks."""
+        return sampled_states(blocks, self.samples, self.position, self.velocity, self.seed)
 
 
 def watch_chain(
-    blocks: int, laws: Sequence[str], grid: Sequence[float], sample: Sample, watch: Watch, v: float, contact: str
+    models: Sequence[Model], grid: Sequence[float], sample: Sample = Sample(), watch: Watch = Watch()
 ) -> dict[str, np.ndarray]:
     """Watch all sampled states of a chain under each law at each a of a grid.
 
-    Returns arrays of shape (laws, grid, states): the fields of `Fate`; of shape (laws, grid, symmetric samples):
+    models : one for each law, at any a, all of the same number of blocks
+
+    Returns arrays of shape (models, grid, states): the fields of `Fate`; of shape (models, grid, symmetric samples):
     `symmetric_exponent` and its error, the largest transverse exponent of symmetric motion after a quarter of the time
-    limit, over another quarter; and of shape (laws, grid): `lyapunov_exponent`, the largest one of the first state in
-    the second half of the time limit, and its error.
+    limit, over another quarter; and of shape (models, grid): `lyapunov_exponent`, the largest one of the first state in
+    the second half of the time limit, and its error. Raises ValueError if the chain is not its own mirror image.
     """
-    initial = sample.initial(blocks)
-    shape = (len(laws), len(grid))
+    initial = sample.initial(models[0].blocks)
+    shape = (len(models), len(grid))
     results: dict[str, np.ndarray] = {
         **{name: np.full((*shape, len(initial)), np.nan) for name in Fate.__dataclass_fields__},
         **{f"symmetric_{name}": np.full((*shape, sample.symmetric_samples), np.nan) for name in ("exponent", "error")},
         **{f"lyapunov_{name}": np.full(shape, np.nan) for name in ("exponent", "error")},
     }
-    for i, law in enumerate(laws):
+    for i, of_law in enumerate(models):
         for j, a in enumerate(grid):
-            model = Model(Chain(blocks), Friction(law, a), v, contact)
-            solver = new_solver(model)
+            model = of_law.at(a)
+            runner = Runner(model)
             for k, state in enumerate(initial):
-                fate = watch_state(model, solver, begin(model, state, sample.start), watch)
+                fate = watch_state(runner, model.begin(state, sample.start), watch)
                 for name in Fate.__dataclass_fields__:
                     results[name][i, j, k] = getattr(fate, name)
             for k, state in enumerate(initial[: sample.symmetric_samples]):
                 results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
-                    model, begin(model, state, sample.start), watch.quarter, watch.quarter
+                    model, model.begin(state, sample.start), watch.quarter, watch.quarter
                 )
             results["lyapunov_exponent"][i, j], results["lyapunov_error"][i, j] = _lyapunov_exponent(
                 model, initial[0], sample.start, watch
@@ -231,17 +256,14 @@ def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: W
     half = 0.5 * watch.time_limit
     options: dict[str, Any] = {"transient": half, "window": half, "batches": BATCHES, "events": "none"}
     kept: dict[str, Any] = {"sampling": half, "trajectory": 0.0}
-    settings = Settings(v=model.v, contact=model.contact, start=start, lyapunov_exponents=1, **options, **kept)
-    trajectory = run(model.chain, model.friction, initial, settings)
+    settings = Settings(start=start, lyapunov_exponents=1, **options, **kept)
+    trajectory = run(model, initial, settings)
     return float(trajectory.lyapunov_exponent[0]), float(trajectory.lyapunov_error[0])
 
 
-def _run_until(solver: EventDriven, end: float) -> bool:
-    """Run on to a time; tell whether it was reached."""
-    solver.end = end
-    while (status := solver.run()) == RUNNING:
-        pass
-    return bool(status == COMPLETED)
+def _check_mirror(model: Model) -> None:
+    if not model.chain.is_mirror_symmetric:
+        raise ValueError("chain: not allowed here: only a chain that is its own mirror image has mirror blocks")
 
 
 def _antisymmetric(perturbation: np.ndarray) -> np.ndarray:

@@ -6,16 +6,17 @@ Chaos 33 (2023) 073151, whose continuation by seeding from the attractors of the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.flow import Instant, Model
 from burridge_knopoff.stability.labels import SYNCHRONIZED, UNDETERMINED, Attractor, pushed
+from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 
 #: ⟨J⟩ and which blocks stick, on a branch at one a; and {branch: {position of a in the grid: that}}.
 BranchPoint = tuple[float, tuple[bool, ...]]
@@ -33,8 +34,7 @@ class Continuation:
     upward, downward : for each a and attractor the index of the attractor reached at the next larger or smaller a, −1
         where it is undetermined or there is no next a
     branch, side : for each a and attractor the number of its branch and its side of it; see `branches`
-    samples : for each a the index reached by each sampled state
-    time_limit : time by which those had to be reached
+    samples : for each a the index reached by each drawn state, and after them by those that were given
     """
 
     attractors: list[list[Attractor]]
@@ -43,24 +43,25 @@ class Continuation:
     branch: list[np.ndarray]
     side: list[np.ndarray]
     samples: list[np.ndarray]
-    time_limit: float
 
 
 def continue_attractors(
     models: Sequence[Model],
-    samples: Callable[[Model], Sequence[Instant]],
-    settings: Mapping[str, Any],
-    threshold: float,
-    motion: Mapping[str, Any],
+    settings: SearchSettings = SEARCH,
+    motion: MotionSettings = MOTION,
+    *,
+    starts: Sequence[InitialState] = (),
+    start: str = "moving",
 ) -> Continuation:
-    """Find the attractors of all models, of ascending a, from sampled states and from each other, and match them.
+    """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
-    samples : initial states of a model
-    settings : the config's section `attractors`; threshold, motion : see `attractors.Search`
+    settings, motion, starts, start : see `find_attractors`
+
+    Raises ValueError if an initial state does not fit the models.
     """
-    generator = np.random.default_rng(settings["seed"])
-    searches = [Search(model, settings, threshold, motion) for model in models]
-    starts = [samples(model) for model in models]
+    generator = np.random.default_rng(settings.seed)
+    searches = [Search(model, settings, motion) for model in models]
+    begun = [search.starts(starts, start) for search in searches]
 
     def seeds(search: Search) -> list[Instant]:
         size = PUSH * search.resolution
@@ -69,7 +70,7 @@ def continue_attractors(
     labels = []
     for k, search in enumerate(searches):
         before = seeds(searches[k - 1]) if k else []
-        labels.append((search.labels([*before, *starts[k]])[len(before) :], list(search.attractors)))
+        labels.append((search.labels([*before, *begun[k]])[len(before) :], list(search.attractors)))
     for k in range(len(searches) - 2, -1, -1):
         searches[k].labels(seeds(searches[k + 1]), check=False)
     for k in range(1, len(searches)):
@@ -88,9 +89,8 @@ def continue_attractors(
         *branches(attractors, upward, downward),
         [
             found if search.attractors == then else search.known_labels(states)
-            for search, states, (found, then) in zip(searches, starts, labels, strict=True)
+            for search, states, (found, then) in zip(searches, begun, labels, strict=True)
         ],
-        settings["time_limit"],
     )
 
 
@@ -144,12 +144,12 @@ def _orientation(attractor: Attractor) -> int:
     return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1
 
 
-def same_numbers(first: BranchCurves, second: BranchCurves, tolerance: float) -> dict[int, int]:
-    """Return new numbers for the branches of a second law, so that branches that both laws have carry one number.
+def same_numbers(first: BranchCurves, second: BranchCurves, tolerance: float, largest: int) -> dict[int, int]:
+    """Return new numbers for the branches of another law than the first: what both laws have carries one number.
 
     Branches are paired so that as many values of a as possible lie on both of a pair, with ⟨J⟩ equal within the
-    tolerance and the same blocks sticking. The synchronized branch is 0 in both; what has no partner is numbered from
-    the largest number of the first law on.
+    tolerance and the same blocks sticking. The synchronized branch is 0 in both; what has no partner is numbered on
+    from the largest number that is taken.
     """
     numbers = [sorted(n for n in curves if n > 0) for curves in (first, second)]
     common = np.array([[_overlap(first[m], second[n], tolerance) for n in numbers[1]] for m in numbers[0]])
@@ -158,7 +158,7 @@ def same_numbers(first: BranchCurves, second: BranchCurves, tolerance: float) ->
         for row, column in zip(*linear_sum_assignment(common, maximize=True), strict=True):
             if common[row, column] > 0:
                 renamed[numbers[1][column]] = numbers[0][row]
-    following = max([0, *numbers[0]]) + 1
+    following = largest + 1
     for number in numbers[1]:
         if number not in renamed:
             renamed[number] = following

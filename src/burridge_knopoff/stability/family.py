@@ -7,13 +7,14 @@ mirror-symmetric to the bit, and ends on it at moderate a; from there it is cont
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.stability.flow import Model, instant, new_solver
-from burridge_knopoff.stability.orbit import HALTED, LONGEST_PERIOD, Orbit, OrbitError, find_orbit, flow, run
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow
 
 # A run from rest has settled after this time at the friction parameters that orbits are continued from.
 SETTLING = 4000.0
@@ -24,38 +25,60 @@ LARGEST_STEP = 0.05
 LEAST_STEP = 1e-5
 
 
+def has_orbit(chain: Chain) -> bool:
+    """Tell whether orbits are looked for in a chain: one of three blocks that is its own mirror image."""
+    return chain.blocks == 3 and chain.is_mirror_symmetric
+
+
+def synchronized_orbit(model: Model) -> Orbit:
+    """Return the synchronized orbit of a model, whether it is stable or not.
+
+    Raises OrbitError, a ValueError, if its chain is not one of three blocks that is its own mirror image, or if no
+    orbit is found.
+    """
+    return Family(model).at(model.a)
+
+
 class Family:
     """The synchronized orbits of one model for all a, each found from a neighbour.
 
-    Raises OrbitError if the model has another number of blocks than three, or if no orbit is found to begin with.
+    model : at any a
+
+    Raises OrbitError if its chain is not one of three blocks that is its own mirror image, or if no orbit is found to
+    begin with.
     """
 
     def __init__(self, model: Model) -> None:
-        if model.chain.blocks != 3:
-            raise OrbitError(f"blocks: {model.chain.blocks} is not allowed: the orbit is that of 3 blocks")
+        if not has_orbit(model.chain):
+            raise OrbitError(
+                f"chain: {model.blocks} blocks are not allowed: the orbit is that of 3 blocks, symmetric in a mirror"
+            )
         self.model = model
         self.known: dict[float, Orbit] = {}
         for a in SEEDS:
             try:
-                self.known[a] = settle(self.with_a(a))
+                self.known[a] = settle(self.model_at(a))
                 return
             except OrbitError:
                 continue
         raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, SEEDS))}")
 
-    def with_a(self, a: float) -> Model:
-        """Return the model at another friction parameter."""
-        return replace(self.model, friction=Friction(self.model.friction.law, a))
+    def model_at(self, a: float) -> Model:
+        """Return the model at another friction parameter; raises OrbitError where its law is none."""
+        try:
+            return self.model.at(a)
+        except ValueError as error:
+            raise OrbitError(str(error)) from None
 
     def at(self, a: float) -> Orbit:
-        """Return the synchronized orbit at 0 < a < 2, continued from the nearest a at which it is known.
+        """Return the synchronized orbit at a > 0, continued from the nearest a at which it is known.
 
-        Raises OrbitError where it is lost on the way, and outside this range.
+        Raises OrbitError where it is lost on the way, and elsewhere.
         """
         if a in self.known:
             return self.known[a]
-        if not 0.0 < a < 2.0:
-            raise OrbitError(f"a = {a!r}: no orbit is looked for: 0 < a < 2")
+        if not a > 0.0:
+            raise OrbitError(f"a = {a!r}: no orbit is looked for: 0 < a")
         here = min(self.known, key=lambda known: abs(known - a))
         step = LARGEST_STEP
         while here != a:
@@ -63,7 +86,7 @@ class Family:
             there = a if abs(a - here) <= reach else here + math.copysign(reach, a - here)
             near = self.known[here]
             try:
-                self.known[there] = find_orbit(self.with_a(there), near.reference, near.period)
+                self.known[there] = find_orbit(self.model_at(there), near.reference, near.period)
             except OrbitError:
                 step = 0.5 * min(reach, abs(there - here))
                 if step < LEAST_STEP * min(1.0, here / LARGEST_STEP):
@@ -79,20 +102,16 @@ def settle(model: Model) -> Orbit:
     Raises OrbitError if it does not end on one.
     """
     rest = np.zeros(3)
-    solver = new_solver(model)
-    solver.end = SETTLING
-    solver.begin(rest, rest, np.ones(3, dtype=bool))
-    run(solver)
-    solver.end = SETTLING + LONGEST_PERIOD
-    solver.halting_block = 0
+    runner = Runner(model)
+    after(runner, Instant(rest, rest, np.ones(3, dtype=bool)), SETTLING)
     clock = []
     for _ in range(2):
-        if run(solver) != HALTED:
-            raise OrbitError(f"a = {model.friction.a!r}: block 1 does not stop again and again")
-        clock.append(solver.clock)
-    stopped = instant(solver)
+        if runner.run(SETTLING + LONGEST_PERIOD, halting_block=0) != Status.HALTED:
+            raise OrbitError(f"a = {model.a!r}: block 1 does not stop again and again")
+        clock.append(runner.clock)
+    stopped = runner.instant()
     period = clock[1] - clock[0]
     starts = [time for time, block, kind in flow(model, stopped, period)[1] if (block, kind) == (0, 1)]
     if not starts:
-        raise OrbitError(f"a = {model.friction.a!r}: block 1 does not start again within {period!r}")
-    return find_orbit(model, instant(flow(model, stopped, 0.5 * starts[0])[0]), period)
+        raise OrbitError(f"a = {model.a!r}: block 1 does not start again within {period!r}")
+    return find_orbit(model, flow(model, stopped, 0.5 * starts[0])[0].instant(), period)

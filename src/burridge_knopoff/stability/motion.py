@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
+
+from burridge_knopoff.stability.settings import MotionSettings
 
 #: Kinds of motion; `synchronized` is the periodic motion in which the end blocks move as one.
 KINDS = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
@@ -45,28 +44,24 @@ def section_closed(section: np.ndarray, tolerance: float) -> bool:
     return bool(np.quantile(nearest, 0.95) <= tolerance)
 
 
-def zero_exponents(exponent: np.ndarray, error: np.ndarray, motion: Mapping[str, Any]) -> np.ndarray:
-    """Return which exponents cannot be told from 0, shape (n,).
+def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
+    """Return which exponents, of these standard errors, cannot be told from 0; all of shape (n,)."""
+    return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * error)
 
-    motion : the config's section of that name
-    """
-    return np.abs(exponent) <= np.maximum(motion["zero_exponent"], motion["standard_errors"] * error)
+
+def closed_kind(mean_distance: float, settings: MotionSettings) -> int:
+    """Return the kind of a closed orbit with that ⟨J⟩."""
+    return SYNCHRONIZED if mean_distance < settings.synchronization_threshold else PERIODIC
 
 
 def motion_kind(
-    mean_distance: float,
-    threshold: float,
-    period: int,
-    exponent: np.ndarray,
-    error: np.ndarray,
-    motion: Mapping[str, Any],
+    mean_distance: float, period: int, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
 ) -> int:
     """Return the kind of motion of a completed run, a key of KINDS.
 
-    mean_distance, threshold : the end blocks move as one where ⟨J⟩ is below the threshold
+    mean_distance : ⟨J⟩; the end blocks move as one where it is below the synchronization threshold
     period : of the section points, 0 if they do not repeat
     exponent, error : Lyapunov exponents, the largest first, and their standard errors; may be NaN or empty
-    motion : the config's section of that name
 
     Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
     that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
@@ -74,17 +69,16 @@ def motion_kind(
     above `chaotic_exponent` and not above its error.
     """
     known = np.flatnonzero(~np.isnan(exponent))
-    if len(known) and exponent[0] > max(motion["chaotic_exponent"], motion["standard_errors"] * error[0]):
+    if len(known) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]):
         return CHAOTIC
-    zero = zero_exponents(exponent, error, motion)
+    zero = zero_exponents(exponent, error, settings)
     if len(known) and not zero[0]:
         return UNDETERMINED
-    closed = SYNCHRONIZED if mean_distance < threshold else PERIODIC
     if period:
-        return closed
+        return closed_kind(mean_distance, settings)
     # An error beyond the threshold of chaos tells nothing from nothing, as where chaos ends within the window.
-    if len(known) and motion["standard_errors"] * np.nanmax(error[:2]) > LARGEST_ERROR * motion["chaotic_exponent"]:
+    if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
         return UNDETERMINED
     if len(known) > 1 and not zero[1]:
-        return closed
-    return QUASIPERIODIC if len(known) > 1 and exponent[0] <= motion["chaotic_exponent"] else UNDETERMINED
+        return closed_kind(mean_distance, settings)
+    return QUASIPERIODIC if len(known) > 1 and exponent[0] <= settings.chaotic_exponent else UNDETERMINED

@@ -17,14 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import root
 
-from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.kernel.events import EventLog
-from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, RUNNING
-from burridge_knopoff.stability.flow import Instant, Model, instant, new_solver
-
-# What the kernel's `run` returns besides RUNNING: at the end, and when the block to halt at has stopped.
-COMPLETED = 0
-HALTED = -2
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
 
 #: Largest difference, in any position or velocity, between the state and the state one period later; times v beyond 1,
 #: since positions and velocities grow with v.
@@ -84,31 +78,26 @@ class Orbit:
 
 def flow(
     model: Model, start: Instant, time: float, perturbed: bool = False
-) -> tuple[EventDriven, tuple[tuple[float, int, int], ...]]:
-    """Return the solver after a time, and the events on the way: time, block (0 …) and kind (0 stop, 1 start).
+) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
+    """Return the runner after a time, and the events on the way: time, block (0 …) and kind (0 stop, 1 start).
 
     perturbed : whether the tangent map is carried along; its columns that are velocities of stuck blocks are 0
     Raises OrbitError if the run does not complete.
     """
-    blocks = model.chain.blocks
-    log = EventLog(blocks, 0.0, True, EVENTS_PER_BLOCK_AND_UNIT * blocks)
-    solver = new_solver(model, log, _free_directions(start) if perturbed else None)
-    after(solver, start, time)
-    values = log.events.values()
-    moved, kind = values[:, 0].astype(int) - 1, values[:, 1].astype(int)
-    return solver, tuple(zip(log.events.times().tolist(), moved.tolist(), kind.tolist(), strict=True))
+    runner = Runner(model, keep_events=True, perturbations=_free_directions(start) if perturbed else None)
+    after(runner, start, time)
+    return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
 
 
-def after(solver: EventDriven, start: Instant, time: float) -> Instant:
-    """Return the state that a solver reaches from a state after a time.
+def after(runner: Runner, start: Instant, time: float) -> Instant:
+    """Return the state that a runner reaches from a state after a time.
 
     Raises OrbitError if the run does not complete.
     """
-    solver.end = time
-    solver.begin(start.position, start.velocity, start.stuck)
-    if run(solver) != COMPLETED:
-        raise OrbitError(f"the run ends at τ = {solver.clock!r}, before {time!r}")
-    return instant(solver)
+    end = runner.after(start, time)
+    if end is None:
+        raise OrbitError(f"the run ends at τ = {runner.clock!r}, before {time!r}")
+    return end
 
 
 def _free_directions(start: Instant) -> np.ndarray:
@@ -116,17 +105,11 @@ def _free_directions(start: Instant) -> np.ndarray:
     return np.diag(np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
 
 
-def run(solver: EventDriven) -> int:
-    """Run on until the solver halts, completes or fails, and return which."""
-    while (code := solver.run()) == RUNNING:
-        pass
-    return code
-
-
 def rate(model: Model, at: Instant) -> np.ndarray:
     """Return the time derivative of positions and velocities, shape (2 blocks,)."""
-    force = model.friction(model.v) - _products(model.chain.stiffness, at.position)
-    return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force - model.friction(at.velocity))])
+    weakening = model.chain.thresholds * (model.law(model.v) - model.law(at.velocity))
+    force = weakening - _products(model.chain.stiffness, at.position)
+    return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force)])
 
 
 def find_orbit(model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]] = SYMMETRIC) -> Orbit:
@@ -138,20 +121,20 @@ def find_orbit(model: Model, guess: Instant, period: float, directions: Sequence
     """
     for _ in range(ATTEMPTS):
         state, period = solve(model, guess, period, directions)
-        solver, events = flow(model, state, period, perturbed=True)
-        end = instant(solver)
+        runner, events = flow(model, state, period, perturbed=True)
+        end = runner.instant()
         residual = float(np.abs(end.vector() - state.vector()).max())
         if (end.stuck != state.stuck).any() or residual > TOLERANCE * max(1.0, model.v):
             if not (end.stuck[0] and end.stuck[2]):
                 break
             guess = end
             continue
-        orbit = Orbit(model, state, period, residual, solver.tangent.matrix(), events)
+        orbit = Orbit(model, state, period, residual, runner.perturbations, events)
         middle = _middle(orbit)
         if middle == 0.0:
             return orbit
-        guess = instant(flow(model, state, period + middle)[0])
-    raise OrbitError(f"a = {model.friction.a!r}: no periodic orbit found near the guess")
+        guess = flow(model, state, period + middle)[0].instant()
+    raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
 
 
 def solve(model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]]) -> tuple[Instant, float]:
@@ -162,18 +145,19 @@ def solve(model: Model, guess: Instant, period: float, directions: Sequence[Sequ
     count = len(basis)
     phase = _products(basis, rate(model, guess))
     perturbations = _free_directions(guess)
-    # One solver for all iterations: to make one takes far longer than a period does.
-    solver = new_solver(model, perturbations=perturbations)
+    # One runner for all iterations: to make one takes far longer than a period does.
+    runner = Runner(model, perturbations=perturbations)
 
     def equations(unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not 0.0 < unknown[count] < LONGEST_PERIOD:
-            raise OrbitError(f"a = {model.friction.a!r}: no periodic orbit found near the guess")
+            raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
         state = _place(origin, basis, unknown[:count], guess.stuck)
-        solver.exponents.carry(perturbations)
-        end = after(solver, state, float(unknown[count]))
+        runner.carry(perturbations)
+        end = after(runner, state, float(unknown[count]))
+        changed = runner.perturbations
         jacobian = np.zeros((count + 1, count + 1))
         for k, direction in enumerate(basis):
-            change = (solver.tangent.matrix() * direction).sum(axis=1) - direction
+            change = (changed * direction).sum(axis=1) - direction
             jacobian[:count, k] = _products(weight, change)
         jacobian[:count, count] = _products(weight, rate(model, end))
         jacobian[count, :count] = phase
@@ -201,7 +185,7 @@ def _middle(orbit: Orbit) -> float:
     Raises OrbitError unless both stop exactly once a period.
     """
     if any(len(orbit.times(block, kind)) != 1 for block in (0, 2) for kind in (0, 1)):
-        raise OrbitError(f"a = {orbit.model.friction.a!r}: an outer block stops more than once a period, or not at all")
+        raise OrbitError(f"a = {orbit.model.a!r}: an outer block stops more than once a period, or not at all")
     begin = max(orbit.times(block, 0)[0] for block in (0, 2)) - orbit.period
     end = min(orbit.times(block, 1)[0] for block in (0, 2))
     middle = 0.5 * (begin + end)

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import binomtest
 
+from burridge_knopoff.model.initial import InitialState
+
 CONFIDENCE = 0.95
 
 
@@ -24,6 +26,16 @@ def sample_states(
     high = np.array([position[1], velocity[1]])[:, None]
     states = low + (high - low) * unit
     return states[:, 0], states[:, 1]
+
+
+def sampled_states(
+    blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int
+) -> list[InitialState]:
+    """Return the states of `sample_states` one by one, named state1, state2, …"""
+    drawn = sample_states(blocks, count, position, velocity, seed)
+    return [
+        InitialState(f"state{number}", tuple(u), tuple(w)) for number, (u, w) in enumerate(zip(*drawn, strict=True), 1)
+    ]
 
 
 def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.kernel.events import EventLog
-from burridge_knopoff.settings import Settings
-from burridge_knopoff.simulation import EVENTS_PER_BLOCK_AND_UNIT, run
-from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, new_solver
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
     CHAOTIC,
-    PERIODIC,
     QUASIPERIODIC,
     UNDETERMINED,
+    closed_kind,
     motion_kind,
     section_period,
 )
+from burridge_knopoff.stability.settings import MotionSettings
 
 # Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
 SHARE = 0.95
@@ -51,7 +52,7 @@ class Returns:
     """The returns of a trajectory in a window after a transient.
 
     returns : states at the stops of the first block, shape (n, 2 blocks), positions x_i and velocities U_i'
-    mirror_returns : those of the mirrored motion
+    mirror_returns : those of the mirrored motion; none, shape (0, 2 blocks), where the chain has no mirror image
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
     """
@@ -96,17 +97,16 @@ class SteadyMotion:
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
-        changed = {"returns": self.mirror_returns, "mirror_returns": self.returns, "stop_rate": self.stop_rate[::-1]}
-        return SteadyMotion(**{**self.__dict__, **changed})
+        return replace(self, returns=self.mirror_returns, mirror_returns=self.returns, stop_rate=self.stop_rate[::-1])
 
     def symmetrized(self) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
         return self.with_returns(np.concatenate([self.returns, self.mirror_returns]))
 
     def with_returns(self, returns: np.ndarray) -> SteadyMotion:
-        """Return the motion with these returns, a set that is its own mirror image."""
-        changed = {"returns": returns, "mirror_returns": returns, "spacing": _spacing(returns)}
-        return SteadyMotion(**{**self.__dict__, **changed})
+        """Return the motion with these returns, a set that is its own mirror image if the chain is."""
+        mirror_returns = returns if len(self.mirror_returns) else self.mirror_returns
+        return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=_spacing(returns))
 
     def instant(self) -> Instant:
         """Return the state at the last return."""
@@ -123,98 +123,95 @@ def instant_of(state: np.ndarray) -> Instant:
 
 def visit(model: Model, start: Instant, transient: float, window: float) -> Returns | None:
     """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
-    blocks = model.chain.blocks
-    log = EventLog(blocks, transient, True, EVENTS_PER_BLOCK_AND_UNIT * blocks)
-    solver = new_solver(model, log)
-    solver.end = transient + window
-    solver.begin(start.position, start.velocity, start.stuck)
-    while (status := solver.run()) == RUNNING:
-        pass
-    if status != COMPLETED:
+    runner = Runner(model, events_from=transient, keep_events=True)
+    runner.begin(start)
+    if runner.run(transient + window) != Status.COMPLETED:
         return None
-    events = log.events.values()
-    stops = [events[(events[:, 0] == block) & (events[:, 1] == 0.0), 2:] for block in (1, blocks)]
-    return _returns(stops[0], stops[1])
+    events = runner.log.events.values()
+    return _returns(model, events[:, 0], events[:, 1], events[:, 2:])
 
 
-def _returns(stops: np.ndarray, last_stops: np.ndarray) -> Returns | None:
-    """Return the set of the states at stops of the first block and of the last one, or None if there are too few."""
-    if min(len(stops), len(last_stops)) < FEWEST:
+def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray) -> Returns | None:
+    """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
+    stops = states[(block == 1) & (kind == 0)]
+    mirror_returns = stops[:0]
+    fewest = len(stops)
+    if model.chain.is_mirror_symmetric:
+        position, velocity = np.split(states[(block == model.blocks) & (kind == 0)], 2, axis=1)
+        mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
+        fewest = min(fewest, len(mirror_returns))
+    if fewest < FEWEST:
         return None
-    position, velocity = np.split(last_stops, 2, axis=1)
     first, second = np.array_split(stops, 2)
     return Returns(
         returns=stops,
-        mirror_returns=np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1),
+        mirror_returns=mirror_returns,
         spacing=_spacing(second),
         drift=max(distance(first, second), distance(second, first)),
     )
 
 
 def measure(
-    model: Model, start: Instant, transient: float, window: float, threshold: float, motion: Mapping[str, Any]
+    model: Model, start: Instant, transient: float, window: float, settings: MotionSettings
 ) -> SteadyMotion | None:
     """Measure the motion from a state that has settled; None if it does not complete or hardly ever stops.
 
     transient : in which the perturbations turn into the directions of the exponents
-    threshold, motion : the config's synchronization_threshold and section `motion`, for the kind of motion
 
     An exponent that only its error keeps from telling chaos from motion on a torus is measured in a longer window.
     """
-    found = _measure(model, start, transient, window, threshold, motion)
+    found = _measure(model, start, transient, window, settings)
     if found is None or found.kind not in (QUASIPERIODIC, UNDETERMINED):
         return found
-    if not found.exponent[0] > motion["zero_exponent"]:
+    if not found.exponent[0] > settings.zero_exponent:
         return found
-    longer = _measure(model, start, transient, LONGER * window, threshold, motion)
+    longer = _measure(model, start, transient, LONGER * window, settings)
     if longer is None:
         return found
     # The returns stay those of the usual window: their number decides how attractors are told apart.
-    judged = {name: getattr(longer, name) for name in ("kind", "section_period", "exponent")}
-    return SteadyMotion(**{**found.__dict__, **judged})
+    return replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
 
 
 def _measure(
-    model: Model, start: Instant, transient: float, window: float, threshold: float, motion: Mapping[str, Any]
+    model: Model, start: Instant, transient: float, window: float, settings: MotionSettings
 ) -> SteadyMotion | None:
     """Measure the motion in one window; see `measure`."""
     position = start.position + model.sliding_offset
     initial = InitialState("continued", tuple(position), tuple(start.velocity))
-    settings = Settings(
-        v=model.v,
-        contact=model.contact,
+    options = Settings(
         transient=transient,
         window=window,
         batches=BATCHES,
         sampling=transient + window,
         trajectory=0.0,
         event_window=window,
-        lyapunov_exponents=min(EXPONENTS, 2 * model.chain.blocks),
+        lyapunov_exponents=EXPONENTS,
         lyapunov_alignment=transient,
     )
-    trajectory = run(model.chain, model.friction, initial, settings, np.asarray(start.stuck))
+    trajectory = run(model, initial, options, start)
     if trajectory.status != "completed":
         return None
     states = np.concatenate([trajectory.event_position - model.sliding_offset, trajectory.event_velocity], axis=1)
-    stopped = trajectory.event_kind == 0
-    stops = [states[stopped & (trajectory.event_block == block)] for block in (1, model.chain.blocks)]
-    found = _returns(stops[0], stops[1])
+    found = _returns(model, trajectory.event_block, trajectory.event_kind, states)
     if found is None:
         return None
     upward = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
-    period = section_period(upward, motion["period_tolerance"], motion["longest_period"])
+    period = section_period(upward, settings.period_tolerance, settings.longest_period)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-    kind = motion_kind(trajectory.mean_distance, threshold, period, exponent, error, motion)
-    if kind in (QUASIPERIODIC, UNDETERMINED) and found.closed(motion["period_tolerance"]):
+    # End blocks that are not each other's mirror images do not synchronize.
+    mean = trajectory.mean_distance if model.chain.is_mirror_symmetric else math.inf
+    kind = motion_kind(mean, period, exponent, error, settings)
+    if kind in (QUASIPERIODIC, UNDETERMINED) and found.closed(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent cannot be told from 0, but its returns repeat.
-        kind = PERIODIC
+        kind = closed_kind(mean, settings)
+    stopped = trajectory.event_block[trajectory.event_kind == 0]
     return SteadyMotion(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
         spacing=found.spacing,
         mean_distance=trajectory.mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
-        stop_rate=np.bincount(trajectory.event_block[stopped], minlength=model.chain.blocks + 1)[1:] / window,
+        stop_rate=np.bincount(stopped, minlength=model.blocks + 1)[1:] / window,
         kind=kind,
         section_period=period,
         exponent=exponent,
@@ -242,10 +239,24 @@ def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
     return longest
 
 
-def least_distance(first: np.ndarray, second: np.ndarray) -> float:
-    """Return the distance between the two nearest returns of two sets."""
-    nearest, _ = cKDTree(second).query(first, p=np.inf)
-    return float(nearest.min())
+def is_near(first: np.ndarray, second: np.ndarray, limit: float) -> bool:
+    """Tell whether `distance(first, second)` is at most the limit, without looking for neighbours beyond it."""
+    near = int(np.count_nonzero(np.isfinite(_nearest(first, second, limit))))
+    # The quantile lies between two of the sorted distances; only where the limit parts these does their size matter.
+    below = math.floor(SHARE * (len(first) - 1)) + 1
+    return near > below or (near == below and distance(first, second) <= limit)
+
+
+def least_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
+    """Return the distance between the two nearest returns of two sets; infinite if it is beyond the bound."""
+    return float(_nearest(first, second, bound).min())
+
+
+def _nearest(first: np.ndarray, second: np.ndarray, bound: float) -> np.ndarray:
+    """Return how far each of the first returns is from the nearest second one; infinite beyond the bound."""
+    # The tree leaves out what lies just at the bound. Where two sets are far apart it hardly looks.
+    nearest, _ = cKDTree(second).query(first, p=np.inf, distance_upper_bound=np.nextafter(bound, np.inf))
+    return nearest
 
 
 def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
@@ -258,4 +269,4 @@ def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, toleranc
     """
     if found.closed(tolerance) and attractor.kind == CHAOTIC:
         return False
-    return distance(found.returns, attractor.returns) <= max(resolution, SPACINGS * attractor.spacing)
+    return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

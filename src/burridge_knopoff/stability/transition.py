@@ -11,8 +11,9 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Instant, new_solver
 from burridge_knopoff.stability.orbit import Orbit, OrbitError, after, multipliers, transverse_multiplier
 
 #: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
@@ -52,7 +53,11 @@ def grazing_a(family: Family) -> float:
 
 
 def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
-    """Return the least a in the scanned range at which a function of the orbit changes its sign; NaN if it does not."""
+    """Return the least a in the scanned range at which a function of the orbit changes its sign; NaN if it does not.
+
+    A change at which the orbit itself is lost is none: where friction drops at the start of a slip, a stick of block 2
+    does not begin at length 0, and the orbit jumps.
+    """
     last: tuple[float, float] | None = None
     for a in SCAN:
         try:
@@ -61,7 +66,10 @@ def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
             last = None
             continue
         if last is not None and (here[1] > 0.0) != (last[1] > 0.0):
-            return float(brentq(lambda a: value(family.at(a)), last[0], a, xtol=1e-17, rtol=RELATIVE))
+            try:
+                return float(brentq(lambda a: value(family.at(a)), last[0], a, xtol=1e-17, rtol=RELATIVE))
+            except OrbitError:
+                pass
         last = here
     return math.nan
 
@@ -71,10 +79,10 @@ def least_center_speed(orbit: Orbit) -> float:
     if orbit.center_stick_time > 0.0:
         return 0.0
     time = np.linspace(0.0, orbit.period, SAMPLES + 1)
-    solver = new_solver(orbit.model)
+    runner = Runner(orbit.model)
 
     def speed(t: float) -> float:
-        return float(after(solver, orbit.reference, t).velocity[1])
+        return float(after(runner, orbit.reference, t).velocity[1])
 
     slowest = min(range(1, SAMPLES), key=lambda k: speed(float(time[k])))
     bounds = (time[slowest - 1], time[slowest + 1])
@@ -93,11 +101,10 @@ def finite_difference_multiplier(orbit: Orbit) -> float:
     Blocks 1 and 3 are moved apart by d and followed for a period. By mirror symmetry what is left of d is an odd
     function of d, so that one step of Richardson's extrapolation leaves an error of order d⁴.
     """
-
-    solver = new_solver(orbit.model)
+    runner = Runner(orbit.model)
 
     def ratio(d: float) -> float:
-        end = after(solver, apart(orbit.reference, d), orbit.period)
+        end = after(runner, apart(orbit.reference, d), orbit.period)
         return float(end.position[0] - end.position[2]) / d
 
     d = DIFFERENCE * orbit.model.v
@@ -105,8 +112,11 @@ def finite_difference_multiplier(orbit: Orbit) -> float:
 
 
 def critical_a_error(family: Family, a: float) -> float:
-    """Return by how much a_c changes if finite differences take the place of the tangent map."""
+    """Return by how much a_c changes if finite differences take the place of the tangent map; NaN near its loss."""
     orbit = family.at(a)
-    low, high = (transverse_multiplier(family.at(a + side * SLOPE_STEP)) for side in (-1, 1))
+    try:
+        low, high = (transverse_multiplier(family.at(a + side * SLOPE_STEP)) for side in (-1, 1))
+    except OrbitError:
+        return math.nan
     slope = (high - low) / (2.0 * SLOPE_STEP)
     return abs((finite_difference_multiplier(orbit) - transverse_multiplier(orbit)) / slope)

@@ -8,6 +8,8 @@ Reference: S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (198
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.stats import chi2
 
@@ -21,9 +23,7 @@ FEWEST = 8
 SIGNIFICANCE = 1e-3
 
 
-def sample_pairs(
-    first: tuple[float, float], last: tuple[float, float], count: int, seed: int
-) -> tuple[np.ndarray, np.ndarray]:
+def sample_pairs(first: Sequence[float], last: Sequence[float], count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Return points of a plane, shape (count, 2), and their partners, shape (separations, count, 2).
 
     first, last : ranges (low, high) of both coordinates

@@ -1,0 +1,105 @@
+"""How near an attractor a trajectory is certain to stay: the radius, within which trajectories are captured.
+
+It is less than half the way to any other attractor, and trajectories that were pushed off by that much at random have
+come back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.stability.labels import CLOSE_RETURNS, PATIENT_RETURNS, Attractor, label, pushed
+from burridge_knopoff.stability.motion import CHAOTIC
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.stability.steady import SPACINGS, SteadyMotion, instant_of, least_distance
+
+LARGEST_RADIUS = 0.02
+
+# Part of the way to another attractor that a radius takes at most.
+SHARED = 0.4
+
+# Pushed trajectories have come back when they are this many times closer than they were pushed.
+RECOVERY = 10.0
+
+# Pushed trajectories that are followed at once: one that does not come back spares the others.
+GROUP = 4
+
+
+def recovered(motion: SteadyMotion, radius: float) -> float:
+    """Return how close to an attractor a trajectory has to come after a push by that radius."""
+    return max(SPACINGS * motion.spacing, radius / RECOVERY)
+
+
+def midst(attractors: Sequence[Attractor], index: int, tolerance: float) -> list[int]:
+    """Return the closed orbits that lie in the midst of an attractor, which is chaos or a slow set.
+
+    tolerance : distance within which the returns of closed orbits repeat
+    """
+    motion = attractors[index].motion
+    if motion.kind != CHAOTIC and not attractors[index].slow:
+        return []
+    reach = SPACINGS * motion.spacing
+    return [
+        k
+        for k, other in enumerate(attractors)
+        if k != index
+        and other.motion.spacing <= tolerance
+        and least_distance(motion.returns, other.motion.returns, reach) <= reach
+    ]
+
+
+def bounded(model: Model, attractors: Sequence[Attractor], tolerance: float) -> list[Attractor]:
+    """Return the attractors with all radii bounded by the distances between them.
+
+    Chaos with a closed orbit in its midst keeps its radius but asks for patience: who comes to the orbit is told first.
+    """
+    within = [midst(attractors, index, tolerance) for index in range(len(attractors))]
+    result = []
+    for index, attractor in enumerate(attractors):
+        radius = min(attractor.radius, LARGEST_RADIUS * model.scale)
+        for k, other in enumerate(attractors):
+            if k != index and k not in within[index] and index not in within[k]:
+                apart = least_distance(attractor.motion.returns, other.motion.returns, radius / SHARED)
+                radius = min(radius, SHARED * apart)
+        returns = PATIENT_RETURNS if within[index] else attractor.close_returns
+        result.append(replace(attractor, radius=radius, close_returns=returns))
+    return result
+
+
+def captured(
+    model: Model,
+    attractors: Sequence[Attractor],
+    index: int,
+    least: float,
+    tolerance: float,
+    settings: SearchSettings,
+) -> float:
+    """Return a radius of an attractor from which all of a number of random pushes come back, at most the present one.
+
+    0 if there is none of `least`, for v = 0.1, or more.
+    """
+    motion = attractors[index].motion
+    radius = attractors[index].radius
+    inner = midst(attractors, index, tolerance)
+    generator = np.random.default_rng(settings.seed)
+    while radius >= least * model.scale:
+        close = recovered(motion, radius)
+        narrow = [replace(item, radius=min(item.radius, close)) for item in attractors]
+        if inner:
+            narrow[index] = replace(narrow[index], close_returns=CLOSE_RETURNS)
+        left = settings.pushes
+        while left > 0:
+            chosen = generator.integers(len(motion.returns), size=min(GROUP, left))
+            starts = [pushed(instant_of(motion.returns[k]), radius, generator) for k in chosen]
+            reached, _ = label(model, narrow, starts, settings.time_limit)
+            if not np.isin(reached, [index, *inner]).all():
+                break
+            left -= len(chosen)
+        else:
+            return radius
+        radius /= 2
+    return 0.0

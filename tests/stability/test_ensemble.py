@@ -1,0 +1,78 @@
+"""Labels of many states at once are those of one by one, on real attractors."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.kernel.clouds import Clouds
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.attractors import Search
+from burridge_knopoff.stability.basins import label_states
+from burridge_knopoff.stability.sampling import sample_states
+from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+
+SETTINGS = SearchSettings(transient=1000.0, window=1000.0, seed=3, pushes=8)
+
+
+def one_by_one(model, attractors, starts, end):
+    """Labels and their times by following each state alone, from stop to stop of the first block."""
+    solver = Runner(model)
+    labels, times = np.full(len(starts), -1), np.full(len(starts), end)
+    for k, start in enumerate(starts):
+        solver.begin(start)
+        streak = [0] * len(attractors)
+        while labels[k] < 0 and solver.run(end, halting_block=0) == Status.HALTED:
+            here = solver.instant().vector()
+            for index, item in enumerate(attractors):
+                near = (np.abs(item.motion.returns - here) <= item.radius).all(axis=1).any()
+                streak[index] = streak[index] + 1 if near else 0
+                if streak[index] >= item.close_returns:
+                    labels[k], times[k] = index, solver.clock
+                    break
+    return labels, times
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+@pytest.mark.parametrize(("a", "share"), [(0.08, 1.0), (0.15, 0.98)])
+def test_labels_are_those_of_one_by_one(law, a, share):
+    """In chaos the two kernels part ways, so that a state near a boundary of basins may come to the other side."""
+    model = Model(Chain(3), law_of(law, a))
+    search = Search(model, SETTINGS, MotionSettings())
+    position, velocity = sample_states(3, 400, (-1.5, 1.5), (0.0, 0.2), 5)
+    starts = [model.begin(InitialState("sample", tuple(x), tuple(w))) for x, w in zip(position, velocity, strict=True)]
+    for start in starts[:12]:
+        search.reach(start)
+    assert search.attractors
+    for end in (150.0, 1500.0):
+        expected, when = one_by_one(model, search.attractors, starts, end)
+        labels, times = label_states(model, search.attractors, position, velocity, time_limit=end)
+        same = labels == expected
+        assert same.mean() >= share
+        assert (expected >= 0).mean() > (0.2 if end < 1000 else 0.5)
+        assert np.mean(np.abs(times - when)[same] < 1e-9) >= share - 0.05
+        assert (times[labels < 0] == end).all()
+
+
+def test_near_a_cloud_to_the_last_bit():
+    """As all differences say, one by one, right at the radius too."""
+    generator = np.random.default_rng(2)
+    orbit = np.repeat(generator.uniform(-1, 1, (5, 6)), 40, axis=0) + 1e-9 * generator.normal(size=(200, 6))
+    clouds = [generator.uniform(-0.3, 0.3, (500, 6)), np.zeros((0, 6)), orbit, generator.uniform(-1, 1, (1, 6))]
+    radius = [0.1, 1.0, 0.02, 0.25]
+    kernel = Clouds(clouds, 6, radius)
+    found = 0
+    for index, (cloud, limit) in enumerate(zip(clouds, radius, strict=True)):
+        states = generator.uniform(-0.4, 0.4, (300, 6))
+        if len(cloud):
+            edge = generator.choice([-limit, limit, np.nextafter(limit, 9.0), 0.3 * limit], (300, 6))
+            states = np.concatenate([states, cloud[generator.integers(len(cloud), size=300)] + edge])
+        for state in states:
+            first = (cloud[:, 0] >= state[0] - limit) & (cloud[:, 0] <= state[0] + limit)
+            expected = bool(((np.abs(cloud - state)[:, 1:] <= limit).all(axis=1) & first).any())
+            assert kernel.is_near(index, state) == expected
+            found += expected
+    assert found > 50
