@@ -35,8 +35,7 @@ from burridge_knopoff.files import (
     display_path,
     nearest_folder,
 )
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.settings import SOLVERS
+from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.sources import source_fingerprint
 from burridge_knopoff.study_record import write_study_record
 from snakemake_logger_plugin_study.command_line import SEVERAL_FILES
@@ -126,7 +125,7 @@ report: "workflow/report/workflow.rst"
 
 
 wildcard_constraints:
-    law="|".join(LAWS),
+    law="|".join(STUDY.laws),
     initial="|".join(STUDY.initial),
     a=r"\d+\.\d+",
 

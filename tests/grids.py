@@ -6,13 +6,32 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.settings import Settings
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.summaries.points import Grid
 
+#: What decides the models of a study that says nothing of them.
+PAPER_MODELS: dict[str, Any] = {
+    "laws": {law: {} for law in PAPER_LAWS},
+    "chain": {"coupling": 1.0, "pulling": "neighbours", "threshold": 1.0, "ends": "open"},
+    "v": 0.1,
+    "contact": "one_sided",
+}
 
-def grid_of(folder: Path, initial: Iterable[str | InitialState], a: Mapping[str, float], **settings: Any) -> Grid:
-    """Return the grid of points that `simulate` makes with these settings, under both laws, from these states."""
+
+def grid_of(
+    folder: Path,
+    initial: Iterable[str | InitialState],
+    a: Mapping[str, float],
+    models: Mapping[str, Any] | None = None,
+    **settings: Any,
+) -> Grid:
+    """Return the grid of points that `simulate` makes with these settings, from these states.
+
+    models : a config's laws, chain, v and contact, as far as they are not the paper's
+    """
     states = [PAPER_STATES[state] if isinstance(state, str) else state for state in initial]
-    return Grid(folder, {state.name: state for state in states}, a, dict.fromkeys(LAWS, Settings(**settings)))
+    models = {**PAPER_MODELS, **(models or {})}
+    runs = dict.fromkeys(models["laws"], Settings(**settings))
+    return Grid(folder, {state.name: state for state in states}, a, runs, models)

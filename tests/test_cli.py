@@ -1,5 +1,6 @@
 """`bk`: results, help, and one line with exit code 2 for bad input."""
 
+import shlex
 import signal
 import subprocess
 import sys
@@ -9,11 +10,15 @@ import netCDF4
 import pytest
 
 from burridge_knopoff.cli import main
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.laws import FormulaLaw
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.running.simulation import simulate
 
 BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]
 RUN = ["simulate", "--law", "linearized", "--a", "0.08", *SHORT]
+DROP = ["simulate", "--law", "carlson_langer", "--a", "0.08", *SHORT]
+OWN = ["simulate", "--a", "0.08", *SHORT, "--formula"]
 
 
 def bk(*arguments, cwd=None):
@@ -54,6 +59,35 @@ def test_all_options(tmp_path):
         assert dataset["event_time"][0] < 29.0
 
 
+def test_a_law_of_ones_own_in_a_ring(tmp_path):
+    """No compiler and no file of its own: the formula, its numbers and the springs are in the point."""
+    out = tmp_path / "own.nc"
+    options = ["--number", "c=0.1", "--law-name", "soft", "--ends", "ring", "--coupling", "1,2,3", "--pulling", "0.5"]
+    assert main([*OWN, "1 - c*tanh(a*u/c)", *options, "--threshold", "1,1.5,1", "--out", str(out)]) == 0
+    law = FormulaLaw(0.08, "1 - c*tanh(a*u/c)", name="soft", c=0.1)
+    chain = Chain(3, (1.0, 2.0, 3.0), 0.5, (1.0, 1.5, 1.0), "ring")
+    expected = simulate(law, 0.08, "minus", chain=chain, transient=10.0, window=20.0, batches=2)
+    with netCDF4.Dataset(out) as dataset:
+        assert dataset["mean_distance"][...] == expected.mean_distance
+        assert (dataset.law, dataset.law_formula, dataset.law_c) == ("soft", "1 - c*tanh(a*u/c)", 0.1)
+        assert dataset.chain_coupling.tolist() == [1.0, 2.0, 3.0]
+        assert dataset.chain_threshold.tolist() == [1.0, 1.5, 1.0]
+        assert (dataset.chain_pulling, dataset.chain_ends) == (0.5, "ring")
+        words = shlex.split(dataset.history)
+    again = tmp_path / "again.nc"
+    assert main([*words[1:], "--out", str(again)]) == 0
+    assert again.read_bytes() == out.read_bytes()
+
+
+def test_numbers_and_another_name_of_a_law_that_is_built_in(tmp_path):
+    assert main([*DROP, "--number", "sigma=0.02", "--law-name", "drop", "--out", str(tmp_path / "x.nc")]) == 0
+    with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
+        assert (dataset.law, dataset.law_sigma) == ("drop", 0.02)
+        assert dataset.history.startswith(
+            "bk simulate --law carlson_langer --law-name drop --number sigma=0.02 --a 0.08 "
+        )
+
+
 def test_no_events(tmp_path):
     out = tmp_path / "none.nc"
     assert main([*RUN, "--events", "none", "--out", str(out)]) == 0
@@ -67,7 +101,7 @@ def test_no_events(tmp_path):
     [
         ([], "COMMAND"),
         (["simulat"], "simulat"),
-        (["simulate"], "--law"),
+        (["simulate"], "--a"),
         ([*RUN], "--out"),
         ([*RUN, "--outt", "x.nc"], "--out"),
         ([*RUN, "--a", "x", "--out", "x.nc"], "--a: 'x' is not allowed: a number"),
@@ -92,9 +126,33 @@ def test_no_events(tmp_path):
         ([*RUN, "--a", "-0.1", "--out", "x.nc"], "a: -0.1"),
         ([*RUN, "--a", "nan", "--out", "x.nc"], "a: nan"),
         ([*RUN, "--a", "1e400", "--out", "x.nc"], "a: inf"),
-        ([*RUN, "--law", "linear", "--out", "x.nc"], "linearized | nonlinear"),
+        (
+            [*RUN, "--law", "linear", "--out", "x.nc"],
+            "linearized | nonlinear | carlson_langer | exponential | stribeck",
+        ),
         ([*RUN, "--law", "nonlinear", "--solver", "map", "--out", "x.nc"], "series | rk4"),
-        ([*RUN, "--solver", "euler", "--out", "x.nc"], "map | series | rk4"),
+        ([*RUN, "--solver", "euler", "--out", "x.nc"], "series | map | rk4"),
+        (["simulate", "--a", "0.1", "--out", "x.nc"], "--law --formula"),
+        ([*RUN, "--formula", "1 - a*u", "--out", "x.nc"], "--formula: not allowed with argument --law"),
+        ([*RUN, "--number", "sigma=0.1", "--out", "x.nc"], "linearized.sigma: not a number of this law: none"),
+        ([*RUN, "--number", "sigma", "--out", "x.nc"], "--number: 'sigma' is not allowed: NAME=NUMBER"),
+        ([*RUN, "--number", "sigma=x", "--out", "x.nc"], "--number: 'x' is not allowed: a number"),
+        ([*RUN, "--number", "law=1", "--out", "x.nc"], "--number: 'law=1' is not allowed"),
+        ([*RUN, "--law-name", "a/b", "--out", "x.nc"], "--law-name: 'a/b' is not allowed"),
+        ([*DROP, "--number", "sigma=1", "--out", "x.nc"], "carlson_langer: '(1 - sigma)/"),
+        ([*DROP, *("--number", "sigma=0.1") * 2, "--out", "x.nc"], "--number: sigma sigma: each name once"),
+        ([*OWN, "1 - b*u", "--out", "x.nc"], "b: unknown name"),
+        ([*OWN, "-1", "--out", "x.nc"], "at u = 0 it is -1"),
+        ([*OWN, "", "--out", "x.nc"], "not a formula"),
+        ([*OWN, "__import__('os')", "--out", "x.nc"], "not a formula"),
+        ([*OWN, "1 - a*u", "--number", "u=1", "--out", "x.nc"], "formula.u: not allowed as the name of a number"),
+        ([*OWN, "1 - a*u", "--number", "self=1", "--out", "x.nc"], "formula.self: not in the formula"),
+        ([*RUN, "--coupling", "1,2,3", "--out", "x.nc"], "chain.coupling: 3 numbers for 2 springs"),
+        ([*RUN, "--coupling", "-1,2", "--out", "x.nc"], "chain.coupling: -1.0 is not allowed"),
+        ([*RUN, "--pulling", "all", "--out", "x.nc"], "--pulling: 'all' is not allowed: numbers"),
+        ([*RUN, "--threshold", "nan", "--out", "x.nc"], "chain.threshold: nan is not allowed"),
+        ([*RUN, "--ends", "closed", "--out", "x.nc"], "chain.ends: 'closed' is not allowed: open | ring"),
+        ([*RUN, "--ends", "ring", "--solver", "map", "--out", "x.nc"], "solver: 'map' is not allowed"),
         ([*RUN, "--initial", "middle", "--out", "x.nc"], "minus | plus"),
         ([*RUN, "--blocks", "4", "--out", "x.nc"], "blocks: 4"),
         ([*RUN, "--blocks", "1", "--out", "x.nc"], "blocks: 1"),
@@ -167,10 +225,11 @@ def test_an_interrupt_ends_a_long_run_with_one_line(tmp_path):
 def test_help_names_every_setting():
     from dataclasses import fields
 
-    from burridge_knopoff.settings import Settings
+    from burridge_knopoff.model.chain import Chain
+    from burridge_knopoff.running.settings import Settings
 
     text = bk("simulate", "--help").stdout
-    for item in fields(Settings):
+    for item in (*fields(Chain), *fields(Settings)):
         assert f"--{item.name.replace('_', '-')}" in text
     assert "examples:" in text
     assert "simulate" in bk("--help").stdout

@@ -13,7 +13,6 @@ from burridge_knopoff.config import ConfigError, Study, all_points
 from burridge_knopoff.config.yaml_file import read_yaml
 from burridge_knopoff.dataset.point import point_identity
 from burridge_knopoff.dataset.seal import BadFile, read_seal
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.job_log import last_words
 from burridge_knopoff.sources import source_fingerprint
 from burridge_knopoff.study_record import NAME, read_study_record, remake_command
@@ -101,7 +100,7 @@ def _runs(study: Study, results: Path) -> Iterator[tuple[Path, Path, str]]:
         log = results / f"logs/simulate/{place}.log"
         yield results / f"points/{place}.nc", log, study.command(law, initial, a)
     compared = [name for name, value in study.grid.items() if value in study.config["solvers"]["a"]]
-    for law in LAWS:
+    for law in study.laws:
         for solver in study.other_solvers(law):
             for initial in study.initial:
                 for a in compared:

@@ -13,6 +13,8 @@ from dataclasses import fields
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from burridge_knopoff import __version__
+from burridge_knopoff.laws import LAWS, Law, law_of
+from burridge_knopoff.model.chain import NEIGHBOURS
 
 DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model)."
 
@@ -26,6 +28,8 @@ EXAMPLES = """examples:
   bk simulate --law linearized --a 0.08 --initial plus --out plus.nc
   bk simulate --law nonlinear --a 0.08 --initial minus --transient 0 --window 100 --events all --out start.nc
   bk simulate --law linearized --a 0.1 --blocks 2 --position -0.9,-1.1 --velocity 0.1,0.1 --initial pair --out pair.nc
+  bk simulate --law carlson_langer --number sigma=0.02 --a 0.5 --threshold 1,1.2,1 --out drop.nc
+  bk simulate --formula "1 - c*tanh(a*u/c)" --number c=0.1 --a 0.5 --out own.nc
 """
 
 
@@ -59,17 +63,45 @@ def _numbers(text: str) -> tuple[float, ...]:
         raise argparse.ArgumentTypeError(f"{text!r} is not allowed: numbers with commas between them") from None
 
 
+def _strength(text: str) -> float | tuple[float, ...]:
+    values = _numbers(text)
+    return values[0] if len(values) == 1 else values
+
+
+def _pulling(text: str) -> str | float | tuple[float, ...]:
+    return text if text == NEIGHBOURS else _strength(text)
+
+
+def _named_number(text: str) -> tuple[str, float]:
+    name, sign, value = text.partition("=")
+    if not sign or not re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", name) or name in ("name", "law", "formula"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: NAME=NUMBER, as sigma=0.01")
+    return name, _number(value)
+
+
+def _law_name(text: str) -> str:
+    if not re.fullmatch("[a-z][a-z0-9_]{0,31}", text):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not allowed: small letters, digits and _, at most 32, a letter first"
+        )
+    return text
+
+
 def _name(text: str) -> str:
     if not re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,31}", text):
         raise argparse.ArgumentTypeError(f"{text!r} is not allowed: letters, digits and _, at most 32, a letter first")
     return text
 
 
+#: Options whose value may begin with a minus, without being a plain number.
+_SIGNED = ("--position", "--velocity", "--formula", *(f"--{key}" for key in ("coupling", "pulling", "threshold")))
+
+
 def _join(arguments: Sequence[str]) -> list[str]:
     """Write `--position -1,2` as `--position=-1,2`: argparse takes a list that begins with a minus for an option."""
     joined: list[str] = []
     for argument in arguments:
-        if joined and joined[-1] in ("--position", "--velocity"):
+        if joined and joined[-1] in _SIGNED:
             joined[-1] += f"={argument}"
         else:
             joined.append(argument)
@@ -91,8 +123,41 @@ def build_parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     model = simulate.add_argument_group("model")
-    model.add_argument("--law", required=True, metavar="LAW", help="friction law: linearized | nonlinear")
-    model.add_argument("--a", required=True, type=_number, help="friction parameter, 0 <= a < 2")
+    laws = model.add_mutually_exclusive_group(required=True)
+    laws.add_argument("--law", metavar="LAW", help=f"friction law: {' | '.join(LAWS)}")
+    laws.add_argument("--formula", metavar="PHI", help="or a formula in u (the slip speed U'), a and other names")
+    model.add_argument(
+        "--number",
+        type=_named_number,
+        action="append",
+        default=[],
+        metavar="NAME=NUMBER",
+        help="a number of the law; as often as it has some",
+    )
+    model.add_argument("--law-name", type=_law_name, metavar="NAME", help="name of the law in the file (default: LAW)")
+    model.add_argument("--a", required=True, type=_number, help="friction parameter, 0 or more")
+    model.add_argument(
+        "--coupling",
+        type=_strength,
+        default=1.0,
+        metavar="K1,K2,...",
+        help="springs between neighbours, one number or one each (default: %(default)s)",
+    )
+    model.add_argument(
+        "--pulling",
+        type=_pulling,
+        default="neighbours",
+        metavar="D1,D2,...",
+        help="springs to the driver, one number or one each (default: as many as a block has %(default)s)",
+    )
+    model.add_argument(
+        "--threshold",
+        type=_strength,
+        default=1.0,
+        metavar="F1,F2,...",
+        help="static friction, one number or one each (default: %(default)s)",
+    )
+    model.add_argument("--ends", default="open", help="open | ring (default: %(default)s)")
     model.add_argument("--v", type=_number, default=0.1, help="driver velocity (default: %(default)s)")
     model.add_argument("--contact", default="one_sided", help="one_sided | symmetric (default: %(default)s)")
     state = simulate.add_argument_group("initial state")
@@ -114,8 +179,8 @@ def build_parser() -> argparse.ArgumentParser:
     run = simulate.add_argument_group("run")
     run.add_argument(
         "--solver",
-        default="",
-        help="map (linearized law) | series | rk4 (default: map for linearized, series for nonlinear)",
+        default="series",
+        help="series | map (where the motion has a closed form) | rk4 (default: %(default)s)",
     )
     run.add_argument("--step", type=_number, default=1e-3, help="step of rk4 (default: %(default)s)")
     run.add_argument("--transient", type=_number, default=3000.0, help="time before the window (default: %(default)s)")
@@ -184,21 +249,34 @@ def _check(options: argparse.Namespace) -> int:
     return found.exit_code
 
 
+def simulated_law(options: argparse.Namespace) -> Law:
+    """Return the law that the options of `bk simulate` describe; raises ValueError as `law_of` does."""
+    numbers = dict(options.number)
+    if len(numbers) < len(options.number):
+        raise ValueError(f"--number: {' '.join(name for name, _ in options.number)}: each name once")
+    kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
+    name = options.law_name or (options.law if options.formula is None else "formula")
+    return law_of(name, options.a, {**kind, **numbers})
+
+
 def _simulate(options: argparse.Namespace) -> int:
-    from burridge_knopoff.chain import Chain
+    from burridge_knopoff.command import CHAIN_OPTIONS
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.files import check_target
-    from burridge_knopoff.friction import Friction
-    from burridge_knopoff.initial import initial_state
-    from burridge_knopoff.settings import Settings
-    from burridge_knopoff.simulation import run
+    from burridge_knopoff.model.chain import Chain
+    from burridge_knopoff.model.initial import initial_state
+    from burridge_knopoff.model.model import Model
+    from burridge_knopoff.running.settings import Settings
+    from burridge_knopoff.running.simulation import run
 
     try:
         check_target(options.out)
         state = initial_state(options.initial, options.position, options.velocity)
-        chain = Chain(len(state.position) if options.blocks is None else options.blocks)
+        blocks = len(state.position) if options.blocks is None else options.blocks
+        chain = Chain(blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS})
+        model = Model(chain, simulated_law(options), options.v, options.contact)
         settings = Settings(**{item.name: getattr(options, item.name) for item in fields(Settings)})
-        trajectory = run(chain, Friction(options.law, options.a), state, settings)
+        trajectory = run(model, state, settings)
         write_point(trajectory, options.out)
     except MemoryError:
         print("bk simulate: not enough memory for so many events or samples", file=sys.stderr)

@@ -2,31 +2,83 @@
 
 from __future__ import annotations
 
-import re
+import shlex
+from collections.abc import Iterator, Sequence
 from dataclasses import fields
+from typing import Any
 
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.settings import Settings
+from burridge_knopoff.laws import LAWS, Law
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.settings import Settings
 
-_OPTION = re.compile(r"--([a-z-]+)[= ](\S+)")
+#: Options of the chain, and the field of `Chain` that each is.
+CHAIN_OPTIONS = ("coupling", "pulling", "threshold", "ends")
 
 
-def simulate_command(law: str, a: float, initial: InitialState, settings: Settings) -> str:
-    """Return the command that makes this run again; settings that have their default are left out."""
-    words = [f"bk simulate --law {law} --a {a!r} --initial {initial.name}"]
-    words += [f"--{key}={','.join(map(repr, getattr(initial, key)))}" for key in ("position", "velocity")]
-    for item in fields(settings):
-        value = getattr(settings, item.name)
-        if value != item.default:
-            words.append(f"--{item.name.replace('_', '-')} {value}")
-    return " ".join(words)
+def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
+    """Return the command that makes this run again, quoted for a shell; what has its default is left out."""
+    words = ["bk", "simulate", *_law(model.law), "--a", repr(model.law.a)]
+    for part, keys in ((model.chain, CHAIN_OPTIONS), (model, ("v", "contact"))):
+        words += _changed(part, keys)
+    words += ["--initial", initial.name]
+    words += [f"--{key}={_text(getattr(initial, key))}" for key in ("position", "velocity")]
+    words += _changed(settings, [item.name for item in fields(settings)])
+    return shlex.join(words)
+
+
+def _law(law: Law) -> Iterator[str]:
+    """Yield the options of a law: a name that is built in or a formula, its own name, and the numbers that matter."""
+    kind = next((name for name, built_in in LAWS.items() if type(law) is built_in), "")
+    usual = law.defaults if kind else {}
+    yield from ("--law", kind) if kind else (f"--formula={law.formula}",)
+    if law.name != (kind or "formula"):
+        yield from ("--law-name", law.name)
+    for key, value in law.numbers.items():
+        if value != usual.get(key):
+            yield from ("--number", f"{key}={value!r}")
+
+
+def _changed(part: Any, keys: Sequence[str]) -> Iterator[str]:
+    defaults = {item.name: item.default for item in fields(part)}
+    for key in keys:
+        value = getattr(part, key)
+        if value != defaults[key]:
+            yield from (f"--{key.replace('_', '-')}", _text(value))
+
+
+def _text(value: Any) -> str:
+    return ",".join(map(repr, value)) if isinstance(value, tuple) else str(value)
 
 
 def difference(found: str, expected: str) -> str:
     """Return in words where two commands differ: `--a 0.08 instead of --a 0.05`."""
-    one, other = (dict(_OPTION.findall(command)) for command in (found, expected))
+    try:
+        one, other = _options(found), _options(expected)
+    except ValueError:
+        one = other = {}
     for key in [*other, *one]:
         if one.get(key) != other.get(key):
             named = [f"--{key} {options[key]}" if key in options else f"no --{key}" for options in (one, other)]
             return " instead of ".join(named)
     return f"`{found}` instead of `{expected}`"
+
+
+def _options(command: str) -> dict[str, str]:
+    """Return the options of a command with their values; a number of a law goes by its name too, as `number sigma`."""
+    options: dict[str, str] = {}
+    key = ""
+    for word in shlex.split(command):
+        if word.startswith("--"):
+            key, _, value = word[2:].partition("=")
+        elif key:
+            value = word
+        else:
+            continue
+        if key == "number" and value:
+            name, _, value = value.partition("=")
+            options[f"number {name}"] = value
+        elif value or key not in options:
+            options[key] = value
+    options.pop("number", None)
+    return options

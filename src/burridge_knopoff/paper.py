@@ -7,3 +7,10 @@ PAPER_LAWS = ("linearized", "nonlinear")
 PAPER_V = 0.1
 PAPER_TRANSIENT = 3000.0
 PAPER_WINDOW = 7000.0
+
+#: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss. Other
+#: laws are mapped where the first of these is.
+PAPER_BASINS = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
+
+#: Where the solvers are compared if a study does not say: two synchronized values, the paper's figures, and chaos.
+PAPER_COMPARED = (0.02, 0.05, 0.08, 0.2)

@@ -26,7 +26,7 @@ PLUMBING = (
 )
 
 #: (module, what it imports only for users at a prompt): not followed.
-CONVENIENCES = (("simulation.py", "burridge_knopoff.dataset.point"),)
+CONVENIENCES = (("trajectory.py", "burridge_knopoff.dataset.point"),)
 
 #: What a module of a folder reads there besides Python.
 ASSETS = (".css", ".jinja", ".js")

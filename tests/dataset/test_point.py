@@ -1,5 +1,6 @@
 """Point files: what is in them, CF compliance, the same bytes every time, size."""
 
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +10,9 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.laws import FormulaLaw
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.running.simulation import simulate
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +30,9 @@ def test_the_file_and_the_dataset_are_the_same(trajectory, path):
     with xr.open_dataset(path) as file:
         xr.testing.assert_identical(file.load().drop_attrs(deep=True), trajectory.to_dataset().drop_attrs(deep=True))
         assert set(file.variables) == set(POINT_VARIABLES)
-        assert file.attrs["law"] == "linearized"
+        assert (file.attrs["law"], file.attrs["law_formula"]) == ("linearized", "1 - a*u")
+        assert (file.attrs["chain_coupling"], file.attrs["chain_pulling"]) == (1.0, "neighbours")
+        assert (file.attrs["chain_threshold"], file.attrs["chain_ends"]) == (1.0, "open")
         assert file.attrs["initial"] == "plus"
         assert file["a"].item() == 0.08
         for name, variable in file.variables.items():
@@ -66,7 +71,7 @@ def test_same_inputs_same_bytes(tmp_path):
 
 def test_history_is_the_command_that_makes_the_file(path, tmp_path):
     with xr.open_dataset(path) as dataset:
-        command = dataset.attrs["history"].split()
+        command = shlex.split(dataset.attrs["history"])
     again = tmp_path / "again.nc"
     command[0] = str(Path(sys.executable).parent / "bk")
     subprocess.run([*command, "--out", str(again)], check=True)
@@ -79,7 +84,7 @@ def test_history_tells_how_many_exponents(tmp_path, exponents):
     run = simulate("nonlinear", 0.1, "plus", **settings)
     write_point(run, tmp_path / "point.nc")
     with xr.open_dataset(tmp_path / "point.nc") as dataset:
-        command = dataset.attrs["history"].split()
+        command = shlex.split(dataset.attrs["history"])
         assert dataset["lyapunov_exponent"].shape == (exponents,)
         assert dataset["batch_lyapunov_exponent"].shape == (7, exponents)
     assert command[command.index("--lyapunov-alignment") + 1] == "12.5"
@@ -97,7 +102,11 @@ def test_exponents_that_were_not_computed_are_nan(tmp_path):
         assert dataset["lyapunov_infinite_count"].item() == -1
 
 
-def test_no_cf_error(path, tmp_path):
+@pytest.mark.parametrize("chain", [None, Chain(3, (1.0, 2.0, 3.0), (0.5, 1.0, 0.5), (1.0, 2.0, 1.0), "ring")])
+def test_no_cf_error(tmp_path, chain):
+    path = tmp_path / "point.nc"
+    law = FormulaLaw(0.08, "1 - c*tanh(a*u/c)", name="soft", c=0.1)
+    write_point(simulate(law, 0.08, "plus", chain=chain, transient=10.0, window=50.0), path)
     checker = str(Path(sys.executable).parent / "compliance-checker")
     run = subprocess.run(
         [checker, "--test=cf:1.11", "--criteria=strict", str(path)], capture_output=True, text=True, cwd=tmp_path
@@ -114,7 +123,7 @@ def test_a_default_point_is_small(tmp_path, law, a):
 
 
 def test_a_run_that_did_not_complete_has_nan(tmp_path, monkeypatch):
-    monkeypatch.setattr("burridge_knopoff.simulation.STEP_LIMIT", 10)
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 10)
     write_point(simulate("linearized", 0.08, "plus"), tmp_path / "point.nc")
     with xr.open_dataset(tmp_path / "point.nc") as dataset:
         meanings = dataset["status"].attrs["flag_meanings"].split()

@@ -5,6 +5,7 @@ The check knows nothing of the schema or of the code that reads a config.
 
 from __future__ import annotations
 
+import math
 import re
 import shlex
 from fractions import Fraction
@@ -14,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from burridge_knopoff.cli import build_parser
+from burridge_knopoff.cli import build_parser, simulated_law
 from burridge_knopoff.config import ConfigError, Study, load_study, read_config, read_schema
 from tests.bad_configs import BAD_FILES
 from tests.fuzzing.source import Source
@@ -36,7 +37,9 @@ WORDS = """0 -0 -1 1 2 3 7 64 1024 1025 010 0x1F 1:30 1_0 .5 5. 1e5 1.0e-9 1.0e-
 ../x a/b x study a initial v contact start solver step transient batches sampling trajectory trajectory_sampling
 events event_window lyapunov_exponents lyapunov_alignment a_digits synchronization_threshold motion agreement
 solvers figures attractors basins chains two_blocks samples pixels tiles pairs blocks laws seed position velocity
-time_limit resolution pushes threads law"""
+time_limit resolution pushes threads law chain coupling pulling threshold ends neighbours open ring formula sigma eta
+exponential stribeck carlson_langer own 100 100.5 [1,2] [1,2,3] 1/(1+a*u) 1-a*u 1-b*u exp(-a*u) sqrt(1-a*u) 1-a*u**2
+{formula: 1-a*u} {formula: 1-b*u, b: 0.5} {law: stribeck, sigma: 0.1} {sigma: 0.02} {linearized: {}}"""
 PIECES = [word for line in WORDS.splitlines() for word in re.findall(r"\{.*?\}|\[.*?\]+|<<: \*a|\S+", line)]
 
 # Ranges of numbers: (low, high), both included unless `_ABOVE` names the key; whole numbers where both are int.
@@ -86,16 +89,15 @@ _WORDS = {
     "contact": ("one_sided", "symmetric"),
     "start": ("moving", "tested"),
     "events": ("window", "all"),
-    "solver.linearized": ("map", "series", "rk4"),
-    "solver.nonlinear": ("series", "rk4"),
-    "figures.law": ("linearized", "nonlinear"),
+    "chain.ends": ("open", "ring"),
 }
-_OTHER = ("study", "a", "initial", "solvers.a", "figures.a", "basins.linearized", "basins.nonlinear", "basins.initial")
+_OTHER = ("study", "a", "initial", "solvers.a", "figures.a", "basins.a", "basins.initial", "figures.law")
+_OTHER += ("laws", "solver", "chain.coupling", "chain.pulling", "chain.threshold")
 _BOXES = ("attractors.position", "attractors.velocity", "chains.position", "chains.velocity")
 _BOXES += ("basins.first_position", "basins.last_position")
 _OTHER += (*_BOXES, "chains.blocks", "chains.a", "chains.laws", "chains.two_blocks.a")
 _SECTIONS = (
-    "solver",
+    "chain",
     "motion",
     "agreement",
     "solvers",
@@ -176,17 +178,19 @@ def check_study(study: Study, content: bytes) -> None:
         low, high = flat[key]
         assert -1e6 <= low < high <= 1e6, key
         assert low >= 0.0 or not key.endswith("velocity"), key
-    for key in ("solvers.a", "basins.linearized", "basins.nonlinear"):
-        assert set(flat[key]) <= set(study.grid.values()), key
-        assert len(set(flat[key])) == len(flat[key]) <= 100, key
+    for values in (flat["solvers.a"], *flat["basins.a"].values()):
+        assert set(values) <= set(study.grid.values())
+        assert len(set(values)) == len(values) <= 100
+    _check_laws(study, given)
+    _check_chain(study, given)
     assert flat["basins.initial"] in study.initial
     assert flat.get("figures.a", next(iter(study.grid.values()))) in study.grid.values()
     assert study.grid[study.figure_point] == flat.get("figures.a", study.grid[study.figure_point])
     _check_states(study)
     _check_options(study)
-    assert 2 * len(study.initial) * len(study.grid) <= 100_000
+    assert len(study.laws) * len(study.initial) * len(study.grid) <= 100_000
     assert all(2 <= blocks <= 64 for blocks in flat["chains.blocks"])
-    assert all(0.0 <= a < 2.0 for key in ("chains.a", "chains.two_blocks.a") for a in flat[key])
+    assert all(0.0 <= a <= 100.0 for key in ("chains.a", "chains.two_blocks.a") for a in flat[key])
 
 
 def _flat(config: Any, prefix: str = "") -> dict[str, Any]:
@@ -213,10 +217,48 @@ def _check_grid(grid: Any, items: list[Any], digits: int) -> None:
     assert values == [float(value) for value in sorted(expected)]
     assert all(low < high for low, high in pairwise(values))
     assert values[0] >= 0.0
-    assert values[-1] < 2.0
+    assert values[-1] <= 100.0
     for name, value in grid.items():
         assert name == format(value, f".{digits}f")
         assert not str(value).startswith("-")
+
+
+def _check_laws(study: Study, given: dict[str, Any]) -> None:
+    """Require that friction is finite and at rest from 0 to 1, and that other keys name laws that there are."""
+    assert list(study.laws) == list(given.get("laws", ("linearized", "nonlinear")))
+    assert all(re.fullmatch("[a-z][a-z0-9_]{0,31}", law) for law in study.laws)
+    solvers, flat = study.config["solver"], _flat(study.config)
+    assert tuple(solvers) == tuple(flat["basins.a"]) == study.laws
+    assert flat["figures.law"] in study.laws
+    assert set(flat["chains.laws"]) <= set(study.laws)
+    asked = given.get("solver", {})
+    for law in study.laws:
+        assert solvers[law] == (asked if isinstance(asked, str) else asked.get(law, "series"))
+        assert solvers[law] in ("series", "map", "rk4")
+        for a in study.grid.values():
+            friction = study.model(law, a).law
+            assert friction.name == law
+            assert 0.0 < friction(0.0) <= 1.0
+            assert all(math.isfinite(value) for value in friction([0.0, 0.1, study.config["v"], 10.0]))
+            if solvers[law] == "map":
+                line = friction([0.0, 0.5, 1.0])
+                assert abs(line[0] - 2.0 * line[1] + line[2]) < 1e-12
+
+
+def _check_chain(study: Study, given: dict[str, Any]) -> None:
+    chain = study.config["chain"]
+    counts = {"coupling": study.blocks - (chain["ends"] == "open"), "pulling": study.blocks, "threshold": study.blocks}
+    for key, count in counts.items():
+        value = chain[key]
+        if f"chain.{key}" in given:
+            assert value == given[f"chain.{key}"]
+        if value == "neighbours":
+            assert key == "pulling"
+            continue
+        assert not isinstance(value, list) or len(value) == count
+        for number in value if isinstance(value, list) else [value]:
+            assert type(number) is float
+            assert 1e-6 <= number <= 1e6
 
 
 def _check_states(study: Study) -> None:
@@ -236,7 +278,7 @@ def _check_states(study: Study) -> None:
 
 def _check_options(study: Study) -> None:
     """Require that `bk` takes the options of the first and the last point, as the numbers of the config."""
-    for law in ("linearized", "nonlinear"):
+    for law in study.laws:
         for solver in (None, *study.other_solvers(law)):
             for initial, a in ((study.initial[0], min(study.grid)), (study.initial[-1], max(study.grid))):
                 line = shlex.split(study.command(law, initial, a, solver))
@@ -244,7 +286,7 @@ def _check_options(study: Study) -> None:
                 state = study.config["initial"][initial]
                 assert options.a == study.grid[a]
                 assert options.initial == initial
-                assert options.law == law
+                assert simulated_law(options) == study.model(law, study.grid[a]).law
                 assert options.position == tuple(state["position"])
                 assert options.velocity == tuple(state["velocity"])
                 for key in ("v", "transient", "window", "batches", "sampling", "contact", "start", "events"):

@@ -6,14 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.command import simulate_command
 from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
 from burridge_knopoff.dataset.seal import BadFile
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.settings import Settings
-from burridge_knopoff.simulation import run
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
 from burridge_knopoff.summaries.points import read_run
 from tests.fuzzing.source import Source
 
@@ -28,11 +29,11 @@ class Points:
     def __init__(self, folder: Path) -> None:
         self.path = folder / "fuzzed.nc"
         self.content = []
-        for a in (0.08, 0.2):
-            write_point(run(Chain(3), Friction("linearized", a), STATE, SETTINGS), self.path)
-            self.content.append(self.path.read_bytes())
-        self.path.write_bytes(self.content[0])
-        self.command = simulate_command("linearized", 0.08, STATE, SETTINGS)
+        for a in (0.2, 0.08):
+            model = Model(Chain(3), law_of("linearized", a))
+            write_point(run(model, STATE, SETTINGS), self.path)
+            self.content.insert(0, self.path.read_bytes())
+        self.command = simulate_command(model, STATE, SETTINGS)
         self.values = self._read()
 
     def _read(self) -> dict[str, np.ndarray]:

@@ -1,7 +1,25 @@
 """The configuration of a study."""
 
-from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.config.study import Study, all_points, load_study
-from burridge_knopoff.config.yaml_file import read_config, read_schema, read_yaml
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 __all__ = ["ConfigError", "Study", "all_points", "load_study", "read_config", "read_schema", "read_yaml"]
+
+if TYPE_CHECKING:
+    from burridge_knopoff.config.message import ConfigError
+    from burridge_knopoff.config.study import Study, all_points, load_study
+    from burridge_knopoff.config.yaml_file import read_config, read_schema, read_yaml
+
+
+def __getattr__(name: str) -> object:
+    # Resolved on first use: what makes a summary needs config.model only, and must not depend on how configs are read.
+    if name in __all__:
+        from importlib import import_module
+
+        for home in ("message", "study", "yaml_file"):
+            module = import_module(f"burridge_knopoff.config.{home}")
+            if name in vars(module):
+                value = globals()[name] = getattr(module, name)
+                return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -7,23 +7,14 @@ from dataclasses import fields
 from typing import Any
 
 from burridge_knopoff.config.grid import values_of
-from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.settings import SOLVERS, Settings
+from burridge_knopoff.config.message import ConfigError, shown
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.paper import PAPER_BASINS, PAPER_COMPARED
+from burridge_knopoff.running.settings import Settings
 
-#: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss.
-BASIN_A = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
-
-#: Solvers that know a friction law.
-LAW_SOLVERS = {law: SOLVERS if law == "linearized" else SOLVERS[1:] for law in LAWS}
-
-#: Where the solvers are compared if a study does not say: two synchronized values, the paper's figures, and chaos.
-SOLVER_A = (0.02, 0.05, 0.08, 0.2)
-
-#: Config keys that are options of `bk simulate` under the same name.
+#: Config keys that are settings of a run under the same name.
 RUN_KEYS = (
-    "v",
-    "contact",
     "start",
     "transient",
     "window",
@@ -71,14 +62,15 @@ def check_boxes(config: Mapping[str, Any], file: str) -> None:
 
 def fill_basins(config: Mapping[str, Any], grid: set[float], file: str) -> None:
     """Check the maps of basins against grid and states, and fill in what depends on these."""
-    basins = config["basins"]
-    for law, usual in BASIN_A.items():
-        if law not in basins:
-            basins[law] = [a for a in usual if a in grid]
-        for a in basins[law]:
+    basins, laws = config["basins"], config["laws"]
+    for law in basins["a"]:
+        if law not in laws:
+            raise ConfigError(f"{file}: basins.a.{shown(law)}: unknown key; allowed here: {', '.join(laws)}")
+        for a in basins["a"][law]:
             if a not in grid:
-                raise ConfigError(f"{file}: basins.{law}: {a!r} is not allowed: a value of the grid")
-        basins[law] = [float(a) for a in basins[law]]
+                raise ConfigError(f"{file}: basins.a.{law}: {a!r} is not allowed: a value of the grid")
+    usual = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in laws}
+    basins["a"] = {law: [float(a) for a in basins["a"].get(law, [a for a in usual[law] if a in grid])] for law in laws}
     name = basins.setdefault("initial", next(iter(config["initial"])))
     if name not in config["initial"]:
         raise ConfigError(f"{file}: basins.initial: {name!r} is not allowed: {' | '.join(config['initial'])}")
@@ -88,11 +80,11 @@ def fill_basins(config: Mapping[str, Any], grid: set[float], file: str) -> None:
         )
 
 
-def fill_solvers(config: Mapping[str, Any], grid: set[float], shown: float, file: str) -> None:
-    """Check where the solvers are compared against the grid, and fill it in; `shown` if no usual value is there."""
+def fill_compared(config: Mapping[str, Any], grid: set[float], else_a: float, file: str) -> None:
+    """Check where the solvers are compared against the grid, and fill it in; `else_a` if no usual value is there."""
     solvers = config["solvers"]
     if "a" not in solvers:
-        solvers["a"] = [a for a in SOLVER_A if a in grid] or [shown]
+        solvers["a"] = [a for a in PAPER_COMPARED if a in grid] or [else_a]
     for a in solvers["a"]:
         if a not in grid:
             raise ConfigError(f"{file}: solvers.a: {a!r} is not allowed: a value of the grid")
@@ -101,8 +93,6 @@ def fill_solvers(config: Mapping[str, Any], grid: set[float], shown: float, file
 
 def check_states(config: Mapping[str, Any], file: str) -> None:
     """Check the initial states, and fill in the numbers of those that are known by name."""
-    from burridge_knopoff.initial import PAPER_STATES, InitialState
-
     for name, state in config["initial"].items():
         if not state and name not in PAPER_STATES:
             raise ConfigError(
@@ -117,7 +107,16 @@ def check_states(config: Mapping[str, Any], file: str) -> None:
         raise ConfigError(f"{file}: initial: states of one study have the same number of positions ({counts})")
     for name, state in config["initial"].items():
         try:
-            InitialState(name, state["position"], state["velocity"]).check_contact(config["contact"])
+            InitialState(name, state["position"], state["velocity"])
+        except ValueError as error:
+            raise ConfigError(f"{file}: initial.{name}.{error}") from error
+
+
+def check_beginnings(config: Mapping[str, Any], model: Model, file: str) -> None:
+    """Check that a model of the study can begin in each of its initial states."""
+    for name, state in config["initial"].items():
+        try:
+            model.begin(InitialState(name, state["position"], state["velocity"]), config["start"])
         except ValueError as error:
             raise ConfigError(f"{file}: initial.{name}.{error}") from error
 

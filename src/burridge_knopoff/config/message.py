@@ -5,7 +5,13 @@ from __future__ import annotations
 import re
 from typing import Any
 
-_TYPES = {"number": "a finite number", "integer": "a whole number", "string": "text", "array": "a list"}
+_TYPES = {
+    "number": "a finite number",
+    "integer": "a whole number",
+    "string": "text",
+    "array": "a list",
+    "object": "named entries",
+}
 
 
 class ConfigError(ValueError):
@@ -77,7 +83,7 @@ def _allowed(error: Any) -> str:
     if "pattern" in schema:
         return f"text like {schema['pattern']}"
     if "oneOf" in schema:
-        return "a number 0 ≤ a < 2, or a range {from, to, step}"
+        return "a number 0 ≤ a ≤ 100, or a range {from, to, step}"
     if error.validator in ("minItems", "minProperties"):
         return f"at least {error.validator_value}"
     if error.validator == "maxItems":
@@ -86,7 +92,8 @@ def _allowed(error: Any) -> str:
         return "each value once"
     if schema.get("type") == "object":
         return "keys " + ", ".join(sorted(schema.get("properties", {}))) if "properties" in schema else "named entries"
-    words = _TYPES.get(schema.get("type", ""), schema.get("type", ""))
+    types = schema.get("type", [])
+    words = " or ".join(_TYPES.get(item, item) for item in ([types] if isinstance(types, str) else types))
     bounds = [
         f"{sign} {schema[name]:g}"
         for name, sign in (("minimum", "≥"), ("exclusiveMinimum", ">"), ("maximum", "≤"), ("exclusiveMaximum", "<"))

@@ -7,7 +7,6 @@ from typing import Any
 
 from burridge_knopoff.config.grid import MAXIMUM_POINTS
 from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.friction import LAWS
 
 #: Numbers that a job holds of one kind, at most: 800 MB.
 MOST_NUMBERS = 100_000_000
@@ -21,16 +20,16 @@ def check_size(config: Mapping[str, Any], grid: Mapping[str, float], file: str) 
 
     config : with all defaults; grid : values of a by name
     """
-    states = config["initial"]
-    points = len(LAWS) * len(states) * len(grid)
+    states, laws = config["initial"], config["laws"]
+    points = len(laws) * len(states) * len(grid)
     if points > MAXIMUM_POINTS:
         raise ConfigError(
-            f"{file}: a: {points} points are not allowed ({len(LAWS)} laws, {len(states)} initial states, "
+            f"{file}: a: {points} points are not allowed ({len(laws)} laws, {len(states)} initial states, "
             f"{len(grid)} values of a): at most {MAXIMUM_POINTS}"
         )
     blocks = len(next(iter(states.values()))["position"])
     attractors, basins, chains = (config[section] for section in ("attractors", "basins", "chains"))
-    maps = sum(len(basins[law]) for law in LAWS)
+    maps = sum(map(len, basins["a"].values()))
     rows = -(-basins["pixels"] // basins["tiles"])
     largest = max(chains["blocks"])
     two_blocks = chains["two_blocks"]

@@ -10,21 +10,23 @@ from typing import Any
 
 from burridge_knopoff.command import simulate_command
 from burridge_knopoff.config.checks import (
-    LAW_SOLVERS,
+    check_beginnings,
     check_boxes,
     check_chains,
     check_runs,
     check_states,
     fill_basins,
-    fill_solvers,
+    fill_compared,
     run_settings,
 )
 from burridge_knopoff.config.grid import grid_of
 from burridge_knopoff.config.message import ConfigError, explain, shown
+from burridge_knopoff.config.model import MODEL_KEYS, model_of
+from burridge_knopoff.config.models import check_models, fill_laws, fill_solver
 from burridge_knopoff.config.size import check_size
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.settings import Settings
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.settings import SOLVERS, Settings
 
 LARGEST = 1e300
 
@@ -43,6 +45,11 @@ class Study:
     def name(self) -> str:
         """Name of the study and of its results folder."""
         return self.config["study"]
+
+    @property
+    def laws(self) -> tuple[str, ...]:
+        """Names of the friction laws, in the order of the config."""
+        return tuple(self.config["laws"])
 
     @property
     def initial(self) -> tuple[str, ...]:
@@ -71,9 +78,16 @@ class Study:
             if state["position"][1:-1] == plane["position"][1:-1] and state["velocity"] == plane["velocity"]
         }
 
+    def model(self, law: str, a: float) -> Model:
+        """Return the model of the study under one of its laws, at one a."""
+        return model_of(self.config, law, a, self.blocks)
+
     def other_solvers(self, law: str) -> list[str]:
-        """Return the solvers that know a law, without the one that makes the points of the study."""
-        return [solver for solver in LAW_SOLVERS[law] if solver != self.config["solver"][law]]
+        """Return the solvers that know a law where they are compared, without the one that makes the points."""
+        others = [solver for solver in SOLVERS if solver != self.config["solver"][law]]
+        if "map" in others and not all(self.model(law, a).has_closed_form for a in self.config["solvers"]["a"]):
+            others.remove("map")
+        return others
 
     def value(self, a: str) -> float:
         """Return the value of a by its name in file names; raises ConfigError if it is not in the grid."""
@@ -92,10 +106,10 @@ class Study:
             if solver not in self.other_solvers(law):
                 allowed = " | ".join(self.other_solvers(law))
                 raise ConfigError(f"{law}/{solver}: not a comparison of study {self.name}: {allowed} for this law")
-            config.update(solver={law: solver}, step=config["solvers"]["step"])
+            config["step"] = config["solvers"]["step"]
             if solver == "rk4":
                 config["lyapunov_exponents"] = 0
-        return run_settings(config, config["solver"][law])
+        return run_settings(config, solver or config["solver"][law])
 
     def state(self, initial: str) -> InitialState:
         """Return an initial state of the study by its name."""
@@ -107,15 +121,16 @@ class Study:
         solver : another one than that of the study's points
         Raises ConfigError if a is not a value of the grid, or the solver not another one that knows the law.
         """
-        return simulate_command(law, self.value(a), self.state(initial), self.settings(law, solver))
+        return simulate_command(self.model(law, self.value(a)), self.state(initial), self.settings(law, solver))
 
     @property
     def points(self) -> dict[str, Any]:
-        """What decides the point files, in the types of a config: `initial`, `a`, and `settings` of each law."""
+        """What decides the point files, in the types of a config: `initial`, `a`, `settings` of each law, models."""
         return {
+            **{key: self.config[key] for key in MODEL_KEYS},
             "initial": {name: dict(state) for name, state in self.config["initial"].items()},
             "a": dict(self.grid),
-            "settings": {law: asdict(self.settings(law)) for law in LAWS},
+            "settings": {law: asdict(self.settings(law)) for law in self.laws},
         }
 
 
@@ -129,16 +144,21 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     filled = _with_defaults(copy.deepcopy(dict(config)), schema)
     check_schema(filled, schema, file)
     grid = grid_of(filled, file)
+    values = list(grid.values())
     check_states(filled, file)
+    check_chains(filled, file)
+    fill_laws(filled, file)
+    study = Study(filled, grid)
+    check_models(filled, values, study.blocks, file)
+    check_beginnings(filled, study.model(study.laws[0], next(iter(grid.values()))), file)
+    fill_solver(filled, values, study.blocks, file)
     check_runs(filled, file)
     check_boxes(filled, file)
-    fill_basins(filled, set(grid.values()), file)
-    check_chains(filled, file)
+    fill_basins(filled, set(values), file)
     shown = filled["figures"].get("a")
-    if shown is not None and shown not in grid.values():
+    if shown is not None and shown not in values:
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
-    study = Study(filled, grid)
-    fill_solvers(filled, set(grid.values()), grid[study.figure_point], file)
+    fill_compared(filled, set(values), grid[study.figure_point], file)
     check_size(filled, grid, file)
     return Study(_with_numbers(filled, schema), grid)
 
@@ -162,7 +182,13 @@ def _with_numbers(config: Any, schema: Mapping[str, Any]) -> Any:
         return {key: _with_numbers(value, items.get(key, other or {})) for key, value in config.items()}
     if isinstance(config, list):
         return [_with_numbers(value, schema.get("items", {})) for value in config]
-    return float(config) if schema.get("type") == "number" else config
+    is_number = isinstance(config, int) and not isinstance(config, bool)
+    return float(config) if is_number and "number" in _types(schema) else config
+
+
+def _types(schema: Mapping[str, Any]) -> list[str]:
+    types = schema.get("type", [])
+    return [types] if isinstance(types, str) else types
 
 
 @cache
@@ -204,4 +230,4 @@ def check_names(config: Any, file: str, place: str = "") -> None:
 
 def all_points(study: Study) -> list[tuple[str, str, str]]:
     """Return (law, initial, a) of every point job, in the order of the summaries."""
-    return [(law, initial, a) for law in LAWS for initial in study.initial for a in study.grid]
+    return [(law, initial, a) for law in study.laws for initial in study.initial for a in study.grid]

@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.command import simulate_command
+from burridge_knopoff.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.dataset.seal import identity, seal
 from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, fill, flag
 from burridge_knopoff.files import write_whole
 from burridge_knopoff.provenance import SOFTWARE, provenance
-from burridge_knopoff.simulation import DEFAULT_SOLVER, STATUS, Trajectory
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.trajectory import Trajectory
 from burridge_knopoff.sources import source_fingerprint
 
 if TYPE_CHECKING:
     import xarray
 
-STATUS_FLAG = flag("i1", dict(enumerate(STATUS)))
+STATUS_FLAG = flag("i1", {int(status): status.name.lower() for status in Status if status >= Status.COMPLETED})
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 _V = Variable
@@ -45,9 +46,9 @@ POINT_VARIABLES: dict[str, Variable] = {
     "mean_distance_error": _V((), "f8", "standard error of <J> from the batch means"),
     "batch_mean_distance": _V(("batch",), "f8", "time average of J over one batch of the window"),
     "batch": _V(("batch",), "f8", "time tau at the middle of the batch", coordinate=True),
-    "least_friction": _V((), "f8", "least friction Phi(a U') on a slipping block in the whole run"),
+    "least_friction": _V((), "f8", "least friction Phi on a slipping block in the whole run"),
     "least_spring_force": _V((), "f8", "least spring force s on a stuck block in the whole run"),
-    "window_least_friction": _V((), "f8", "least friction Phi(a U') on a slipping block in the window"),
+    "window_least_friction": _V((), "f8", "least friction Phi on a slipping block in the window"),
     "window_least_spring_force": _V((), "f8", "least spring force s on a stuck block in the window"),
     "lyapunov_exponent": _V(
         ("exponent",),
@@ -91,12 +92,12 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     settings = trajectory.settings
     width = settings.window / settings.batches
     special = {
-        "a": trajectory.friction.a,
-        "v": settings.v,
-        "block": np.arange(1, trajectory.chain.blocks + 1),
+        "a": trajectory.model.a,
+        "v": trajectory.model.v,
+        "block": np.arange(1, trajectory.model.blocks + 1),
         "initial_position": np.array(trajectory.initial.position),
         "initial_velocity": np.array(trajectory.initial.velocity),
-        "status": STATUS.index(trajectory.status),
+        "status": Status[trajectory.status.upper()],
         "batch": settings.transient + width * (np.arange(settings.batches) + 0.5),
     }
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
@@ -109,22 +110,24 @@ def point_identity(command: str) -> str:
 
 def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     """Return the global attributes of a point file."""
-    settings = trajectory.settings
-    law = trajectory.friction.law
+    model, settings = trajectory.model, trajectory.settings
     attributes = {
         "Conventions": CONVENTIONS,
-        "title": f"Burridge-Knopoff chain of {trajectory.chain.blocks} blocks, {law} friction law",
+        "title": f"Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law",
         "summary": (
             "One simulation of spring-coupled blocks with stick-slip friction: event sequence, section crossings and "
             "phase-space distance between the end blocks. All quantities are dimensionless."
         ),
         "keywords": "stick-slip, Burridge-Knopoff model, synchronization",
         "source": f"{SOFTWARE}, event-driven or time-stepping simulation",
-        "history": simulate_command(law, trajectory.friction.a, trajectory.initial, settings),
-        "law": law,
-        "solver": settings.solver or DEFAULT_SOLVER[law],
+        "history": simulate_command(model, trajectory.initial, settings),
+        "law": model.law.name,
+        "law_formula": model.law.formula,
+        **{f"law_{key}": value for key, value in model.law.numbers.items()},
+        **{f"chain_{key}": getattr(model.chain, key) for key in CHAIN_OPTIONS},
+        "solver": settings.solver,
         "initial": trajectory.initial.name,
-        "contact": settings.contact,
+        "contact": model.contact,
         "start": settings.start,
         "events": settings.events,
         "transient": settings.transient,

@@ -12,7 +12,6 @@ import xarray
 from burridge_knopoff.dataset.seal import BadFile, identity, read_seal, seal
 from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
 from burridge_knopoff.files import write_whole
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.provenance import provenance
 from burridge_knopoff.sources import source_fingerprint
 
@@ -25,7 +24,7 @@ AXES: dict[str, Variable] = {
 STATE = Variable(("state",), "i4", "number of the sampled initial state", coordinate=True)
 
 
-def axes(initial: Sequence[str], a: Sequence[float], laws: Sequence[str] = LAWS) -> dict[str, Any]:
+def axes(initial: Sequence[str], a: Sequence[float], laws: Sequence[str]) -> dict[str, Any]:
     """Return the coordinates of a summary over (law, initial, a)."""
     values = {"law": np.array(laws, dtype=object), "initial": np.array(initial, dtype=object), "a": np.asarray(a)}
     return {name: (name, values[name], item.all_attributes()) for name, item in AXES.items()}

@@ -1,0 +1,19 @@
+"""The models of a study, from its config's `laws`, `chain`, `v` and `contact`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+
+#: Keys of a config that decide a model, besides the number of blocks.
+MODEL_KEYS = ("laws", "chain", "v", "contact")
+
+
+def model_of(config: Mapping[str, Any], law: str, a: float, blocks: int) -> Model:
+    """Return the model of a study under one of its laws, at one a; raises ValueError if there is none."""
+    chain = Chain(blocks, **config["chain"])
+    return Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
