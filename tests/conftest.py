@@ -10,6 +10,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 # As in a point job: the tests use both cores already.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -33,3 +34,15 @@ def finished(tmp_path_factory: pytest.TempPathFactory):
     study = Study(tmp_path_factory.mktemp("finished"))
     study.output = study.ok()
     return study
+
+
+@pytest.fixture(scope="session")
+def small_studies(tmp_path_factory: pytest.TempPathFactory):
+    """Return small studies by their names in `tests.small_study`, each run once."""
+    from tests.small_study import SMALL, STUDIES, run_study
+
+    @cache
+    def small_study(name: str):
+        return run_study(tmp_path_factory.mktemp(name), {**SMALL, "study": name, **STUDIES[name]})
+
+    return small_study

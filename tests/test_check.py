@@ -8,14 +8,13 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import check as module
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.check import check_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.config import load_study, read_schema
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.friction import LAWS, Friction
-from burridge_knopoff.simulation import run
+from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.running.simulation import run
 from burridge_knopoff.study_record import write_study_record
 from burridge_knopoff.summaries import mean_distance
 from burridge_knopoff.summaries.points import Grid
@@ -51,7 +50,7 @@ def whole(tmp_path_factory, repository):
             ]
         for solver, path in names:
             state, settings = study.state(initial), study.settings(law, solver)
-            write_point(run(Chain(3), Friction(law, grid.a[a]), state, settings), path)
+            write_point(run(study.model(law, grid.a[a]), state, settings), path)
     write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
     write_study_record(results, study, config_file, "--configfile small.yaml")
     return results
@@ -106,21 +105,21 @@ def test_a_bad_point_is_listed_with_the_command_that_remakes_it(results, capsys,
 
 
 def test_points_of_other_solvers_are_looked_at_as_well(results):
-    one, other = (results / f"solvers/{solver}/linearized/minus/a0.0800.nc" for solver in ("series", "rk4"))
+    one, other = (results / f"solvers/{solver}/linearized/minus/a0.0800.nc" for solver in ("map", "rk4"))
     shutil.copy(other, one)
     other.unlink()
     assert found(results) == {
-        ("stale", "solvers/series/linearized/minus/a0.0800.nc"),
+        ("stale", "solvers/map/linearized/minus/a0.0800.nc"),
         ("missing", "solvers/rk4/linearized/minus/a0.0800.nc"),
     }
     reasons = [finding.reason for finding in check_study(results).findings]
-    assert "is another run: --solver rk4 instead of --solver series" in reasons
+    assert "is another run: --solver rk4 instead of --solver map" in reasons
 
 
 def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys, monkeypatch):
     study = check_study(results)
     assert not study.findings
-    trajectory = run(Chain(3), Friction("linearized", 0.05), *state_and_settings(results))
+    trajectory = run(*model_state_and_settings(results))
     object.__setattr__(trajectory, "status", "accumulating_events")
     write_point(trajectory, point(results))
     assert main(["check", str(results)]) == 3
@@ -131,12 +130,12 @@ def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys, monkeypat
     assert main(["check", str(results)]) == 1
 
 
-def state_and_settings(results):
+def model_state_and_settings(results):
     from burridge_knopoff.config import Study
 
     record = json.loads((results / "study.json").read_text())
     study = Study(record["config"], record["grid"])
-    return study.state("minus"), study.settings("linearized")
+    return study.model("linearized", 0.05), study.state("minus"), study.settings("linearized")
 
 
 def test_a_crashed_job_says_why_its_point_is_missing(results):
@@ -148,7 +147,7 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
     assert finding.reason == f"its job failed: MemoryError: no more (log {log})"
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_other_sources_make_points_stale(results, monkeypatch, law):
     path = point(results, law)
     identity = module.point_identity

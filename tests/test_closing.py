@@ -8,10 +8,12 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff.closing import closing_lines, elapsed
+from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.job_log import SILENT
-from burridge_knopoff.simulation import STATUS
 from burridge_knopoff.stability.motion import KINDS
+
+STATUSES = dict(enumerate(STATUS_FLAG["flag_meanings"].split()))
 
 
 @pytest.fixture
@@ -58,7 +60,7 @@ def test_a_whole_study(results):
     ]
     counts = {"holds": 1, "holds loosely": 0, "depends on convention": 1, "fails": 10, "not testable": 0}
     (results / "summary" / "claims.json").write_text(json.dumps({"counts": counts, "claims": claims}))
-    write_flags(results / "summary" / "mean_distance.nc", "status", dict(enumerate(STATUS)), [0, 3, 0, 1, 3])
+    write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 3, 0, 1, 3])
     write_flags(results / "summary" / "lyapunov.nc", "kind", KINDS, [-1, 3, 0, -1, 2])
     made = [str(results / path) for path in ("points/a.nc", "points/b.nc", "summary/claims.json", "report.html")]
     wanted = [*summaries(results), str(results / "report.html")]
@@ -76,14 +78,14 @@ def test_a_whole_study(results):
 
 
 def test_all_points_completed(results):
-    write_flags(results / "summary" / "mean_distance.nc", "status", dict(enumerate(STATUS)), [0, 0])
+    write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 0])
     write_flags(results / "summary" / "lyapunov.nc", "kind", KINDS, [3, 2])
     lines = closing_lines(results, 1.0, success=True, made=[], wanted=summaries(results)[1:])
     assert lines == ["study paper: done in 1 s", "made: nothing", "points: all 2 completed"]
 
 
 def test_a_single_point_says_nothing_of_summaries(results):
-    write_flags(results / "summary" / "mean_distance.nc", "status", dict(enumerate(STATUS)), [0, 3])
+    write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 3])
     point = str(results / "points" / "a.nc")
     lines = closing_lines(results, 1.0, success=True, made=[point], wanted=[point])
     assert lines == ["study paper: done in 1 s", f"made: {point}"]

@@ -1,6 +1,6 @@
 """docs/extending.md: its edits, applied to a copy of the tree, give a law, an observable and a figure that are right.
 
-The kernel of the copy runs uncompiled, which makes the same numbers (tests/kernel/test_uncompiled.py).
+The kernel of the copy is compiled without optimisation, which makes the same numbers (tests/kernel/test_builds.py).
 """
 
 import os
@@ -18,65 +18,23 @@ from tests.workflow.conftest import TINY
 REPOSITORY = Path(__file__).parent.parent
 PAGE = (REPOSITORY / "docs" / "extending.md").read_text()
 
-EVENTS = """
-import numpy as np
-from burridge_knopoff import simulate
-from burridge_knopoff.kernel import state
-from tests.independent import events
-assert state.__file__.endswith(".py")
-for contact, a in (("one_sided", 0.3), ("symmetric", 0.3), ("symmetric", 1.2)):
-    run = simulate("exponential", a, "plus", transient=0.0, window=15.0, batches=2, contact=contact, events="all",
-                   trajectory_sampling=1.0, lyapunov_exponents=0)
-    (time, block, kind), (position, velocity) = events(lambda x: np.exp(-x), a, run.initial.position,
-                                                       run.initial.velocity, contact=contact, end=15.0)
-    assert len(time) > 5
-    assert run.event_block.tolist() == block.tolist() and run.event_kind.tolist() == kind.tolist()
-    assert np.abs(run.event_time - time).max() < 1e-8, np.abs(run.event_time - time).max()
-    assert np.abs(run.velocity[-1] - velocity).max() < 1e-8
-"""
-
-TANGENT = """
-import numpy as np
-from burridge_knopoff import Chain, Friction
-from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.stability.flow import Instant, Model, begin, instant
-from burridge_knopoff.stability.orbit import flow
-for contact in ("one_sided", "symmetric"):
-    model = Model(Chain(3), Friction("exponential", 0.4), contact=contact)
-    start = begin(model, PAPER_STATES["plus"])
-    solver, passed = flow(model, start, 12.0, perturbed=True)
-    assert len(passed) >= 4
-    step = 1e-5
-    for column in range(6):
-        ends = []
-        for sign in (1, -1):
-            vector = start.vector()
-            vector[column] += sign * step
-            ends.append(instant(flow(model, Instant(vector[:3], vector[3:], start.stuck), 12.0)[0]).vector())
-        difference = (ends[0] - ends[1]) / (2 * step)
-        assert np.abs(difference - solver.tangent.matrix()[:, column]).max() < 1e-6 * max(1.0, np.abs(difference).max())
-"""
-
 OBSERVABLE = """
 import numpy as np
 from pathlib import Path
 from burridge_knopoff import simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.figures.largest_velocity import draw
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.settings import Settings
 from burridge_knopoff.summaries.largest_velocity import summarize
-from burridge_knopoff.summaries.points import Grid
+from tests.grids import grid_of
 options = {"transient": 4.0, "window": 26.0, "batches": 2, "trajectory": 26.0, "trajectory_sampling": 0.01}
-settings = dict.fromkeys(LAWS, Settings(**options))
-grid = Grid(Path("points"), {"plus": PAPER_STATES["plus"]}, {"0.1": 0.1, "0.3": 0.3}, settings)
+laws = {"linearized": {}, "quadratic": {}}
+grid = grid_of(Path("points"), ["plus"], {"0.1": 0.1, "0.3": 0.3}, {"laws": laws}, **options)
 words = [f"--{key.replace('_', '-')}={value}" for key, value in options.items()]
 for _, (law, initial, a) in grid:
     out = str(grid.path(law, initial, a))
     assert main(["simulate", "--law", law, "--a", a, "--initial", initial, *words, "--out", out]) == 0
 summary = summarize(grid)
-for law in LAWS:
+for law in laws:
     run = simulate(law, 0.3, "plus", **options)
     value = summary["window_largest_velocity"].sel(law=law, initial="plus", a=0.3).values
     assert np.array_equal(value, run.window_largest_velocity, equal_nan=True)
@@ -86,8 +44,8 @@ for law in LAWS:
     above = (value - sampled)[slips]
     assert (above > -1e-14).all() and (above < 1e-4).all()
 panels = draw(summary).axes
-assert len(panels) == 3
-for panel, law in zip(panels, LAWS):
+assert len(panels) == 2
+for panel, law in zip(panels, laws):
     for block, line in enumerate(panel.get_lines(), 1):
         drawn = summary["window_largest_velocity"].sel(law=law, initial="plus", block=block)
         assert np.array_equal(line.get_ydata(), drawn.values, equal_nan=True)
@@ -96,20 +54,24 @@ for panel, law in zip(panels, LAWS):
 
 @pytest.fixture(scope="module")
 def extended(tmp_path_factory):
-    """A copy of the tree with the edits of the page, and no compiled kernel."""
+    """A copy of the tree with the edits of the page, and its kernel compiled."""
     folder = tmp_path_factory.mktemp("extended")
-    compiled = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__")
-    for name in ("config", "src", "workflow"):
+    compiled = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__", "*.egg-info")
+    for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=compiled)
-    for name in ("Snakefile", "pyproject.toml"):
+    for name in ("Snakefile", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(REPOSITORY / name, folder / name)
-    assert len(apply(PAGE, folder)) > 15
+    assert len(apply(PAGE, folder)) == 12
+    flags = folder / "src" / "burridge_knopoff" / "compilation.py"
+    optimised = flags.read_text()
+    flags.write_text(optimised.replace('"-O3"', '"-O0"'))
+    run(folder, sys.executable, "setup.py", "-q", "build_ext", "--inplace")
     return folder
 
 
 def run(extended, *command, folder=None):
     """Run a command with the extended package; return what it prints."""
-    path = os.pathsep.join((str(extended / "src"), str(REPOSITORY)))
+    path = os.pathsep.join((str(extended / "src"), str(extended)))
     done = subprocess.run(
         command, cwd=folder or extended, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True
     )
@@ -117,9 +79,25 @@ def run(extended, *command, folder=None):
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("code", [EVENTS, TANGENT, OBSERVABLE], ids=["events", "tangent", "observable"])
-def test_the_extensions_are_right(extended, tmp_path, code):
-    run(extended, sys.executable, "-c", code, folder=tmp_path)
+def study(extended, folder, config):
+    """Run a study with the extended tree, to its report; return its results."""
+    (folder / "study.yaml").write_text(config)
+    snakemake = str(Path(sys.executable).parent / "snakemake")
+    run(extended, snakemake, "-c1", "-s", str(extended / "Snakefile"), "--configfile", "study.yaml", folder=folder)
+    results = folder / "results" / "tiny"
+    assert (results / "report.html").stat().st_size > 100_000
+    return results
+
+
+def test_the_observable_is_right(extended, tmp_path):
+    run(extended, sys.executable, "-c", OBSERVABLE, folder=tmp_path)
+
+
+def test_the_law_meets_its_obligations(extended):
+    ran = run(
+        extended, sys.executable, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", "tests/laws", "-k", "quadratic"
+    )
+    assert int(re.search(r"(\d+) passed", ran)[1]) >= 20
 
 
 def test_the_page_prints_what_it_says(extended):
@@ -127,26 +105,23 @@ def test_the_page_prints_what_it_says(extended):
     assert run(extended, sys.executable, "-c", code.text) == said.text
 
 
-def test_the_workflow_plans_them(extended, tmp_path):
-    config = tmp_path / "study.yaml"
-    config.write_text(TINY.replace("basins: {", "figures: {law: exponential}\nbasins: {exponential: [0.2], "))
-    snakemake = str(Path(sys.executable).parent / "snakemake")
-    planned = run(
-        extended,
-        snakemake,
-        "-n",
-        "-c1",
-        "-s",
-        str(extended / "Snakefile"),
-        "--configfile",
-        str(config),
-        folder=tmp_path,
-    )
-    counts = dict(re.findall(r"^(\w+) +(\d+)$", planned, re.MULTILINE))
-    assert counts["simulate"] == "24"
-    assert counts["attractors_of_law"] == "3"
-    assert counts["basin_pairs"] == "4"
-    assert counts["largest_velocity"] == counts["figure_largest_velocity"] == "1"
+def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
+    laws, _ = (block.text for block in blocks(PAGE) if block.info == "yaml")
+    results = study(extended, tmp_path, TINY + laws + "  nonlinear: {}\n  quadratic: {c: 1.0}\n")
+    assert {path.name for path in (results / "points").iterdir()} == {
+        "linearized",
+        "rational",
+        "nonlinear",
+        "quadratic",
+    }
+    assert (results / "figures" / "largest_velocity.png").is_file()
+    assert "aU′(1 + U′/c)" in (results / "report.html").read_text()
+
+
+def test_a_study_of_the_chain_ends_in_its_report(extended, tmp_path):
+    _, chain = (block.text for block in blocks(PAGE) if block.info == "yaml")
+    results = study(extended, tmp_path, TINY + chain)
+    assert (results / "figures" / "largest_velocity.png").is_file()
 
 
 def test_the_code_of_the_page_is_in_the_projects_style(extended):

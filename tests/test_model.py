@@ -5,16 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import PAPER_STATES, InitialState, initial_state
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState, initial_state
 
 
 def test_the_paper_chain():
     chain = Chain(3)
     assert chain.stiffness.tolist() == [[2, -1, 0], [-1, 4, -1], [0, -1, 2]]
     assert chain.driving.tolist() == [1, 2, 1]
-    friction = float(Friction("linearized", 0.08)(0.1))
+    friction = float(law_of("linearized", 0.08)(0.1))
     assert np.allclose(chain.sliding_offset(friction), np.array([-5 / 6, -2 / 3, -5 / 6]) * (1 - 0.008), atol=1e-15)
 
 
@@ -29,12 +29,10 @@ def test_every_chain_is_driven_as_it_is_stiff(blocks):
 
 @given(st.floats(0.0, 1.99), st.floats(0.0, 5.0))
 def test_friction_laws_touch_at_rest(a, speed):
-    linearized, nonlinear = Friction("linearized", a), Friction("nonlinear", a)
+    linearized, nonlinear = law_of("linearized", a), law_of("nonlinear", a)
     assert linearized(0.0) == nonlinear(0.0) == 1.0
     assert nonlinear(speed) >= linearized(speed) - 1e-15
-    step = 1e-6
-    for law in (linearized, nonlinear):
-        assert (law(step) - 1.0) / step == pytest.approx(-a, abs=1e-5)
+    assert linearized.slope(0.0) == nonlinear.slope(0.0) == -a
 
 
 def test_the_paper_states():
@@ -58,10 +56,10 @@ def test_bad_chains(blocks):
         Chain(blocks)
 
 
-@pytest.mark.parametrize("a", [-0.1, 2.0, float("nan"), float("inf"), "x", True, None])
+@pytest.mark.parametrize("a", [-0.1, float("nan"), float("inf"), "x", True, None])
 def test_bad_friction(a):
     with pytest.raises(ValueError, match="a: "):
-        Friction("linearized", a)
+        law_of("linearized", a)
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.initial import PAPER_STATES, InitialState
-from burridge_knopoff.settings import Settings
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.laws import LAWS
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import CONTACTS, Model
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import simulate
 
 
 @pytest.mark.parametrize("initial", ["minus", "plus"])
@@ -152,7 +154,7 @@ def test_no_sticks_means_no_events():
 
 def test_accumulating_events_end_the_run(monkeypatch):
     """More events in one time unit than the limit end a run with a status, and NaN for the averages."""
-    monkeypatch.setattr("burridge_knopoff.simulation.EVENTS_PER_BLOCK_AND_UNIT", 0)
+    monkeypatch.setattr("burridge_knopoff.running.runner.EVENTS_PER_BLOCK_AND_UNIT", 0)
     run = simulate("linearized", 0.08, "minus", transient=0.0, window=50.0, events="all")
     assert run.status == "accumulating_events"
     assert np.isnan(run.mean_distance)
@@ -169,7 +171,7 @@ def test_motion_without_bound_ends_the_run(law, solver):
 
 
 def test_the_step_limit_ends_the_run(monkeypatch):
-    monkeypatch.setattr("burridge_knopoff.simulation.STEP_LIMIT", 10)
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 10)
     run = simulate("linearized", 0.08, "minus", transient=0.0, window=50.0)
     assert run.status == "step_limit"
     assert run.step_count == 10
@@ -186,15 +188,15 @@ def test_the_step_limit_ends_the_run(monkeypatch):
         ({"batches": 1}, "batches: 1"),
         ({"contact": "sticky"}, "one_sided | symmetric"),
         ({"start": "soon"}, "moving | tested"),
-        ({"solver": "euler"}, "map | series | rk4"),
+        ({"solver": "euler"}, "series | map | rk4"),
         ({"events": "some"}, "none | window | all"),
         ({"sampling": 1e-5, "window": 1e9}, "samples"),
         ({"colour": "blue"}, "colour: not a setting"),
-        ({"law": "cubic"}, "linearized | nonlinear"),
-        ({"a": 2.0}, "0 ≤ a < 2"),
+        ({"law": "cubic"}, " | ".join(LAWS)),
+        ({"a": 2.0, "solver": "map"}, "not too steep"),
         ({"a": float("nan")}, "a: nan"),
         ({"initial": "middle"}, "minus | plus"),
-        ({"law": "nonlinear", "solver": "map"}, "no closed form"),
+        ({"law": "nonlinear", "solver": "map"}, "closed form"),
         ({"chain": Chain(4)}, "blocks: 4"),
         ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
     ],
@@ -211,5 +213,10 @@ def test_settings_are_the_schema_defaults(repository):
     from burridge_knopoff.config.checks import RUN_KEYS
 
     schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
-    for key in (*RUN_KEYS, "step"):
+    for key, item in schema["chain"]["properties"].items():
+        assert item["default"] == getattr(Chain(3), key), key
+    assert schema["v"]["default"] == Model.v
+    assert schema["contact"]["default"] == Model.contact
+    assert tuple(schema["contact"]["enum"]) == CONTACTS
+    for key in (*RUN_KEYS, "step", "solver"):
         assert schema[key]["default"] == getattr(Settings(), key), key

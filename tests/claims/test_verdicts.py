@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 
 from burridge_knopoff.claims.ledger import judge, ledger, read_claims
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
@@ -63,6 +64,72 @@ def test_nothing_is_judged_without_its_data(name: str) -> None:
 @pytest.mark.parametrize("name", CLAIMS)
 def test_nothing_is_judged_at_another_driver_velocity(name: str) -> None:
     assert judge(CLAIMS[name], evidence(paper_world(), v=0.2)).verdict == NOT_TESTABLE
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+@pytest.mark.parametrize(
+    ("laws", "reason"),
+    [
+        ({"stribeck": {}}, "the study has no linearized law"),
+        ({"linearized": {"law": "exponential"}, "nonlinear": {}}, "the study's linearized law is not the paper's"),
+    ],
+)
+def test_nothing_is_judged_under_other_laws(name: str, laws: dict[str, dict], reason: str) -> None:
+    world = {key: _under(item, list(laws)) for key, item in paper_world().items()}
+    verdict = judge(CLAIMS[name], evidence(world, laws=laws))
+    assert (verdict.verdict, verdict.reason) == (NOT_TESTABLE, f"Not testable here: {reason}.")
+
+
+def _under(dataset: xarray.Dataset, laws: list[str]) -> xarray.Dataset:
+    """Return a summary with other names of the laws; those that are too many are left out."""
+    for name in ("law", "other_law"):
+        if name in dataset.dims:
+            names = laws if name == "law" else laws[1:]
+            dataset = dataset.isel({name: slice(len(names))}).assign_coords({name: names})
+    return dataset
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_what_one_law_tells_is_judged_without_the_other(name: str) -> None:
+    """No claim fails for want of a law: it is judged by the law that it is about, or not testable."""
+    world = {key: _under(item, ["linearized"]) for key, item in paper_world().items()}
+    verdict = judge(CLAIMS[name], evidence(world, laws={"linearized": {}}))
+    needed = CLAIMS[name].parameters.get("laws", [CLAIMS[name].parameters.get("law", "nonlinear")])
+    if "nonlinear" in needed:
+        assert (verdict.verdict, verdict.reason) == (NOT_TESTABLE, "Not testable here: the study has no nonlinear law.")
+    else:
+        assert verdict.verdict == HOLDS, verdict.reason
+
+
+@pytest.mark.parametrize("name", JUDGED)
+def test_a_further_law_changes_no_verdict(name: str) -> None:
+    """Its numbers would contradict every claim."""
+    world = {key: _with_another_law(item) for key, item in paper_world().items()}
+    laws = {"linearized": {}, "nonlinear": {}, "stribeck": {}}
+    assert judge(CLAIMS[name], evidence(world, laws=laws)).verdict == HOLDS
+    first = judge(CLAIMS[name], evidence(world, laws={"stribeck": {}, **laws}))
+    compared = name in ("laws_agree", "two_blocks_agree")
+    assert first.verdict == (NOT_TESTABLE if compared else HOLDS)
+    if compared:
+        assert "compared with its first one, the stribeck law" in first.reason
+
+
+def _with_another_law(dataset: xarray.Dataset) -> xarray.Dataset:
+    names = [name for name in ("law", "other_law") if name in dataset.dims]
+    return dataset.reindex({name: [*dataset[name].values, "stribeck"] for name in names}, fill_value=-1)
+
+
+CHAINS = [{"ends": "ring"}, {"coupling": 2.0}, {"pulling": 1.0}, {"threshold": [1.0, 1.1, 1.0]}]
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_nothing_is_judged_of_another_chain(chain: dict[str, object]) -> None:
+    for claim in CLAIMS.values():
+        verdict = judge(claim, evidence(paper_world(), chain=chain))
+        assert verdict.verdict == NOT_TESTABLE
+        assert "other springs or static friction" in verdict.reason
+    same = {"coupling": [1.0, 1.0], "pulling": [1.0, 2.0, 1.0], "threshold": [1.0, 1.0, 1.0]}
+    assert judge(CLAIMS["equilibrium"], evidence(paper_world(), chain=same)).verdict == HOLDS
 
 
 def test_runs_shorter_than_the_papers_judge_nothing() -> None:

@@ -6,15 +6,17 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.paper import PAPER_LAWS as LAWS
 from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED
+from tests.grids import PAPER_MODELS
 from tests.sections import MOTION
 
 # Fine where the paper's edges of synchrony are.
 A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in range(1, 61))]))
 STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
+PAIR = ("other_law", "initial", "a")
 SHAPE = (2, 2, len(A))
 BLOCKS = np.array([1, 2, 3])
 SYNCHRONY = (A >= 0.005) & (A <= 0.08)
@@ -25,6 +27,7 @@ CONFIG = {
     "transient": 3000,
     "window": 7000,
     "motion": MOTION,
+    **{key: PAPER_MODELS[key] for key in ("laws", "chain")},
     "initial": {
         name: {"position": list(state.position), "velocity": list(state.velocity)}
         for name, state in PAPER_STATES.items()
@@ -125,10 +128,11 @@ def _bifurcation() -> xarray.Dataset:
 def _agreement() -> xarray.Dataset:
     dataset = _points(
         {
-            "agrees": (POINT[1:], np.ones(SHAPE[1:], "i1")),
-            "difference": (POINT[1:], np.full(SHAPE[1:], 1e-5)),
-            "parting_a": (("initial",), np.full(2, np.nan)),
-        }
+            "agrees": (PAIR, np.ones((1, *SHAPE[1:]), "i1")),
+            "difference": (PAIR, np.full((1, *SHAPE[1:]), 1e-5)),
+            "parting_a": (PAIR[:2], np.full((1, 2), np.nan)),
+        },
+        other_law=["nonlinear"],
     )
     dataset.attrs["synchronization_threshold"] = 1e-6
     return dataset
@@ -237,4 +241,6 @@ def _solvers() -> xarray.Dataset:
 
 def _two_blocks() -> xarray.Dataset:
     grid = np.linspace(0.02, 0.4, 20).round(2)
-    return xarray.Dataset({"agrees": (("state", "a"), np.ones((4, 20), "i1"))}, {"a": grid})
+    return xarray.Dataset(
+        {"agrees": (("other_law", "state", "a"), np.ones((1, 4, 20), "i1"))}, {"other_law": ["nonlinear"], "a": grid}
+    )

@@ -10,9 +10,18 @@ from burridge_knopoff.figures import distance, friction_laws, mean_distance, mot
 from burridge_knopoff.figures import equilibrium as equilibrium_figure
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.style import write_figure
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.summaries import equilibrium
 from burridge_knopoff.summaries.orbits import summarize
+
+
+def paper_models(blocks):
+    """The paper's laws on its chain of so many blocks."""
+    return [Model(Chain(blocks), law_of(law, 0.1)) for law in PAPER_LAWS]
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +93,7 @@ def test_distance_draws_both_scales(point):
 
 
 def test_orbits_says_that_there_are_none():
-    figure = orbits.draw(summarize(2, [0.1], 0.1, "one_sided"), xr.Dataset())
+    figure = orbits.draw(summarize(paper_models(2), [0.1]), xr.Dataset())
     assert [panel.texts[0].get_text() for panel in figure.axes] == ["no synchronized orbit found"] * 4
 
 
@@ -94,14 +103,27 @@ def test_friction_laws_are_the_models():
         {"least_friction": (("law", "initial", "a"), least)},
         {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.3]},
     )
-    laws, seen = friction_laws.draw([0.3], runs).axes
-    lines = {line.get_label(): line for line in seen.get_lines()}
-    assert np.array_equal(lines["plus, linearized"].get_ydata(), least[0, 0])
-    assert np.array_equal(lines["plus, nonlinear"].get_ydata(), least[1, 0], equal_nan=True)
-    lines = {line.get_label(): line for line in laws.get_lines()}
-    speed, linearized = lines["$a=0.3$, linearized"].get_data()
-    assert np.allclose(linearized, 1.0 - 0.3 * speed)
-    assert np.allclose(lines["$a=0.3$, nonlinear"].get_ydata(), 1.0 / (1.0 + 0.3 * speed))
+    laws, seen = friction_laws.draw([law_of(law, 0.1) for law in PAPER_LAWS], [0.3], runs).axes
+    for number, law in enumerate(PAPER_LAWS):
+        drawn = seen.get_lines()[number].get_ydata()
+        assert np.array_equal(drawn, least[number, 0], equal_nan=True)
+        speed, friction = laws.get_lines()[1 + number].get_data()
+        assert np.allclose(friction, {"linearized": 1.0 - 0.3 * speed, "nonlinear": 1.0 / (1.0 + 0.3 * speed)}[law])
+
+
+def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
+    own = law_of("own", 0.1, {"formula": "1 - c*tanh(a*u/c)" + " + 0*u" * 60, "c": 0.1})
+    laws = [law_of("linearized", 0.1), law_of("drop", 0.1, {"law": "carlson_langer", "sigma": 0.02}), own]
+    runs = xr.Dataset(
+        {"least_friction": (("law", "initial", "a"), np.ones((3, 1, 1)))},
+        {"law": [law.name for law in laws], "initial": ["plus"], "a": [0.3]},
+    )
+    figure = friction_laws.draw(laws, [0.3, 0.5], runs)
+    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert entries[:2] == ["linearized: Φ = 1 − aU′", "drop: Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.02"]
+    assert entries[2].startswith("own: Φ = 1 - c*tanh(a*u/c)")
+    assert entries[2].count("\n") == 2
+    assert friction_laws.law_text(law_of("own", 0.1, {"formula": "1 - c*u", "c": 0.1})).count("c = 0.1") == 1
 
 
 def test_the_callers_style_is_untouched(point):
@@ -159,11 +181,11 @@ def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, bloc
 
 
 def test_equilibrium_draws_eigenvalues_and_simulated_rates():
-    dataset = equilibrium.summarize(3, [0.0, 0.1, 0.2], 0.1)
+    dataset = equilibrium.summarize(paper_models(3), [0.0, 0.1, 0.2])
     plane, growth = equilibrium_figure.draw(dataset).axes
-    lines = {line.get_label(): line.get_ydata() for line in growth.get_lines()}
-    assert lines["$a/2$"].tolist() == [0.0, 0.05, 0.1]
-    assert lines["nonlinear law, simulated"].tolist() == dataset["growth_rate"].sel(law="nonlinear").values.tolist()
+    half, *drawn = (line.get_ydata().tolist() for line in growth.get_lines())
+    assert half == [0.0, 0.05, 0.1]
+    assert drawn[3] == dataset["growth_rate"].sel(law="nonlinear").values.tolist()
     real = dataset["eigenvalue"].sel(part="real", law="nonlinear").max("mode")
-    assert lines["nonlinear law"].tolist() == real.values.tolist()
+    assert drawn[2] == real.values.tolist()
     assert len([line for line in plane.get_lines() if len(line.get_xdata()) == 3]) == 12

@@ -11,16 +11,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.claims.ledger import as_json
-from burridge_knopoff.config import Study, load_study, read_schema
-from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.config import Study
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.friction import LAWS, Friction
 from burridge_knopoff.report.page import Sources
-from burridge_knopoff.simulation import STATUS, run
-from burridge_knopoff.summaries import agreement, attractors, bifurcation, lyapunov, mean_distance, orbits
-from burridge_knopoff.summaries.points import Grid
+from burridge_knopoff.running.status import Status
+from tests.small_study import run_study
 
 CLAIMS = Path(__file__).parent / "claims.json"
 
@@ -32,7 +28,7 @@ POOR = {
     "window": 100,
     "batches": 2,
     "attractors": {"samples": 2, "transient": 100, "window": 100, "time_limit": 1000, "pushes": 4},
-    "basins": {"linearized": [], "nonlinear": []},
+    "basins": {"a": {"linearized": [], "nonlinear": []}},
 }
 
 
@@ -46,27 +42,10 @@ class Poor:
 
 
 @pytest.fixture(scope="session")
-def poor(tmp_path_factory, repository) -> Poor:
+def poor(tmp_path_factory) -> Poor:
     folder = tmp_path_factory.mktemp("poor") / "results" / "poor"
-    study = load_study(POOR, read_schema(repository / "workflow/schemas/config.schema.yaml"), "poor.yaml")
-    config = study.config
-    grid = Grid.of(folder / "points", study.points)
-    for _, (law, initial, a) in grid:
-        write_point(
-            run(Chain(2), Friction(law, grid.a[a]), grid.initial[initial], grid.settings[law]),
-            grid.path(law, initial, a),
-        )
-    threshold = config["synchronization_threshold"]
-    values = list(study.grid.values())
-    kinds = lyapunov.summarize(grid, config["lyapunov_exponents"], threshold, config["motion"])
-    found = {
-        "mean_distance": mean_distance.summarize(grid, threshold),
-        "bifurcation": bifurcation.summarize(grid),
-        "lyapunov": kinds,
-        "agreement": agreement.summarize(grid, kinds, threshold, config["agreement"]),
-        "orbits": orbits.summarize(2, values, config["v"], config["contact"]),
-        "attractors": attractors.merge([attractors.one_law(law, values, config["initial"], config) for law in LAWS]),
-    }
+    small = run_study(folder, POOR)
+    study, found = small.study, small.summaries()
     _fail(found)
     for name, dataset in found.items():
         write_summary(dataset, folder / "summary" / f"{name}.nc")
@@ -93,15 +72,15 @@ def _fail(found) -> None:
     """Let the run of the linearized law at the second a be one that did not complete."""
     where = {"law": 0, "initial": 0, "a": 1}
     for name in ("mean_distance", "lyapunov"):
-        found[name]["status"][where] = STATUS.index("diverged")
+        found[name]["status"][where] = Status.DIVERGED
         found[name]["mean_distance"][where] = np.nan
     found["mean_distance"]["mean_distance_error"][where] = np.nan
     for name in ("lyapunov_exponent", "lyapunov_error"):
         found["lyapunov"][name][where] = np.nan
     found["lyapunov"]["kind"][where] = -1
     for name in ("difference", "difference_error", "section_distance"):
-        found["agreement"][name][{"initial": 0, "a": 1}] = np.nan
-    found["agreement"]["agrees"][{"initial": 0, "a": 1}] = -1
+        found["agreement"][name][{"other_law": 0, "initial": 0, "a": 1}] = np.nan
+    found["agreement"]["agrees"][{"other_law": 0, "initial": 0, "a": 1}] = -1
 
 
 @pytest.fixture

@@ -158,6 +158,7 @@ def test_run_times_are_sums_over_the_files_of_a_stage(tmp_path):
 
 
 def sections(velocity, count):
+    laws = {"flag_values": [0, 1], "flag_meanings": "linearized nonlinear"}
     states = {"flag_values": [0], "flag_meanings": "plus"}
     velocity = np.asarray(velocity)
     return xr.Dataset(
@@ -166,7 +167,10 @@ def sections(velocity, count):
             "crossing_direction": ("crossing", np.where(velocity >= 0.0, 1, -1).astype("i1")),
             "crossing_count": ("point", np.asarray(count, dtype="i4")),
         },
-        {"initial": ("point", np.zeros(len(count), dtype="i2"), states)},
+        {
+            "law": ("point", np.repeat([0, 1], len(count) // 2), laws),
+            "initial": ("point", np.zeros(len(count), dtype="i2"), states),
+        },
     )
 
 
@@ -205,7 +209,12 @@ def test_basin_maps_hold_label_and_time_of_every_pixel():
             "uncertainty_exponent": ("map", [0.5]),
             "uncertainty_exponent_error": ("map", [np.nan]),
         },
-        {"law": ("map", [1]), "a": ("map", [0.08]), "first_position": [-1.0, 0.0, 1.0], "last_position": [0.0, 1.0]},
+        {
+            "law": ("map", [1], {"flag_meanings": "linearized nonlinear"}),
+            "a": ("map", [0.08]),
+            "first_position": [-1.0, 0.0, 1.0],
+            "last_position": [0.0, 1.0],
+        },
     )
     known = xr.Dataset({"branch": (("law", "a", "attractor"), [[[0, 3, 7]]])})
     one = basin_maps(basins, known, {"plus": (0.9, -0.9)})["maps"][0]

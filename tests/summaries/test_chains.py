@@ -3,14 +3,24 @@
 import numpy as np
 import pytest
 
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.summaries import chains, two_blocks
-from tests.sections import AGREEMENT, MOTION
+from tests.sections import AGREEMENT
 
 SAMPLE = Sample(samples=5, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=1)
+
+
+def chain_file(blocks, time_limit=400.0):
+    return chains.chain_dataset(models(blocks, ["linearized"]), [0.02, 0.2], SAMPLE, Watch(time_limit=time_limit))
+
+
+def models(blocks, laws):
+    return [Model(Chain(blocks), law_of(law, 0.0)) for law in laws]
 
 
 @pytest.fixture(scope="module")
@@ -18,25 +28,23 @@ def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("chains")
     paths = [folder / f"blocks{blocks}.nc" for blocks in (10, 2)]
     for blocks, path in zip((10, 2), paths, strict=True):
-        dataset = chains.chain_dataset(
-            blocks, ["linearized"], [0.02, 0.2], SAMPLE, Watch(time_limit=400.0), 0.1, "one_sided"
-        )
-        write_summary(dataset, path)
+        write_summary(chain_file(blocks), path)
     return paths
 
 
 @pytest.fixture(scope="module")
 def compared():
     settings = two_blocks.run_settings(transient=1500.0, window=400.0, batches=4)
-    initial = Sample(2, 1, (-1.5, 1.5), (0.0, 0.2), 0).initial(2)
-    return two_blocks.summarize(initial, [0.03, 0.15, 0.3], settings, 1e-6, MOTION, AGREEMENT)
+    initial = Sample(samples=2, symmetric_samples=0).initial(2)
+    laws = ("linearized", "nonlinear", "exponential")
+    return two_blocks.summarize(models(2, laws), initial, [0.03, 0.15, 0.3], settings, MOTION, AGREEMENT)
 
 
 def test_chains_are_ordered_by_their_number_of_blocks(files):
     summary = chains.summarize(files)
     assert summary["blocks"].values.tolist() == [2, 10]
     assert summary.attrs["time_limit"] == 400.0
-    first = chains.chain_dataset(2, ["linearized"], [0.02, 0.2], SAMPLE, Watch(time_limit=400.0), 0.1, "one_sided")
+    first = chain_file(2)
     for name in chains.CHAIN_VARIABLES:
         assert np.array_equal(summary[name].sel(blocks=2), first[name], equal_nan=True), name
 
@@ -68,22 +76,30 @@ def test_a_damaged_chain_file_is_named(files):
 
 def test_files_of_other_settings_do_not_mix(files):
     path = files[0].with_name("other.nc")
-    write_summary(
-        chains.chain_dataset(3, ["linearized"], [0.02, 0.2], SAMPLE, Watch(time_limit=200.0), 0.1, "one_sided"), path
-    )
+    write_summary(chain_file(3, 200.0), path)
     with pytest.raises(ValueError, match=r"other\.nc: made with other settings"):
         chains.summarize([*files, path])
 
 
 def test_two_blocks_agree_where_both_synchronize(compared):
-    assert compared["agrees"].sel(a=0.03).values.tolist() == [1, 1]
+    """Each other law is compared with the first one."""
+    assert compared["other_law"].values.tolist() == ["nonlinear", "exponential"]
+    assert compared["agrees"].sel(a=0.03).values.tolist() == [[1, 1]] * 2
     assert (compared["kind"].sel(a=0.03) == 0).all()
-    assert compared["agreeing_fraction"].sel(a=0.03) == 1.0
+    assert (compared["agreeing_fraction"].sel(a=0.03) == 1.0).all()
     assert (np.isnan(compared["parting_a"]) | (compared["parting_a"] > 0.03)).all()
     low = fraction_interval(2, 2)[1]
-    assert compared["agreeing_low"].sel(a=0.03) == low
+    assert (compared["agreeing_low"].sel(a=0.03) == low).all()
     mean = compared["mean_distance"].values
-    assert np.array_equal(compared["difference"].values, mean[1] - mean[0])
+    assert np.array_equal(compared["difference"].values, mean[1:] - mean[0])
+
+
+def test_one_law_has_nothing_to_be_compared_with():
+    settings = two_blocks.run_settings(transient=200.0, window=100.0, batches=4)
+    initial = Sample(samples=1, symmetric_samples=0).initial(2)
+    alone = two_blocks.summarize(models(2, ["exponential"]), initial, [0.03], settings, MOTION, AGREEMENT)
+    assert alone["agrees"].shape == (0, 1, 1)
+    assert alone["mean_distance"].shape == (1, 1, 1)
 
 
 def test_the_figure_shows_the_fractions(files, compared):

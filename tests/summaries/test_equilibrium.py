@@ -3,48 +3,56 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import LAWS, Friction
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.flow import Model
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.summaries.equilibrium import eigenvalues, simulate_sliding, sliding_position, summarize
+
+MODELS = [Model(Chain(3), law_of(law, 0.0)) for law in PAPER_LAWS]
 
 
 @pytest.fixture(scope="module")
 def found():
-    return summarize(3, [0.0, 0.08, 0.3], 0.1)
+    return summarize(MODELS, [0.0, 0.08, 0.3])
 
 
 def jacobian(model):
     """Return the Jacobian at uniform sliding with the slope of the friction from central differences."""
-    n = model.chain.blocks
+    n = model.blocks
     h = 1e-5
-    slope = -float(model.friction(model.v + h) - model.friction(model.v - h)) / (2 * h)
-    return np.block([[np.zeros((n, n)), np.eye(n)], [-model.chain.stiffness, slope * np.eye(n)]])
+    slope = -float(model.law(model.v + h) - model.law(model.v - h)) / (2 * h)
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-model.chain.stiffness, slope * np.diag(model.chain.thresholds)]])
 
 
 def test_the_positions_of_the_paper(found):
     for a in (0.0, 0.08, 0.3):
         friction = {"linearized": 1.0 - 0.1 * a, "nonlinear": 1.0 / (1.0 + 0.1 * a)}
-        for law in LAWS:
+        for law in PAPER_LAWS:
             expected = -friction[law] * np.array([5 / 6, 2 / 3, 5 / 6])
             assert found["equilibrium_position"].sel(law=law, a=a).values == pytest.approx(expected, abs=1e-15)
 
 
-@pytest.mark.parametrize("blocks", [2, 5, 30])
-@pytest.mark.parametrize("law", LAWS)
-def test_any_chain(blocks, law):
-    model = Model(Chain(blocks), Friction(law, 0.4), 0.7)
-    force = model.chain.driving * 0.0 - model.chain.stiffness @ sliding_position(model)
-    assert force == pytest.approx(np.full(blocks, float(model.friction(0.7))), abs=1e-14)
+@pytest.mark.parametrize(
+    "chain",
+    [
+        *(Chain(blocks) for blocks in (2, 5, 30)),
+        Chain(4, ends="ring", pulling=0.5),
+        Chain(3, coupling=(1.0, 2.0), pulling=(1.0, 0.3, 2.0), threshold=(1.0, 0.7, 1.3)),
+    ],
+    ids=["two", "five", "thirty", "ring", "unequal"],
+)
+@pytest.mark.parametrize("law", ["linearized", "nonlinear", "exponential", "stribeck", "carlson_langer"])
+def test_any_chain(chain, law):
+    model = Model(chain, law_of(law, 0.4), 0.7)
+    force = -chain.stiffness @ sliding_position(model)
+    assert force == pytest.approx(chain.thresholds * float(model.law(0.7)), abs=1e-11)
     mine, theirs = eigenvalues(model), np.linalg.eigvals(jacobian(model))
     for value in theirs:
         assert np.abs(mine - value).min() < 1e-9
-    assert (mine.real > 0.0).all()
+    assert (np.diff(np.abs(mine.imag)) > -1e-9).all()
+    assert (mine.imag[0::2] >= 0.0).all()
     assert np.sort(mine.imag) == pytest.approx(np.sort(theirs.imag), abs=1e-9)
     drift, rate = simulate_sliding(model, sliding_position(model))
-    assert drift < 1e-12
+    assert drift < 1e-10
     assert rate == pytest.approx(theirs.real.max(), abs=1e-9)
 
 
@@ -61,7 +69,7 @@ def test_eigenvalues_and_growth_rates(found):
 
 
 def test_elsewhere_is_no_equilibrium():
-    model = Model(Chain(3), Friction("linearized", 0.08))
+    model = Model(Chain(3), law_of("linearized", 0.08))
     drift, _ = simulate_sliding(model, sliding_position(model) + np.array([1e-3, 0.0, 0.0]))
     assert drift > 1e-4
 
@@ -83,4 +91,38 @@ def test_a_small_push_grows_at_that_rate(found):
 
 
 def test_the_same_numbers_again(found):
-    assert found.identical(summarize(3, [0.0, 0.08, 0.3], 0.1))
+    assert found.identical(summarize(MODELS, [0.0, 0.08, 0.3]))
+
+
+@pytest.mark.parametrize(
+    ("law", "rate"),
+    [
+        (law_of("exponential", 1.0), 0.5 * np.exp(-0.5)),
+        (FormulaLaw(1.0, "exp(-a*u)"), 0.5 * np.exp(-0.5)),
+        # −Φ'(v)/2 = a (exp(−av/σ) − η)/2: beyond the least friction perturbations decay.
+        (law_of("stribeck", 0.2, {"sigma": 0.2}), 0.1 * (np.exp(-0.5) - 0.2)),
+        (law_of("stribeck", 1.0), 0.5 * (np.exp(-10.0) - 0.2)),
+    ],
+)
+def test_the_growth_rate_is_that_of_a_simulated_push(law, rate):
+    """Two whole runs, without the tangent flow, at v = 0.5: the slower mirror-symmetric push grows, or decays, so."""
+    model = Model(Chain(2), law, 0.5)
+    found = eigenvalues(model)
+    assert found.real == pytest.approx([rate] * 4, abs=1e-12)
+    assert simulate_sliding(model, sliding_position(model))[1] == pytest.approx(rate, abs=1e-10)
+    # K = [[2, −1], [−1, 2]]: the mode (1, 1) has κ = 1.
+    rest, push, period = sliding_position(model), 1e-6, 2 * np.pi / found[0].imag
+    state = InitialState("pushed", tuple(rest + push), tuple(0.5 + rate * push * np.ones(2)))
+    run = simulate(model, state, Settings(transient=0.0, window=period, batches=2, trajectory=0.0))
+    assert run.event_count == 0
+    assert np.log((run.position[-1, 0] - rest[0]) / push) / period == pytest.approx(rate, abs=1e-6)
+
+
+def test_strong_damping_has_modes_that_do_not_oscillate():
+    """κ = 1 and 3 with g = 2.5: g²/4 lies between."""
+    model = Model(Chain(2), law_of("linearized", 2.5))
+    found = eigenvalues(model)
+    assert found == pytest.approx([1.25 + 0.75, 1.25 - 0.75, *(1.25 + s * 1j * (3 - 1.25**2) ** 0.5 for s in (1, -1))])
+    drift, rate = simulate_sliding(model, sliding_position(model))
+    assert rate == pytest.approx(2.0, abs=1e-9)
+    assert drift < 1e-5

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.running.simulation import run, simulate
+from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
+from burridge_knopoff.summaries import lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
 from tests.grids import grid_of
+from tests.sections import MOTION
 
 TIME = np.array([0.0, 5.0, 10.0, 15.0])
 
@@ -47,3 +50,23 @@ def test_settling_times_of_runs(tmp_path):
     assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
     assert settled.sel(level=1e-2) <= settled.sel(level=1e-3) < settled.sel(level=1e-6)
     assert np.isnan(found.sel(law="nonlinear")).all()
+
+
+@pytest.mark.parametrize(("thresholds", "synchronized"), [([1.0, 1.1, 1.0], 1), ([1.0, 1.0, 1.1], 0)])
+def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresholds, synchronized):
+    """Whatever J is: here runs of the third block have been given that of synchrony."""
+    settings = {"transient": 50.0, "window": 50.0, "batches": 2}
+    chain = {"coupling": 1.0, "pulling": "neighbours", "threshold": thresholds, "ends": "open"}
+    models = {"laws": {"linearized": {}}, "chain": chain}
+    grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **settings)
+    for _, (law, initial, a) in grid:
+        trajectory = run(grid.model(law, grid.a[a]), grid.initial[initial], grid.settings[law])
+        same = dataclasses.replace(trajectory, mean_distance=1e-9, crossing_velocity=np.full(20, 0.1))
+        same = dataclasses.replace(same, crossing_direction=np.ones(20, np.int8), crossing_time=np.arange(20.0))
+        same = dataclasses.replace(same, lyapunov_exponent=np.array([0.0, -0.1, -0.2]))
+        write_point(same, grid.path(law, initial, a))
+    found = summarize(grid, 1e-6)["synchronized"]
+    assert found.values.ravel().tolist() == [synchronized]
+    assert ("comment" in found.attrs) == (not synchronized)
+    kind = lyapunov.summarize(grid, 3, 1e-6, MOTION)["kind"]
+    assert kind.item() == (SYNCHRONIZED if synchronized else PERIODIC)

@@ -6,11 +6,12 @@ import pytest
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.seal import BadFile
 from burridge_knopoff.figures import solvers as figure
-from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.settings import Settings
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
+from tests.grids import PAPER_MODELS
 
 SOLVERS = {"linearized": ["map", "series", "rk4"], "nonlinear": ["series", "rk4"]}
 A = {"0.0800": 0.08, "0.2000": 0.2}
@@ -39,7 +40,7 @@ def files(tmp_path, runs):
         write_point(run, folder / law / "plus" / f"a{name}.nc")
     state = {"plus": PAPER_STATES["plus"]}
     own = {law: Settings(**settings(solvers[0])) for law, solvers in SOLVERS.items()}
-    grid = Grid(tmp_path / "points", state, A, own)
+    grid = Grid(tmp_path / "points", state, A, own, PAPER_MODELS)
     others = {
         solver: grid.elsewhere(
             tmp_path / "solvers" / solver,
@@ -87,7 +88,7 @@ def test_a_file_of_another_solver_is_refused(files):
     grid, others = files
     series, rk4 = (others[solver].path("linearized", "plus", "0.0800") for solver in ("series", "rk4"))
     series.write_bytes(rk4.read_bytes())
-    reason = r"series/linearized/plus/a0\.0800\.nc: is another run: --solver rk4 instead of --solver series"
+    reason = r"series/linearized/plus/a0\.0800\.nc: is another run: --solver rk4 instead of no --solver"
     with pytest.raises(BadFile, match=reason):
         summarize(grid, others, 0.01)
 

@@ -5,13 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Model
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,
@@ -109,7 +109,7 @@ def test_the_synchronized_orbit(tmp_path):
     """Its period and slip time come from Newton's method, without an event list or a window."""
     dataset = summarize(points(tmp_path, "minus", 0.05), 3, **SETTINGS)
     for law in ("linearized", "nonlinear"):
-        orbit = Family(Model(Chain(3), Friction(law, 0.0))).at(0.05)
+        orbit = Family(Model(Chain(3), law_of(law, 0.0))).at(0.05)
         run = dataset.sel(law=law, initial="minus", a=0.05)
         assert run["cycle_time"].values == pytest.approx([orbit.period] * 3, rel=1e-9)
         assert (run["cycle_time_error"] < 1e-9).all()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.running.simulation import simulate
 from tests.pages import outputs
 from tests.test_tutorial import FROM_FILES
 from tests.workflow.conftest import REPOSITORY, Study
@@ -16,6 +16,8 @@ TARGETS = {
     "velocity": ["mean_distance.nc", "orbits.nc"],
     "history": ["mean_distance.nc", "lyapunov.nc", "basins.nc"],
     "five_blocks": ["mean_distance.nc", "chains.nc"],
+    "carlson_langer": ["lyapunov.nc"],
+    "unequal_blocks": ["lyapunov.nc"],
 }
 
 
@@ -78,3 +80,19 @@ def test_five_blocks_synchronize_in_two_windows(tmp_path, monkeypatch):
     reached = (chains["outcome"] == 1).any("state").values.tolist()
     assert reached == [True, False, True, False]
     assert (chains["symmetric_exponent"].max("symmetric_state") < 0.0).values.tolist() == reached
+
+
+def test_slips_of_a_carlson_langer_chain_are_small_and_large(tmp_path, monkeypatch):
+    monkeypatch.chdir(finished_example("carlson_langer", tmp_path))
+    check_page("studies.md", "A Carlson-Langer chain")
+    runs = opened(tmp_path, "lyapunov")
+    assert (runs["lyapunov_exponent"] > 5.0 * runs["lyapunov_error"]).all()
+
+
+def test_unequal_blocks_are_periodic_or_chaotic(tmp_path, monkeypatch):
+    monkeypatch.chdir(finished_example("unequal_blocks", tmp_path))
+    check_page("studies.md", "Two unequal blocks")
+    kind = opened(tmp_path, "lyapunov")["kind"]
+    meanings = dict(zip(kind.attrs["flag_values"].tolist(), kind.attrs["flag_meanings"].split(), strict=True))
+    found = [[meanings[value] for value in row] for row in kind.sel(law="coulomb").values.tolist()]
+    assert found == 2 * [["periodic", "periodic", "chaotic"]]

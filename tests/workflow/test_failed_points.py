@@ -23,7 +23,7 @@ window: 60
 batches: 2
 lyapunov_alignment: 10
 attractors: {samples: 2, transient: 300, window: 300, time_limit: 1000, pushes: 4}
-basins: {linearized: [], nonlinear: []}
+basins: {a: {linearized: [], nonlinear: []}}
 solvers: {a: [0.2], step: 0.01}
 chains: {two_blocks: {a: [0.02], samples: 1}}
 """

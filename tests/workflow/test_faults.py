@@ -85,7 +85,7 @@ def test_points_that_die(finished, study):
     """One is killed, one breaks, one runs out of memory: each is named with reason and log, and the others are made."""
     faults = {
         "points/linearized/plus/a0.0800.nc": killed_at_the_move("a0.0800.nc"),
-        "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.simulation", "run"),
+        "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.running.simulation", "run"),
         "points/nonlinear/plus/a0.2000.nc": out_of_memory("burridge_knopoff.dataset.point", 1),
     }
     process = begin(study, "points", environment=broken(study, faults))

@@ -8,11 +8,11 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
-from burridge_knopoff.chain import Chain
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.simulation import simulate
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Model
 
 GRID = [0.05, 0.08, 0.2, 0.22]
 NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]
@@ -113,7 +113,7 @@ def test_agreement_summary(results):
     row = next(row for row in rows if row["initial"] == "plus" and float(row["a"]) == 0.2)
     assert float(row["mean_distance_linearized"]) == pytest.approx(pair[0].mean_distance, rel=1e-8)
     lines = (results / "summary" / "agreement.txt").read_text().splitlines()
-    assert [line.split(":")[0] for line in lines] == ["minus", "plus"]
+    assert [line.split(",")[0] for line in lines] == ["minus", "plus"]
 
 
 def test_orbits_summary(results):
@@ -122,7 +122,7 @@ def test_orbits_summary(results):
         assert (orbits["status"] == 0).all()
         assert orbits["critical_a"].values == pytest.approx([0.0869729046661, 0.0887172229712], abs=1e-12)
         for law in ("linearized", "nonlinear"):
-            orbit = Family(Model(Chain(3), Friction(law, 0.0))).at(0.2)
+            orbit = Family(Model(Chain(3), law_of(law, 0.0))).at(0.2)
             assert orbits["period"].sel(law=law, a=0.2).item() == pytest.approx(orbit.period, abs=1e-12)
 
 
@@ -155,11 +155,11 @@ def test_solvers_summary(results):
         point = solvers.sel(law="nonlinear", solver="rk4", initial="minus", a=0.2)
         assert point["mean_distance"].item() == run.mean_distance
         assert point["step_count"].item() == run.step_count
-        assert abs(solvers["difference"].sel(solver="series")).max() < 1e-11
+        assert abs(solvers["difference"].sel(solver="map")).max() < 1e-11
     found = {str(path.relative_to(results / "solvers").parent) for path in (results / "solvers").rglob("a*.nc")}
     assert found == {
         f"{way}/{initial}"
-        for way in ("series/linearized", "rk4/linearized", "rk4/nonlinear")
+        for way in ("map/linearized", "rk4/linearized", "rk4/nonlinear")
         for initial in ("minus", "plus")
     }
 

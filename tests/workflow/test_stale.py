@@ -69,8 +69,8 @@ PACKAGE = Path("src/burridge_knopoff")
 
 
 NOTHING = (
-    ("simulation.py", COMMENT),
-    ("friction.py", DOCSTRING),
+    ("running/simulation.py", COMMENT),
+    ("laws/law.py", DOCSTRING),
     ("kernel/series.py", COMMENT),
     ("kernel/modes.py", DOCSTRING),
     ("kernel/series.pxd", COMMENT),
@@ -93,7 +93,7 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
 @pytest.mark.parametrize(
     ("name", "roots"),
     [
-        ("simulation.py", (*POINTS, *STABILITY, *SUMMARIES)),
+        ("running/runner.py", (*POINTS, *STABILITY, *SUMMARIES)),
         ("dataset/point.py", POINTS),
         ("stability/attractors.py", ("attractors_of_law",)),
         ("stability/basins.py", ("basin_tile", "basin_pairs", "basins")),
@@ -139,7 +139,7 @@ def uncompiled(studied, tmp_path_factory):
     ("name", "roots"),
     [
         ("kernel/state.pxd", (*POINTS, *STABILITY, *SUMMARIES)),
-        ("kernel/proximity.py", ("attractors_of_law", "basin_tile", "basin_pairs", "basins")),
+        ("kernel/ensemble.py", ("attractors_of_law", "basin_tile", "basin_pairs", "basins")),
     ],
 )
 def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studied, uncompiled, name, roots):
@@ -164,7 +164,8 @@ KEYS = [
     ),
     ({"transient": 120, "window": 180, "batches": 5, "lyapunov_alignment": 50}, (*POINTS, "two_blocks")),
     ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
-    ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "two_blocks")),
+    ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
+    ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
     ({"start": "tested"}, (*POINTS, "attractors_of_law", "two_blocks")),
     ({"step": 0.002, "basins.threads": 2, "chains.blocks": [2, 3], "chains.time_limit": 900}, ()),
     (
@@ -199,7 +200,13 @@ RESHAPED = [
     ("solvers.a", [0.08], {"simulate_solver": 6, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
     ("solvers.step", 0.02, {"simulate_solver": 4, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
     ("basins.tiles", 3, {"basin_tile": 9, "basins": 1}, ("basin_pairs", "attractors_of_law", "simulate")),
-    ("basins.nonlinear", [], {"basins": 1}, ("basin_tile", "basin_pairs", "attractors_of_law", "simulate")),
+    ("basins.a", {"nonlinear": []}, {"basins": 1}, ("basin_tile", "basin_pairs", "attractors_of_law", "simulate")),
+    (
+        "laws",
+        {"linearized": {}, "nonlinear": {}, "exponential": {}},
+        {"simulate": 8, "simulate_solver": 2, "attractors_of_law": 1},
+        (),
+    ),
     (
         "a_digits",
         5,

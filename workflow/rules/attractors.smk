@@ -1,14 +1,5 @@
 # Attractors: found for each law along the whole grid of a, then put together.
 
-ATTRACTOR_KEYS = (
-    "v",
-    "contact",
-    "start",
-    "synchronization_threshold",
-    "motion",
-    "attractors",
-)
-
 
 rule attractors_of_law:
     output:
@@ -25,7 +16,10 @@ rule attractors_of_law:
     params:
         grid=list(STUDY.grid.values()),
         initial=STUDY.config["initial"],
-        config={key: STUDY.config[key] for key in ATTRACTOR_KEYS},
+        model=lambda wildcards: model_config([wildcards.law]),
+        start=STUDY.config["start"],
+        attractors=STUDY.config["attractors"],
+        motion=motion_config(),
         sources=script_sources("attractors_of_law"),
     message:
         "attractors of the {wildcards.law} law along a"
@@ -35,7 +29,7 @@ rule attractors_of_law:
 
 rule attractors:
     input:
-        expand(rules.attractors_of_law.output, law=LAWS),
+        expand(rules.attractors_of_law.output, law=STUDY.laws),
     output:
         dataset=f"{SUMMARY}/attractors.nc",
         digest=report(
@@ -54,6 +48,6 @@ rule attractors:
     params:
         sources=script_sources("attractors"),
     message:
-        "attractors of both laws"
+        "attractors of all laws"
     script:
         "../scripts/attractors.py"

@@ -1,9 +1,21 @@
 # Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
 
 
-BASIN_MAPS = [(law, a) for law in LAWS for a in STUDY.config["basins"][law]]
+BASIN_MAPS = [
+    (law, a) for law, values in STUDY.config["basins"]["a"].items() for a in values
+]
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
+PLANE_STATE = STUDY.config["basins"]["initial"]
+
+
+# What both kinds of jobs of a map depend on.
+BASIN_PARAMS = {
+    "state": {"name": PLANE_STATE, **STUDY.config["initial"][PLANE_STATE]},
+    "start": STUDY.config["start"],
+    "attractors": STUDY.config["attractors"],
+    "motion": motion_config(),
+}
 
 
 rule basin_tile:
@@ -22,8 +34,10 @@ rule basin_tile:
         mem_mb=400,
         runtime=240,
     params:
+        **BASIN_PARAMS,
         a=lambda wildcards: STUDY.value(wildcards.a),
-        config=basin_config("pairs"),
+        model=lambda wildcards: model_config([wildcards.law]),
+        basins=basin_config("pairs"),
         sources=script_sources("basin_tile"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
@@ -45,8 +59,10 @@ rule basin_pairs:
         mem_mb=400,
         runtime=240,
     params:
+        **BASIN_PARAMS,
         a=lambda wildcards: STUDY.value(wildcards.a),
-        config=basin_config("pixels", "tiles"),
+        model=lambda wildcards: model_config([wildcards.law]),
+        basins=basin_config("pixels", "tiles"),
         sources=script_sources("basin_pairs"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
@@ -82,7 +98,11 @@ rule basins:
         runtime=10,
     params:
         maps=BASIN_MAPS,
-        config=basin_config(),
+        model=model_config(),
+        basins=basin_config(),
+        state=BASIN_PARAMS["state"],
+        start=STUDY.config["start"],
+        time_limit=STUDY.config["attractors"]["time_limit"],
         sources=script_sources("basins"),
     message:
         "maps of basins of attraction"

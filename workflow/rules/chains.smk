@@ -27,12 +27,22 @@ rule watch_chain:
         mem_mb=400,
         runtime=30,
     params:
-        chains={
-            key: value
-            for key, value in CHAINS.items()
-            if key not in ("blocks", "two_blocks")
+        model=lambda wildcards: other_length_config(CHAINS["laws"]),
+        grid=CHAINS["a"],
+        watch={key: CHAINS[key] for key in ("time_limit", "synchronization_distance")},
+        sample={
+            "start": STUDY.config["start"],
+            **{
+                key: CHAINS[key]
+                for key in (
+                    "samples",
+                    "symmetric_samples",
+                    "seed",
+                    "position",
+                    "velocity",
+                )
+            },
         },
-        model=CHAIN_MODEL,
         threshold=STUDY.config["synchronization_threshold"],
         sources=script_sources("watch_chain"),
     message:
@@ -83,6 +93,6 @@ rule figure_chains:
     params:
         sources=script_sources("figure_chains"),
     message:
-        "figure: longer chains, two blocks under both laws"
+        "figure: longer chains, two blocks under each law"
     script:
         "../scripts/figure_chains.py"

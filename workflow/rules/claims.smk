@@ -15,7 +15,7 @@ rule claims:
                 "stick_slip",
                 "equilibrium",
                 "solvers",
-                "two_blocks",
+                *([] if SINGLE_LENGTH else ["two_blocks"]),
             )
         ],
     output:
@@ -41,6 +41,7 @@ rule claims:
             key: STUDY.config[key]
             for key in (
                 *("v", "contact", "start", "transient", "window", "initial", "motion"),
+                *("laws", "chain"),
             )
         },
         figures=FIGURE_NAMES,

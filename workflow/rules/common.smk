@@ -1,4 +1,5 @@
 # What rules of several stages use.
+from burridge_knopoff.config.model import MODEL_KEYS
 
 
 def script_sources(name):
@@ -21,12 +22,36 @@ def fixed_group(name, number):
     return group
 
 
+def model_config(laws=STUDY.laws):
+    """Return what decides the models of a study under some of its laws; see `config.model.model_of`."""
+    config = {key: STUDY.config[key] for key in MODEL_KEYS}
+    return {**config, "laws": {law: config["laws"][law] for law in laws}}
+
+
+def motion_config():
+    """Return how kinds of motion are told."""
+    key = "synchronization_threshold"
+    return {**STUDY.config["motion"], key: STUDY.config[key]}
+
+
+# Springs and thresholds given one by one are those of one chain: there is no such chain of another length.
+SINGLE_LENGTH = [
+    key for key, value in STUDY.config["chain"].items() if isinstance(value, list)
+]
+
+
+def other_length_config(laws=STUDY.laws):
+    """Return the same for chains of other lengths; raises ConfigError if the study has one length only."""
+    if SINGLE_LENGTH:
+        key = SINGLE_LENGTH[0]
+        raise ConfigError(
+            f"chain.{key}: {STUDY.config['chain'][key]} is not allowed for chains of another length: one number"
+        )
+    return model_config(laws)
+
+
 def basin_config(*unused):
-    """Return what maps depend on, without some keys of the section of basins."""
-    # Neither the list of maps nor the number of threads changes a map.
-    unused = {*LAWS, "threads", *unused}
+    """Return the section of basins without what has a name of its own, or changes no map, and without unused keys."""
+    unused = {"a", "initial", "threads", *unused}
     section = STUDY.config["basins"]
-    return {
-        **{key: STUDY.config[key] for key in (*ATTRACTOR_KEYS, "initial")},
-        "basins": {key: section[key] for key in section if key not in unused},
-    }
+    return {key: section[key] for key in section if key not in unused}

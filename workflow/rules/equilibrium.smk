@@ -13,7 +13,7 @@ rule equilibrium:
         runtime=30,
     params:
         blocks=STUDY.blocks,
-        v=STUDY.config["v"],
+        model=model_config(),
         grid=list(STUDY.grid.values()),
         sources=script_sources("equilibrium"),
     message:

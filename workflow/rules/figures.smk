@@ -19,21 +19,25 @@ FIGURE_RUNS = {
 }
 
 
+MIRROR_SYMMETRIC = STUDY.model(
+    STUDY.laws[0], STUDY.grid[STUDY.figure_point]
+).chain.is_mirror_symmetric
 FIGURE_NAMES = [
     "friction_laws",
     "mean_distance",
     "bifurcation",
     "distance",
     "lyapunov",
-    "agreement",
+    # With one law there is nothing to compare.
+    *(["agreement"] if len(STUDY.laws) > 1 else []),
     "basin_fractions",
     *(["basins"] if BASIN_MAPS else []),
-    # The orbit of three blocks; of other chains there is none.
-    *(["orbits"] if STUDY.blocks == 3 else []),
+    # The orbit of three blocks, the last the mirror image of the first; of other chains there is none.
+    *(["orbits"] if STUDY.blocks == 3 and MIRROR_SYMMETRIC else []),
     "stick_slip",
     "equilibrium",
     "solvers",
-    "two_blocks",
+    *([] if SINGLE_LENGTH else ["two_blocks"]),
     *(f"motion_{initial}" for initial in STUDY.initial),
 ]
 
@@ -59,6 +63,7 @@ rule figure_friction_laws:
     benchmark:
         f"{RESULTS}/benchmarks/figure_friction_laws.tsv"
     params:
+        laws=STUDY.config["laws"],
         a=STUDY.grid[STUDY.figure_point],
         largest=max(STUDY.grid.values()),
         sources=script_sources("figure_friction_laws"),
@@ -246,7 +251,7 @@ rule figure_agreement:
             f"{FIGURES}/agreement.png",
             caption="../report/agreement.rst",
             category="Friction laws",
-            labels={"result": "agreement of the two laws", "paper": "none"},
+            labels={"result": "agreement of the laws", "paper": "none"},
         ),
     log:
         f"{RESULTS}/logs/figure_agreement.log",
@@ -255,7 +260,7 @@ rule figure_agreement:
     params:
         sources=script_sources("figure_agreement"),
     message:
-        "figure: agreement of the two laws"
+        "figure: agreement of the laws"
     script:
         "../scripts/figure_agreement.py"
 

@@ -12,11 +12,8 @@ rule orbits:
         mem_mb=400,
         runtime=30,
     params:
-        model={
-            "blocks": STUDY.blocks,
-            "v": STUDY.config["v"],
-            "contact": STUDY.config["contact"],
-        },
+        blocks=STUDY.blocks,
+        model=model_config(),
         grid=list(STUDY.grid.values()),
         sources=script_sources("orbits"),
     message:

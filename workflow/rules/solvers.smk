@@ -8,7 +8,7 @@ SOLVER_GRID = {
 }
 SOLVER_POINTS = [
     (law, solver, initial, a)
-    for law in LAWS
+    for law in STUDY.laws
     for solver in STUDY.other_solvers(law)
     for initial in STUDY.initial
     for a in SOLVER_GRID
@@ -47,7 +47,7 @@ rule solvers:
     input:
         points=[
             POINT.format(law=law, initial=initial, a=a)
-            for law in LAWS
+            for law in STUDY.laws
             for initial in STUDY.initial
             for a in SOLVER_GRID
         ],
@@ -69,7 +69,7 @@ rule solvers:
         others={
             solver: {
                 law: asdict(STUDY.settings(law, solver))
-                for law in LAWS
+                for law in STUDY.laws
                 if solver in STUDY.other_solvers(law)
             }
             for solver in SOLVERS

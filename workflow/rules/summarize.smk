@@ -11,7 +11,7 @@ rule summary:
         f"{SUMMARY}/attractors.nc",
         f"{SUMMARY}/attractors.txt",
         [f"{SUMMARY}/basins.nc", f"{SUMMARY}/basins.txt"]
-        if any(STUDY.config["basins"][law] for law in LAWS)
+        if any(STUDY.config["basins"]["a"].values())
         else [],
         f"{SUMMARY}/agreement.nc",
         f"{SUMMARY}/agreement.csv",
@@ -20,7 +20,7 @@ rule summary:
         f"{SUMMARY}/stick_slip.nc",
         f"{SUMMARY}/equilibrium.nc",
         f"{SUMMARY}/solvers.nc",
-        f"{SUMMARY}/two_blocks.nc",
+        [] if SINGLE_LENGTH else f"{SUMMARY}/two_blocks.nc",
         multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md"),
 
 
@@ -122,7 +122,7 @@ rule agreement:
         agreement=STUDY.config["agreement"],
         sources=script_sources("agreement"),
     message:
-        "linearized against nonlinear law"
+        "agreement of the friction laws"
     script:
         "../scripts/agreement.py"
 

@@ -1,4 +1,4 @@
-"""Summary: linearized against nonlinear law, as netCDF, CSV and a few lines."""
+"""Summary: each law compared with the first one, as netCDF, CSV and a few lines."""
 
 import sys
 from pathlib import Path

@@ -4,8 +4,14 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
+from burridge_knopoff.config.model import model_of
 from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 from burridge_knopoff.summaries.attractors import one_law
 
-params = snakemake.params
-write_summary(one_law(snakemake.wildcards.law, params.grid, params.initial, params.config), snakemake.output[0])
+params, law = snakemake.params, snakemake.wildcards.law
+initial = [InitialState(name, **state) for name, state in params.initial.items()]
+model = model_of(params.model, law, params.grid[0], len(initial[0].position))
+settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
+write_summary(one_law(model, params.grid, initial, settings, motion, params.start), snakemake.output[0])

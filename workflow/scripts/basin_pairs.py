@@ -4,9 +4,15 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
+from burridge_knopoff.config.model import model_of
 from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.basins import pairs
 
-params, law = snakemake.params, snakemake.wildcards.law
+params = snakemake.params
 attractors = open_summary(snakemake.input[0])
-write_summary(pairs(attractors, law, params.a, params.config, snakemake.threads), snakemake.output[0])
+plane = BasinSettings(initial=InitialState(**params.state), threads=snakemake.threads, **params.basins)
+model = model_of(params.model, snakemake.wildcards.law, params.a, len(plane.initial.position))
+settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
+write_summary(pairs(attractors, model, plane, settings, motion, params.start), snakemake.output[0])

@@ -1,4 +1,4 @@
-"""Figure: agreement of the two laws against a."""
+"""Figure: agreement of the laws against a."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Figure: bifurcation diagrams of both laws."""
+"""Figure: bifurcation diagrams."""
 
 import sys
 
@@ -7,6 +7,5 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.figures.bifurcation import draw
 from burridge_knopoff.figures.style import write_figure
-from burridge_knopoff.friction import LAWS
 
-write_figure(draw(open_summary(snakemake.input[0]), list(LAWS)), *snakemake.output)
+write_figure(draw(open_summary(snakemake.input[0])), *snakemake.output)

@@ -1,4 +1,4 @@
-"""Figure: mirror synchrony of longer chains, and two blocks under both laws."""
+"""Figure: mirror synchrony of longer chains, and two blocks under each law."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Figure: two blocks under both laws."""
+"""Figure: two blocks under each law."""
 
 import sys
 

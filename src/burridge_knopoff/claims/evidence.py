@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from burridge_knopoff.claims.verdict import NotTestableError, Range
-from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.paper import PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
-from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.paper import PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
+from burridge_knopoff.running.status import Status
 
 if TYPE_CHECKING:
     import xarray
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
 # On fewer values of a than these a statement on a range of a is not judged.
 LEAST_VALUES = 10
 
-_COMPLETED = STATUS.index("completed")
+# At this a a law of a study is held against the paper's law of the same name.
+PAPER_A = 0.08
 
 
 @dataclass(frozen=True)
@@ -27,16 +30,32 @@ class Evidence:
     """What a study has found.
 
     summaries : Datasets by name: mean_distance, lyapunov, …; those that the study does not make are left out
-    config : the study's config: v, contact, start, transient, window, initial, and the section `motion`
+    config : the study's config: laws, chain, v, contact, start, transient, window, initial, and the section `motion`
     """
 
     summaries: Mapping[str, xarray.Dataset]
     config: Mapping[str, Any]
 
     def check_setting(self) -> None:
-        """Raise NotTestableError if the driver is not as fast as the paper's."""
+        """Raise NotTestableError if the driver is not as fast as the paper's, or springs or thresholds are others."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
+        own, paper = Chain(self._blocks, **self.config["chain"]), Chain(self._blocks)
+        same = (
+            np.array_equal(own.stiffness, paper.stiffness),
+            np.array_equal(own.driving, paper.driving),
+            np.array_equal(own.thresholds, paper.thresholds),
+        )
+        if not all(same):
+            raise NotTestableError("the study's chain has other springs or static friction than the paper's")
+
+    def check_laws(self, laws: Iterable[str]) -> None:
+        """Raise NotTestableError if the study lacks one of these laws of the paper, or has another under its name."""
+        for law in laws:
+            if law not in self.config["laws"]:
+                raise NotTestableError(f"the study has no {law} law")
+            if law_of(law, PAPER_A, self.config["laws"][law]) != law_of(law, PAPER_A):
+                raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:
         """Raise NotTestableError if the runs are shorter than the paper's: what has not settled is no evidence."""
@@ -49,15 +68,32 @@ class Evidence:
 
     def check_blocks(self) -> None:
         """Raise NotTestableError if the chain is not the paper's."""
-        blocks = len(next(iter(self.config["initial"].values()))["position"])
-        if blocks != 3:
-            raise NotTestableError(f"the paper's chain has 3 blocks, that of the study {blocks}")
+        if self._blocks != 3:
+            raise NotTestableError(f"the paper's chain has 3 blocks, that of the study {self._blocks}")
+
+    @property
+    def _blocks(self) -> int:
+        return len(next(iter(self.config["initial"].values()))["position"])
 
     def summary(self, name: str) -> xarray.Dataset:
-        """Return a summary; raises NotTestableError if the study has none of that name."""
+        """Return a summary, of other laws than the paper's nothing; raises NotTestableError if the study has none."""
         if name not in self.summaries:
             raise NotTestableError(f"the study has no summary {name}.nc")
-        return self.summaries[name]
+        dataset = self.summaries[name]
+        if "law" not in dataset.dims:
+            return dataset
+        return dataset.sel(law=[law for law in dataset["law"].values if law in PAPER_LAWS])
+
+    def compared(self, dataset: xarray.Dataset) -> xarray.Dataset:
+        """Return the comparison of the paper's laws with each other from a summary that compares with the first law.
+
+        Raises NotTestableError if the first law of the study is none of the two.
+        """
+        first = next(iter(self.config["laws"]))
+        if first not in PAPER_LAWS:
+            raise NotTestableError(f"the laws of the study are compared with its first one, the {first} law")
+        (other,) = (law for law in PAPER_LAWS if law != first)
+        return dataset.sel(other_law=other)
 
     def of_state(self, name: str, initial: str) -> xarray.Dataset:
         """Return a summary over law and a for one of the paper's initial states, completed runs only.
@@ -68,7 +104,7 @@ class Evidence:
         self.check_state(initial)
         dataset = self.summary(name).sel(initial=initial)
         if "status" in dataset:
-            dataset = dataset.where(dataset["status"] == _COMPLETED)
+            dataset = dataset.where(dataset["status"] == Status.COMPLETED)
         return dataset
 
     def check_state(self, initial: str) -> None:

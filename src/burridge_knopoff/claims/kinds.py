@@ -31,6 +31,7 @@ from burridge_knopoff.stability.motion import (
     UNDETERMINED,
     zero_exponents,
 )
+from burridge_knopoff.stability.settings import MotionSettings
 
 if TYPE_CHECKING:
     import xarray
@@ -166,7 +167,7 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     known = np.isfinite(exponent) & np.isfinite(error)
     if not known.any():
         raise NotTestableError(f"no Lyapunov exponent of a run from {initial} is known with {a}")
-    zero = zero_exponents(exponent, error, evidence.config["motion"])
+    zero = zero_exponents(exponent, error, MotionSettings(**evidence.config["motion"]))
     share = float(zero[known].mean())
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [

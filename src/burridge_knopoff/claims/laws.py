@@ -19,7 +19,6 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
 )
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
 
 # What the paper calls a result, of each kind of motion.
@@ -30,7 +29,7 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
     """Judge whether both laws lead to the same kind of motion and ⟨J⟩ at all a of a range, by the study's criterion."""
     shares, measured, apart = {}, [], []
     for state in initial:
-        whole = evidence.of_state("agreement", state)
+        whole = evidence.compared(evidence.of_state("agreement", state))
         found = evidence.choose(whole, a)
         agrees = found["agrees"].values
         known = agrees >= 0
@@ -56,7 +55,7 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """Judge whether two blocks move alike under both laws, from all sampled states, at all a of a range."""
     evidence.check_runs()
-    found = evidence.choose(evidence.summary("two_blocks"), a)
+    found = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
     agrees = found["agrees"].transpose("state", "a").values
     # One state that parts them is enough; that none does takes all states.
     known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
@@ -104,7 +103,7 @@ def solutions_agree(
                 [relative * np.abs(mean), 3.0 * np.nan_to_num(error), np.full_like(mean, threshold)]
             )
             within = bool((np.abs(difference) <= allowed)[there].all())
-            kinds = evidence.at(runs, value)["kind"].sel(law=list(PAPER_LAWS)).values
+            kinds = evidence.at(runs, value)["kind"].values
             if np.isnan(kinds).any() or (kinds == UNDETERMINED).any() or not there.any():
                 continue
             laws = len({_RESULT[int(kind)] for kind in kinds}) == 1

@@ -21,7 +21,8 @@ from burridge_knopoff.config.message import ConfigError
 from burridge_knopoff.config.study import check_names, check_schema
 from burridge_knopoff.config.yaml_file import read_schema, read_yaml
 from burridge_knopoff.files import display_path
-from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.provenance import provenance
 
 TOPICS = {
@@ -128,6 +129,7 @@ def judge(claim: Claim, evidence: Evidence) -> Verdict:
     """Return the verdict of one claim; «not testable» with the reason where the study's data cannot judge it."""
     try:
         evidence.check_setting()
+        evidence.check_laws(np.atleast_1d(claim.parameters.get("laws", claim.parameters.get("law", PAPER_LAWS))))
         return claim.judge(evidence, **claim.parameters)
     except NotTestableError as error:
         return Verdict(NOT_TESTABLE, f"Not testable here: {error}.")

@@ -20,7 +20,8 @@ from burridge_knopoff.claims.verdict import (
     with_error,
     worst,
 )
-from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.paper import PAPER_LAWS
 
 
@@ -68,14 +69,11 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
 
 
 def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, loose: float, a: Range) -> Verdict:
-    """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of the friction there.
-
-    −F'(v) is a under the linearized law and a/(1 + av)² under the nonlinear one.
-    """
+    """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of the friction there."""
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
     values = found["a"].values
-    slope = values if law == "linearized" else values / (1.0 + values * evidence.config["v"]) ** 2
+    slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in values])
     ratio = found["growth_rate"].values / slope
     measured = [
         Measured("least growth rate over −F'(v), in simulations", float(ratio.min())),

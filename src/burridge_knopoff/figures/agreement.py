@@ -1,52 +1,51 @@
-"""Agreement of the two friction laws against a."""
+"""Agreement of each friction law with the first one against a."""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import cells, color, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import cells, color, label_panels, new_figure, page_width, say_nothing, styled
 
 ROUNDING = 1e-17
+
+LABELS = (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")
 
 
 @styled
 def draw(agreement: xarray.Dataset) -> Figure:
     """Draw, for each initial state, |Δ⟨J⟩| against both tolerances, the section distance, and the common event order.
 
-    Shaded: the laws disagree, in ⟨J⟩ (by more than both tolerances) or in the kind of motion.
+    Three rows for each law that is compared with the first one. Shaded: the two disagree, in ⟨J⟩ (by more than both
+    tolerances) or in the kind of motion.
     """
-    states = agreement["initial"].values
-    figure, panels = new_figure(page_width(len(states)), 5.6, rows=3, columns=len(states))
-    a = agreement["a"].values
-    edges = cells(a)
-    for column, initial in enumerate(states):
-        run = agreement.sel(initial=initial)
-        difference, sections, order = panels[column :: len(states)]
-        difference.plot(a, _positive(abs(run["difference"])), "-o", markersize=2.2, linewidth=0.8, color=color(0))
-        noise = _positive(agreement.attrs["standard_errors"] * run["difference_error"])
-        difference.plot(a, noise, "--", linewidth=0.8, color=color(1))
-        share = _positive(agreement.attrs["relative_tolerance"] * run["mean_distance"].max("law"))
-        difference.plot(a, share, ":", linewidth=0.9, color=color(2))
-        sections.plot(a, _positive(run["section_distance"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
-        order.plot(a, _positive(run["event_order_time"]), "-o", markersize=2.2, linewidth=0.8, color=color(0))
-        for panel in (difference, sections, order):
-            for k in np.flatnonzero(run["agrees"].values == 0):
-                panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
-        order.set_xlabel("$a$")
-    # Differences of synchronized runs are rounding; they set the scale of nothing.
-    for panel, floor in ((panels[0], ROUNDING), (panels[len(states)], 1e-8)):
-        panel.set_ylim(floor, max(1.0, panel.get_ylim()[1]))
-    for row, label in enumerate(
-        (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")
-    ):
-        panels[row * len(states)].set_ylabel(label)
-        panels[row * len(states)].set_yscale("log")
-    lines = panels[0].get_lines()
+    states, others = agreement["initial"].values, agreement["other_law"].values
+    first = agreement["law"].values[0]
+    if not len(others):
+        figure, (panel,) = new_figure(page_width(1), 1.5)
+        say_nothing(panel, f"the {first} law is the only one: there is nothing to compare")
+        return figure
+    figure, panels = new_figure(page_width(len(states)), 5.6 * len(others), rows=3 * len(others), columns=len(states))
+    rows = np.reshape(np.array(panels, dtype=object), (len(others), 3, len(states)))
+    titles = []
+    for block, other in zip(rows, others, strict=True):
+        for column, initial in enumerate(states):
+            _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
+        # Differences of synchronized runs are rounding; they set the scale of nothing.
+        for panel, floor in ((block[0, 0], ROUNDING), (block[1, 0], 1e-8)):
+            panel.set_ylim(floor, max(1.0, panel.get_ylim()[1]))
+        for row, label in zip(block, LABELS, strict=True):
+            row[0].set(ylabel=label, yscale="log")
+        pair = "between the laws" if len(others) == 1 else f"of the {other} and the {first} law"
+        names = (rf"difference of $\langle J\rangle$ {pair}", "distance of the section points $W'$", "event order")
+        titles += [f"{initial}: {name}" for name in names for initial in states]
+    for panel in rows[-1, -1]:
+        panel.set_xlabel("$a$")
     panels[0].legend(
-        [*lines[:3], Patch(facecolor="0.9", edgecolor="0.6")],
+        [*panels[0].get_lines()[:3], Patch(facecolor="0.9", edgecolor="0.6")],
         [
             "difference",
             f"{agreement.attrs['standard_errors']:g} standard errors",
@@ -58,9 +57,30 @@ def draw(agreement: xarray.Dataset) -> Figure:
         framealpha=1.0,
         edgecolor="none",
     )
-    names = (r"difference of $\langle J\rangle$ between the laws", "distance of the section points $W'$", "event order")
-    label_panels(panels, [f"{initial}: {name}" for name in names for initial in states])
+    label_panels(panels, titles)
     return figure
+
+
+def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, float]) -> None:
+    """Draw the comparison of one law with the first, from one initial state, into three panels."""
+    a = run["a"].values
+    edges = cells(a)
+    difference, sections, order = panels
+    _curve(difference, a, abs(run["difference"]))
+    noise = _positive(settings["standard_errors"] * run["difference_error"])
+    difference.plot(a, noise, "--", linewidth=0.8, color=color(1))
+    pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
+    share = _positive(settings["relative_tolerance"] * pair.max("law"))
+    difference.plot(a, share, ":", linewidth=0.9, color=color(2))
+    _curve(sections, a, run["section_distance"])
+    _curve(order, a, run["event_order_time"])
+    for panel in panels:
+        for k in np.flatnonzero(run["agrees"].values == 0):
+            panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
+
+
+def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray) -> None:
+    panel.plot(a, _positive(values), "-o", markersize=2.2, linewidth=0.8, color=color(0))
 
 
 def _positive(values: xarray.DataArray) -> np.ndarray:

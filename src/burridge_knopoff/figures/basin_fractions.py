@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
-from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import label_panels, new_figure, page_width, styled
 from burridge_knopoff.stability.sampling import fraction_interval
 
 
@@ -20,7 +20,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     intervals.
     """
     laws = attractors["law"].values
-    figure, panels = new_figure(PAGE, 5.2, rows=2, columns=len(laws))
+    figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         one = attractors.sel(law=law)

@@ -10,7 +10,6 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
 from burridge_knopoff.figures.style import PAGE, label_panels, styled
-from burridge_knopoff.friction import LAWS
 
 COLUMNS = 2
 
@@ -28,6 +27,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     colors = branch_colors(attractors)
     extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
+    laws = basins["law"].attrs["flag_meanings"].split()
     titles = []
     shown: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
@@ -35,7 +35,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
             panel.set_axis_off()
             continue
         one = basins.isel(map=number)
-        law = LAWS[int(one["law"])]
+        law = laws[int(one["law"])]
         titles.append(f"{law} law, $a={one['a'].item():g}$")
         picture = np.zeros((*one["branch"].shape, 3))
         present = sorted(

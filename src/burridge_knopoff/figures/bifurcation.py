@@ -13,9 +13,9 @@ _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"]
 
 
 @styled
-def draw(bifurcation: xarray.Dataset, laws: list[str]) -> Figure:
+def draw(bifurcation: xarray.Dataset) -> Figure:
     """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
-    initial = bifurcation["initial"].attrs["flag_meanings"].split()
+    laws, initial = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
     figure, panels = new_figure(page_width(len(initial)), 0.5 + 2.6 * len(laws), rows=len(laws), columns=len(initial))
     titles = []
     for number, panel in enumerate(panels):

@@ -20,7 +20,7 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     ranked = sorted(there, key=lambda n: (-there[n], n))
     colors = dict.fromkeys(ranked, OTHER_COLOR)
     colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
-    return {0: COLORS[0], **colors}
+    return {**({0: COLORS[0]} if (branch == 0).any() else {}), **colors}
 
 
 def side_color(color: str, side: int) -> tuple[float, float, float]:

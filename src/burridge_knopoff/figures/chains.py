@@ -1,4 +1,4 @@
-"""Mirror synchrony of longer chains, and two blocks under both laws."""
+"""Mirror synchrony of longer chains, and two blocks under each law."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ COLUMNS = 3
 ROW_HEIGHT = 1.35
 TWO_BLOCKS_HEIGHT = 2.3
 
-# Curves of two laws at the same a are drawn this share of a step apart.
+# Curves of the laws at the same a are drawn this share of a step apart.
 SHIFT = 0.15
 
 
 @styled
 def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
-    """Draw the synchronized fraction against a, a panel for each number of blocks, and ⟨J⟩ of two blocks for both laws.
+    """Draw the synchronized fraction against a, a panel for each number of blocks, and ⟨J⟩ of two blocks for each law.
 
     Bars: confidence intervals, undetermined states counted either way; open circles: the fraction with all of those
     counted as synchronized. Squares at the top: some symmetric motion has a transverse exponent that is negative beyond
-    its error, so that synchrony is stable. Shaded at two blocks: the laws disagree for at least one initial state.
+    its error, so that synchrony is stable. Shaded at two blocks: some law disagrees with the first one for at
+    least one initial state.
     """
     blocks = chains["blocks"].values
     rows = math.ceil(len(blocks) / COLUMNS)
@@ -54,9 +55,7 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
     wide = lower.subplots()
     draw_panel(wide, two_blocks)
     titles = [f"$N={count}$" for count in blocks]
-    label_panels(
-        [*panels[: len(blocks)], wide], [*titles, r"$N=2$, both laws: $\langle J\rangle$ of each initial state"]
-    )
+    label_panels([*panels[: len(blocks)], wide], [*titles, r"$N=2$: $\langle J\rangle$ of each initial state"])
     return figure
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import xarray
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, styled
 
-MARKERS = ("o", "x")
+# Of the first and of the last law: where curves lie on each other both are seen.
+WIDTHS = (2.2, 1.0)
 
 
 @styled
@@ -16,25 +21,45 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
 
     Lines are eigenvalues of the Jacobian; markers on the right are growth rates of the simulated tangent flow.
     """
-    figure, (plane, growth) = new_figure(PAGE, 3.0, columns=2, share_rows=False, share_columns=False)
+    figure, (plane, growth) = new_figure(PAGE, 3.2, columns=2, share_rows=False, share_columns=False)
     a = equilibrium["a"].values
     growth.plot(a, 0.5 * a, ":", color="black", linewidth=0.9, zorder=3, label="$a/2$")
-    for n, law in enumerate(equilibrium["law"].values):
+    laws = equilibrium["law"].values
+    for n, (law, width) in enumerate(zip(laws, np.linspace(*WIDTHS, len(laws)), strict=True)):
         one = equilibrium.sel(law=law)
         eigenvalue = one["eigenvalue"]
         real, imaginary = (eigenvalue.sel(part=part).values for part in ("real", "imaginary"))
-        width = 2.2 - 1.2 * n
         for mode in range(real.shape[1]):
             plane.plot(real[:, mode], imaginary[:, mode], color=color(n), linewidth=width)
-        plane.plot(real[-1], imaginary[-1], MARKERS[n], color=color(n), markersize=4, label=f"{law} law, $a={a[-1]:g}$")
-        growth.plot(a, real.max(axis=1), color=color(n), linewidth=1.0, label=f"{law} law")
+        plane.plot(real[-1], imaginary[-1], marker(n), color=color(n), markersize=4)
+        growth.plot(a, real.max(axis=1), color=color(n), linewidth=1.0)
         some = slice(None, None, max(1, len(a) // 12))
         simulated = one["growth_rate"].values[some]
-        growth.plot(a[some], simulated, MARKERS[n], color=color(n), markersize=3.5, label=f"{law} law, simulated")
+        growth.plot(a[some], simulated, marker(n), color=color(n), markersize=3.5)
     plane.axvline(0.0, color="0.7", linewidth=0.6, zorder=0)
     plane.set(xlabel=r"$\mathrm{Re}\,\lambda$", ylabel=r"$\mathrm{Im}\,\lambda$")
     growth.set(xlabel="$a$", ylabel=r"largest $\mathrm{Re}\,\lambda$")
-    plane.legend(loc="center right")
-    growth.legend(loc="upper left")
+    plane.legend(handles=[_gray(marker="o", linestyle="", label=f"$a={a[-1]:g}$")], loc="center right")
+    growth.legend(
+        handles=[
+            growth.get_lines()[0],
+            _gray(label="eigenvalues"),
+            _gray(marker="o", linestyle="", label="simulated"),
+        ],
+        loc="upper left",
+    )
+    figure.legend(
+        handles=[
+            Line2D([], [], color=color(n), marker=marker(n), markersize=4, label=f"{law} law")
+            for n, law in enumerate(laws)
+        ],
+        loc="outside lower center",
+        ncols=min(4, len(laws)),
+    )
     label_panels((plane, growth), ["eigenvalues of uniform sliding", "growth of perturbations"])
     return figure
+
+
+def _gray(**look: Any) -> Line2D:
+    """Return the entry of a legend for what all laws have in common."""
+    return Line2D([], [], color="0.3", markersize=3.5, **look)

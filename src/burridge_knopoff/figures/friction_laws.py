@@ -1,50 +1,78 @@
-"""The friction laws, the paper's Fig. 2, and the least friction that slipping blocks felt."""
+"""The friction laws of a study, the paper's Fig. 2 among them, and the least friction that slipping blocks felt."""
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Sequence
-from typing import Any
+from textwrap import wrap
 
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
-from burridge_knopoff.friction import Friction
+from burridge_knopoff.figures.style import BEHIND, PAGE, color, dashes, label_panels, new_figure, styled
+from burridge_knopoff.laws import Law
 
-# A legend that hides the line behind it.
-BEHIND: dict[str, Any] = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 1.0}
+# Largest velocity that is drawn.
+FASTEST = 3.0
 
-DASHES = {"linearized": "--", "nonlinear": "-"}
+# Lines, and letters of each, that a law may take in the legend.
+LINES = 3
+LETTERS = 100
 
 
 @styled
-def draw(a_values: Sequence[float], mean_distance: xarray.Dataset) -> Figure:
-    """Draw Φ(aU') of both laws for some values of a, and the least friction on a slipping block in each run."""
-    figure, panels = new_figure(PAGE, 2.6, columns=2, share_rows=False)
-    _laws(panels[0], a_values)
-    _least(panels[1], mean_distance)
-    label_panels(panels, ["friction laws", "least friction in each run"])
+def draw(laws: Sequence[Law], a_values: Sequence[float], mean_distance: xarray.Dataset) -> Figure:
+    """Draw Φ of each law for some values of a, and the least friction on a slipping block in each run.
+
+    laws : those of the study, each at any a; a colour each
+    """
+    figure, (left, right) = new_figure(PAGE, 2.8 + 0.17 * len(laws), columns=2, share_rows=False)
+    speed = np.linspace(0.0, FASTEST, 301)
+    left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, label="stuck")
+    largest = 1.0
+    for n, law in enumerate(laws):
+        for k, a in enumerate(a_values):
+            friction = law.at(a)(speed)
+            largest = max(largest, float(friction.max()))
+            left.plot(speed, friction, color=color(n), linestyle=dashes(k))
+        for k, initial in enumerate(mean_distance["initial"].values):
+            least = mean_distance["least_friction"].sel(initial=initial, law=law.name)
+            right.plot(mean_distance["a"], least, color=color(n), linestyle=dashes(k))
+    left.set(xlabel="velocity $U'$", ylabel=r"friction $\Phi$", xlim=(-0.15, FASTEST), ylim=(-0.15, 1.08 * largest))
+    right.set(xlabel="$a$", ylabel=r"least $\Phi$", ylim=(min(-0.15, right.get_ylim()[0]), 1.08))
+    for panel in (left, right):
+        panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
+    _styles(left, [f"$a={a:g}$" for a in a_values], left.get_lines()[:1])
+    _styles(right, [f"from {initial}" for initial in mean_distance["initial"].values])
+    figure.legend(
+        handles=[Line2D([], [], color=color(n), label=_entry(law)) for n, law in enumerate(laws)],
+        loc="outside lower left",
+    )
+    label_panels((left, right), ["friction laws", "least friction in each run"])
     return figure
 
 
-def _laws(panel: Axes, a_values: Sequence[float]) -> None:
-    speed = np.linspace(0.0, 3.0, 301)
-    panel.plot([0.0, 0.0], [-1.0, 1.0], ":", color="0.4", label="stuck")
-    for index, a in enumerate(a_values):
-        for law, dashes in DASHES.items():
-            panel.plot(speed, Friction(law, a)(speed), dashes, color=color(index), label=f"$a={a:g}$, {law}")
-    panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
-    panel.set(xlabel=r"velocity $U'$", ylabel=r"friction $\Phi(aU')$", xlim=(-0.15, 3.0), ylim=(-0.15, 1.08))
-    panel.legend(loc="lower left", bbox_to_anchor=(0.07, 0.03), **BEHIND)
+def law_text(law: Law) -> str:
+    """Return how a law reads, with its numbers: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
+    # A law by formula names its numbers itself.
+    numbers = {} if f", {next(iter(law.numbers), '')} = " in law.text else law.numbers
+    return ", ".join([law.text, *(f"{_letter(key)} = {value:g}" for key, value in numbers.items())])
 
 
-def _least(panel: Axes, runs: xarray.Dataset) -> None:
-    for index, initial in enumerate(runs["initial"].values):
-        for law, dashes in DASHES.items():
-            least = runs["least_friction"].sel(initial=initial, law=law)
-            panel.plot(runs["a"], least, dashes, color=color(index), label=f"{initial}, {law}")
-    panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
-    panel.set(xlabel="$a$", ylabel=r"least $\Phi(aU')$", ylim=(min(-0.15, panel.get_ylim()[0]), 1.08))
-    panel.legend(loc="lower left", bbox_to_anchor=(0.02, 0.03), **BEHIND)
+def _letter(name: str) -> str:
+    try:
+        return unicodedata.lookup(f"GREEK SMALL LETTER {name}")
+    except KeyError:
+        return name
+
+
+def _entry(law: Law) -> str:
+    return "\n".join(wrap(f"{law.name}: {law_text(law)}", LETTERS, max_lines=LINES, placeholder=" …"))
+
+
+def _styles(panel: Axes, names: Sequence[str], others: Sequence[Line2D] = ()) -> None:
+    lines = [Line2D([], [], color="0.3", linestyle=dashes(k), label=name) for k, name in enumerate(names)]
+    panel.legend(handles=[*others, *lines], loc="lower left", bbox_to_anchor=(0.05, 0.03), **BEHIND)

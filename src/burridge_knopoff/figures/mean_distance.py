@@ -1,4 +1,4 @@
-"""⟨J⟩ against a for each initial state and both laws, the paper's Figs. 3a and 3b, with the attractors behind it."""
+"""⟨J⟩ against a for each initial state and law, the paper's Figs. 3a and 3b, with the attractors behind it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
-from burridge_knopoff.figures.style import PAGE, cells, label_panels, styled
+from burridge_knopoff.figures.style import cells, label_panels, page_width, styled
 
 # Each initial state has a marker; colours are left to the branches.
 MARKERS = "ovs^Dphx"
@@ -27,7 +27,7 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
     laws = mean_distance["law"].values
     rows = attractors.sizes["initial"] * attractors.sizes["contact"] * attractors.sizes["start"]
     strip = 0.13 * rows + 0.2
-    figure = Figure(figsize=(PAGE, 3.4 + strip), layout="constrained")
+    figure = Figure(figsize=(page_width(len(laws)), 3.4 + strip), layout="constrained")
     panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, strip])
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):

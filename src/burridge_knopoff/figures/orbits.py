@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
-
-MARKERS = ("o", "D", "s", "^", "v", "P", "X")
+from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, say_nothing, styled
+from burridge_knopoff.paper import PAPER_LAWS
 
 # What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
 NEAR = 0.93
@@ -20,49 +20,50 @@ NEAR = 0.93
 
 @styled
 def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
-    """Draw multipliers, ⟨J⟩ around a_c, the amplitude law beyond it, and the difference of the laws.
+    """Draw multipliers, ⟨J⟩ around a_c, the amplitude law beyond it, and how each law differs from the first one.
 
     orbits : the summary of the synchronized orbits; runs : that of the mean distance, drawn beside the orbits
     """
-    figure, panels = new_figure(PAGE, 5.2, rows=2, columns=2, share_rows=False, share_columns=False)
+    figure, panels = new_figure(PAGE, 5.6, rows=2, columns=2, share_rows=False, share_columns=False)
     if not np.isfinite(orbits["critical_a"]).any():
         for panel in panels:
-            panel.text(0.5, 0.5, "no synchronized orbit found", ha="center", transform=panel.transAxes)
-            panel.set_axis_off()
+            say_nothing(panel, "no synchronized orbit found")
         return figure
     for index, law in enumerate(orbits["law"].values):
         one = orbits.sel(law=law)
         _draw_multipliers(panels[0], one, color(index))
         _draw_distance(panels[1], one, runs.sel(law=law), color(index))
-        _draw_amplitude(panels[2], one, color(index), MARKERS[index])
+        _draw_amplitude(panels[2], one, color(index), marker(index))
     _draw_difference(panels[3], orbits)
     laws = [Line2D([], [], color=color(index), label=f"{law} law") for index, law in enumerate(orbits["law"].values)]
     panels[0].set(xlabel="$a$", ylabel="Floquet multiplier")
     panels[0].axhline(1.0, color="0.6", linewidth=0.6, zorder=0)
     panels[0].axhline(-1.0, color="0.6", linewidth=0.6, zorder=0)
-    panels[0].legend(handles=[*laws, *_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric"))])
+    panels[0].legend(handles=_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric")))
+    states = [
+        Line2D([], [], color="0.3", linestyle="none", marker=marker(k), markersize=3, label=f"run from {name}")
+        for k, name in enumerate(runs["initial"].values)
+    ]
+    handles = [*laws, *_styles(("-", ":"), ("(b): stable orbit", "unstable orbit")), *states]
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
     panels[1].set(xlabel="$a$", ylabel=r"$\langle J\rangle$")
-    panels[1].set_ylim(-0.001, 1.08 * float(orbits["branch_mean_distance"].max()))
-    names = runs["initial"].values
-    panels[1].legend(
-        handles=[
-            *_styles(("-", ":"), ("stable orbit", "unstable orbit")),
-            *(
-                Line2D(
-                    [], [], color="0.3", linestyle="none", marker=MARKERS[k % len(MARKERS)], markersize=3, label=name
-                )
-                for k, name in enumerate(names)
-            ),
-        ],
-        loc="upper left",
-    )
-    panels[2].set(xlabel=r"$|a - a_c|$", ylabel=r"$|x_1 - x_3|$", xscale="log", yscale="log")
-    panels[2].legend(loc="upper left")
-    panels[3].set(xlabel="$a$", ylabel="difference of the laws", yscale="log")
-    panels[3].legend(loc="lower right")
+    branching = orbits["branch_mean_distance"].max().item()
+    panels[1].set_ylim(-0.001, 1.08 * branching if branching > 0.0 else None)
+    if np.isfinite(orbits["branch_offset"]).any():
+        panels[2].set(xlabel=r"$|a - a_c|$", ylabel=r"$|x_1 - x_3|$", xscale="log", yscale="log")
+        panels[2].legend(loc="upper left")
+    else:
+        say_nothing(panels[2], "no asymmetric orbit branches off")
+    first, *others = orbits["law"].values
+    compared = f"{others[0]} law" if len(others) == 1 else "other laws"
     label_panels(
         panels,
-        ["multipliers of the synchronized orbit", r"around $a_c$", r"beyond $a_c$", "nonlinear against linearized law"],
+        [
+            "multipliers of the synchronized orbit",
+            r"around $a_c$",
+            r"beyond $a_c$",
+            f"{compared} compared with the {first} law" if others else f"{first} law",
+        ],
     )
     return figure
 
@@ -88,6 +89,8 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
     """Draw ⟨J⟩ of the stable and the unstable orbits, and of the runs of a study nearby."""
     critical = one["critical_a"].item()
     offset, distance, stable = _dense_branch(one)
+    if not np.isfinite(critical):
+        return
     low, high = NEAR * critical, np.nanmax([critical, *(critical + offset)])
     panel.plot([low, critical], [0.0, 0.0], "-", color=hue)
     panel.plot([critical, high], [0.0, 0.0], ":", color=hue)
@@ -99,7 +102,7 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
         panel.plot(
             run["a"].values,
             run["mean_distance"].values,
-            MARKERS[k % len(MARKERS)],
+            marker(k),
             color=hue,
             markersize=3,
             linestyle="none",
@@ -134,19 +137,34 @@ def _draw_amplitude(panel: Axes, one: xarray.Dataset, hue: str, marker: str) -> 
 
 
 def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
-    """Draw how far the laws are apart at the same a, and at the same slope of the friction at the driver velocity."""
-    a = orbits["a"].values
-    both = orbits.sel(law="nonlinear") - orbits.sel(law="linearized")
-    for index, (plain, scaled, symbol) in enumerate(
-        (
-            ("transverse_multiplier", "effective_multiplier_difference", r"\mu"),
-            ("period", "effective_period_difference", "T"),
-        )
-    ):
-        hue = color(index + 2)
-        panel.plot(a, _positive(both[plain].values), "--", color=hue, label=rf"$|\Delta {symbol}|$, same $a$")
-        label = rf"$|\Delta {symbol}|$, same $a/(1 + av)^2$"
-        panel.plot(a, _positive(orbits[scaled].values), "-", color=hue, label=label)
+    """Draw how far each law is from the first at the same a, and the paper's laws at the same slope of the friction."""
+    laws = orbits["law"].values
+    if len(laws) < 2:
+        say_nothing(panel, "the only law: there is nothing to compare")
+        return
+    a, orbit = orbits["a"].values, orbits["transverse_multiplier"]
+    if not (orbit - orbit.sel(law=laws[0])).sel(law=laws[1:]).notnull().any():
+        say_nothing(panel, f"no other law has an orbit where the {laws[0]} law has one")
+        return
+    curves: Any = (
+        ("transverse_multiplier", "effective_multiplier_difference", r"\mu", ("--", "-")),
+        ("period", "effective_period_difference", "T", (":", "-.")),
+    )
+    handles = []
+    for plain, scaled, symbol, (style, other_style) in curves:
+        for index, law in enumerate(laws[1:], 1):
+            difference = orbits[plain].sel(law=law) - orbits[plain].sel(law=laws[0])
+            panel.plot(a, _positive(difference.values), style, color=color(index))
+        handles += _styles((style,), (rf"$|\Delta {symbol}|$, same $a$",))
+        if scaled in orbits:
+            panel.plot(a, _positive(orbits[scaled].values), other_style, color="black")
+            label = rf"$|\Delta {symbol}|$, {' and '.join(PAPER_LAWS)}, same $\Phi'(v)$"
+            handles.append(Line2D([], [], color="black", linestyle=other_style, label=label))
+    panel.set(xlabel="$a$", ylabel="difference of the laws", yscale="log")
+    low, high = panel.get_ylim()
+    # Room for the legend below the curves.
+    panel.set_ylim(low * math.sqrt(low / high), high)
+    panel.legend(handles=handles, loc="lower right")
 
 
 def _positive(values: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
 
 #: Steps in a unit of time of the paper's own numerical solution.
 PAPER_STEPS = 1e6
@@ -32,8 +32,8 @@ def draw(solvers: xarray.Dataset) -> Figure:
     middle row are the standard errors of the differences, as of independent runs; differences of 0 lie at its foot.
     """
     laws, states = solvers["law"].values, solvers["initial"].values
-    figure, panels = new_figure(PAGE, 6.2, rows=3, columns=len(laws))
-    names = solvers["solver"].values.tolist()
+    figure, panels = new_figure(page_width(len(laws)), 6.2, rows=3, columns=len(laws))
+    names = [name for name in solvers["solver"].values.tolist() if (solvers["status"].sel(solver=name) >= 0).any()]
     place = np.arange(solvers.sizes["a"])
     for column, law in enumerate(laws):
         means, differences, steps = panels[column :: len(laws)]

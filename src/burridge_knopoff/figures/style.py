@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from functools import partial, wraps
 from pathlib import Path
@@ -22,6 +23,15 @@ PAGE = 7.0
 
 # Okabe and Ito's colours: told apart by colour-blind readers, and by their lightness in print.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+
+DASHES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
+MARKERS = ("o", "x", "s", "^", "D", "v", "+")
+
+#: A legend that hides the lines behind it.
+BEHIND: Any = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 1.0}
+
+# Letters of the titles that fit into an inch, as a rule.
+LETTERS = 17
 
 STYLE: Any = {
     "font.family": "serif",
@@ -70,18 +80,32 @@ def new_figure(
 
 
 def page_width(columns: int) -> float:
-    """Return the width, in inches, of a figure with so many columns of panels: a page for two, in proportion for more.
-
-    Panels with titles of their own would overlap if more than two shared a page.
-    """
+    """Return the width, in inches, of a figure of so many columns of panels: a page for two, in proportion for more."""
     return PAGE * max(1.0, columns / 2)
 
 
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
-    """Write (a), (b), … and what each panel shows above it."""
+    """Write (a), (b), … and what each panel shows above it, in as many lines as it takes."""
     for number, (panel, title) in enumerate(zip(axes, titles, strict=True)):
         letter = chr(ord("a") + number % 26) * (number // 26 + 1)
-        panel.set_title(f"({letter}) {title}", loc="left")
+        place, figure = panel.get_subplotspec(), panel.get_figure(root=True)
+        columns = place.get_gridspec().ncols if place is not None else 1
+        width = figure.get_figwidth() / columns if figure is not None else PAGE
+        panel.set_title(_wrapped(f"({letter}) {title}", round(LETTERS * width)), loc="left")
+
+
+def _wrapped(title: str, letters: int) -> str:
+    """Return a title in lines of so many letters; a formula, of which half is commands, is not broken."""
+    lines = [""]
+    length = 0
+    for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", title):
+        size = len(re.sub(r"\$[^$]*\$", lambda formula: formula[0][: len(formula[0]) // 2], word))
+        if lines[-1] and length + 1 + size > letters:
+            lines.append("")
+            length = 0
+        lines[-1] += f" {word}" if lines[-1] else word
+        length += 1 + size
+    return "\n".join(lines)
 
 
 def cells(values: np.ndarray) -> np.ndarray:
@@ -95,6 +119,22 @@ def cells(values: np.ndarray) -> np.ndarray:
 def color(index: int) -> str:
     """Return the colour of the curve of that number."""
     return COLORS[index % len(COLORS)]
+
+
+def dashes(index: int) -> Any:
+    """Return the style of the line of that number."""
+    return DASHES[index % len(DASHES)]
+
+
+def marker(index: int) -> str:
+    """Return the marker of the curve of that number."""
+    return MARKERS[index % len(MARKERS)]
+
+
+def say_nothing(panel: Axes, reason: str) -> None:
+    """Leave a panel empty but for the reason why."""
+    panel.text(0.5, 0.5, reason, ha="center", transform=panel.transAxes)
+    panel.set_axis_off()
 
 
 def write_figure(figure: Figure, *paths: str | Path) -> None:

@@ -1,4 +1,4 @@
-"""Two blocks under both laws: ⟨J⟩ against a from each initial state."""
+"""Two blocks under each law: ⟨J⟩ against a from each initial state."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, marker, new_figure, styled
 
 
 @styled
 def draw(two_blocks: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ of both laws from each state; where the laws disagree for one of them the background is shaded."""
+    """Draw ⟨J⟩ of all laws from each state; shaded where any disagrees with the first one, for any of the states."""
     figure, (panel,) = new_figure(PAGE, 2.8)
     draw_panel(panel, two_blocks)
     return figure
@@ -22,15 +22,17 @@ def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     """Draw the same into a panel of a figure."""
     a = two_blocks["a"].values
     half = 0.5 * (np.diff(a).min() if len(a) > 1 else 0.0)
-    for value in a[(two_blocks["agrees"] == 0).any("state").values]:
+    for value in a[(two_blocks["agrees"] == 0).any(("other_law", "state")).values]:
         panel.axvspan(value - half, value + half, color="0.9", linewidth=0, zorder=0)
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
         for number, state in enumerate(mean):
             panel.plot(
-                a, state, "ox"[index % 2], markersize=(3.4, 2.4)[index % 2], markeredgewidth=0.6, fillstyle="none",
+                a, state, marker(index), markersize=(3.4, 2.4)[index % 2], markeredgewidth=0.6, fillstyle="none",
                 color=color(index), label=law if number == 0 else None,
             )  # fmt: skip
     panel.set_xlabel("$a$")
     panel.set_ylabel(r"$\langle J\rangle$")
-    panel.legend(loc="center right", title="shaded: the laws disagree")
+    laws = two_blocks["law"].values
+    shaded = {1: None, 2: "shaded: the laws disagree"}.get(len(laws), f"shaded: one disagrees\nwith the {laws[0]} law")
+    panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title=shaded)

@@ -10,7 +10,6 @@ import xarray
 from matplotlib.colors import to_hex
 
 from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.report.numbers import rounded
 
 UNDETERMINED_COLOR = "#000000"
@@ -29,15 +28,16 @@ def basin_maps(
     marked : U_1(0) and U_N(0) of the initial states of the study in the plane
     """
     colors = branch_colors(attractors)
+    laws = basins["law"].attrs["flag_meanings"].split()
     return {
         "first": rounded(basins["first_position"].values),
         "last": rounded(basins["last_position"].values),
         "marked": [{"name": name, "first": x, "last": y} for name, (x, y) in marked.items()],
-        "maps": [_map(basins.isel(map=number), colors) for number in range(basins.sizes["map"])],
+        "maps": [_map(basins.isel(map=number), laws, colors) for number in range(basins.sizes["map"])],
     }
 
 
-def _map(one: xarray.Dataset, colors: dict[int, str]) -> dict[str, Any]:
+def _map(one: xarray.Dataset, laws: list[str], colors: dict[int, str]) -> dict[str, Any]:
     branch, side = one["branch"].values.astype(int), one["side"].values.astype(int)
     # Branches in order, the side + before −, undetermined last.
     present = sorted(
@@ -54,7 +54,7 @@ def _map(one: xarray.Dataset, colors: dict[int, str]) -> dict[str, Any]:
         classes.append({"name": name, "color": shade, "percent": rounded(100.0 * members.mean())})
     time = np.nan_to_num(np.clip(np.round(one["decision_time"].values), 1, LARGEST_TIME), nan=0.0)
     return {
-        "law": LAWS[int(one["law"])],
+        "law": laws[int(one["law"])],
         "a": one["a"].item(),
         "exponent": rounded(one["uncertainty_exponent"].item()),
         "exponent_error": rounded(one["uncertainty_exponent_error"].item()),

@@ -111,15 +111,19 @@ def orbit_curves(orbits: xarray.Dataset) -> list[dict[str, Any]]:
 
 
 def agreement_curves(agreement: xarray.Dataset) -> dict[str, Any]:
-    """Return |Δ⟨J⟩| with both tolerances, the distance of section points and the common order, over (initial, a)."""
-    share = agreement.attrs["relative_tolerance"] * agreement["mean_distance"].max("law")
+    """Return |Δ⟨J⟩| with both tolerances, the distance of section points and the common order, over (law, initial, a).
+
+    The laws are those that are compared with the first one.
+    """
+    mean = agreement["mean_distance"].values
+    share = agreement.attrs["relative_tolerance"] * np.maximum(mean[:1], mean[1:])
     noise = agreement.attrs["standard_errors"] * agreement["difference_error"]
     return {
         "standard_errors": rounded(agreement.attrs["standard_errors"]),
         "percent": rounded(100.0 * agreement.attrs["relative_tolerance"]),
         "difference": rounded(_positive(np.abs(agreement["difference"].values))),
         "noise": rounded(_positive(noise.values)),
-        "share": rounded(_positive(share.values)),
+        "share": rounded(_positive(share)),
         "section_distance": rounded(_positive(agreement["section_distance"].values)),
         "event_order_time": rounded(_positive(agreement["event_order_time"].values)),
     }

@@ -11,7 +11,9 @@ import xarray
 import yaml
 
 from burridge_knopoff.config import Study, all_points
-from burridge_knopoff.friction import LAWS
+from burridge_knopoff.figures.friction_laws import law_text
+from burridge_knopoff.model.chain import NEIGHBOURS, Chain
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance import git_commit, provenance
 from burridge_knopoff.report.numbers import text
 
@@ -26,14 +28,16 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
     """Return names and values of what decides the runs."""
     config = study.config
     values = list(study.grid.values())
-    solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in LAWS)
+    solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
     if "rk4" in config["solver"].values():
         solvers += f", step {text(config['step'])}"
     transient, window = config["transient"], config["window"]
-    blocks = len(next(iter(config["initial"].values()))["position"])
+    models = {law: study.model(law, values[0]) for law in study.laws}
+    chain = next(iter(models.values())).chain
     return [
-        ("Blocks", f"N = {blocks}"),
-        ("Friction laws", "linearized, Φ = 1 − aU′; nonlinear, Φ = 1/(1 + aU′)"),
+        ("Blocks", f"N = {chain.blocks}"),
+        ("Chain", chain_text(chain)),
+        ("Friction laws" if len(models) > 1 else "Friction law", laws_text(models)),
         ("Friction parameter", f"a = {_grid(config['a'])}: {len(values)} value{'s' if len(values) > 1 else ''}"),
         ("Driver velocity", f"v = {text(config['v'])}"),
         ("Conventions", f"contact {config['contact']}, start {config['start']}"),
@@ -46,6 +50,27 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
         ("Synchronized", f"where ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
         ("Runs", str(len(all_points(study)))),
     ]
+
+
+def chain_text(chain: Chain) -> str:
+    """Return the springs and the static friction of a chain in words."""
+    parts = [f"coupling {_strengths(chain.coupling)}"]
+    parts.append(
+        "pulling by as many springs as a block has neighbours"
+        if chain.pulling == NEIGHBOURS
+        else f"pulling {_strengths(chain.pulling)}"
+    )
+    parts.append(f"static friction {_strengths(chain.threshold)}")
+    return f"{'a ring' if chain.ends == 'ring' else 'open ends'}; {'; '.join(parts)}"
+
+
+def _strengths(value: Any) -> str:
+    return ", ".join(text(item) for item in value) if isinstance(value, tuple) else text(value)
+
+
+def laws_text(models: Mapping[str, Model]) -> str:
+    """Return names and formulas of friction laws."""
+    return "; ".join(f"{name}, {law_text(model.law)}" for name, model in models.items())
 
 
 def _grid(items: list[Any]) -> str:

@@ -14,7 +14,6 @@ from markupsafe import Markup
 from burridge_knopoff.config import Study
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.files import write_text
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.report import curves, overview, tables
 from burridge_knopoff.report.basin_maps import basin_maps
 from burridge_knopoff.report.numbers import embedded_json, text, with_error
@@ -89,9 +88,10 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
         ran=overview.what_was_run(study),
         states=overview.initial_states(study),
         config=overview.config_text(study),
-        crossed=_crossed(summaries["bifurcation"], len(study.initial)),
+        crossed=_crossed(summaries["bifurcation"], len(study.laws), len(study.initial)),
         data=_data(study, commands, summaries),
-        laws=[str(law) for law in summaries["mean_distance"]["law"].values],
+        laws=list(study.laws),
+        mirror_symmetric=study.model(study.laws[0], next(iter(study.grid.values()))).chain.is_mirror_symmetric,
         initial=list(study.initial),
         pictures=pictures,
         further=[picture for name, picture in pictures.items() if name not in PLACED],
@@ -134,9 +134,9 @@ def _data(study: Study, commands: Commands, summaries: Mapping[str, xarray.Datas
     )
 
 
-def _crossed(bifurcation: xarray.Dataset, states: int) -> list[list[bool]]:
+def _crossed(bifurcation: xarray.Dataset, laws: int, states: int) -> list[list[bool]]:
     """Return, for each law and initial state, whether any of its runs crossed the section."""
-    counts = bifurcation["crossing_count"].values.reshape(len(LAWS), states, -1)
+    counts = bifurcation["crossing_count"].values.reshape(laws, states, -1)
     return (counts.sum(axis=2) > 0).tolist()
 
 

@@ -49,19 +49,24 @@ TEXTS = {
     ),
     "agreement": (
         "Agreement of the laws",
-        "For each initial state against a: the difference of ⟨J⟩ between the laws with both tolerances, the "
-        "Wasserstein distance of their section points, and the time until which events come in the same order; "
-        "shaded where the laws disagree.",
+        "For each law compared with the first one and each initial state, against a: the difference of ⟨J⟩ with both "
+        "tolerances, the Wasserstein distance of the section points, and the time until which events come in the same "
+        "order; shaded where the laws disagree.",
     ),
     "chains": (
         "Longer chains",
         "Fraction of the sampled initial states that synchronize all mirror pairs against a, a panel for each number "
-        "of blocks, and ⟨J⟩ of two blocks under both laws.",
+        "of blocks, and ⟨J⟩ of two blocks under each law.",
     ),
-    "friction_laws": ("Friction laws", "The linearized and the nonlinear friction law Φ against the slip speed U'."),
+    "friction_laws": (
+        "Friction laws",
+        "The friction Φ of each law against the slip speed U', and the least friction that slipping blocks felt in "
+        "each run against a.",
+    ),
     "two_blocks": (
         "Two blocks",
-        "⟨J⟩ of two blocks against a from each initial state under both laws; shaded where the laws disagree.",
+        "⟨J⟩ of two blocks against a from each initial state under each law; shaded where one disagrees with the first "
+        "one.",
     ),
     "stick_slip": (
         "Stick-slip cycles",

@@ -10,12 +10,12 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.config import Study
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.report.numbers import exact
-from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
 
-COMPLETED = STATUS.index("completed")
+#: How runs end, in words, in the order of the numbers in files.
+STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED]
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,8 @@ def embedded_runs(
 ) -> dict[str, Any]:
     """Return what the page knows of every run, values exact, arrays over (law, initial, a).
 
+    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a).
+
     `first` are the indices of the run that is shown at first, the one of the figures of single runs.
     `simulate` holds for each law and initial state the command in two parts, with `--a` and its value between them.
     """
@@ -54,12 +56,12 @@ def embedded_runs(
     names = list(study.grid)
     exponent, error = lyapunov["lyapunov_exponent"].values, lyapunov["lyapunov_error"].values
     return {
-        "laws": list(LAWS),
+        "laws": list(study.laws),
         "initial": list(study.initial),
         "a": list(study.grid.values()),
         "texts": [repr(value) for value in study.grid.values()],
         "names": names,
-        "first": [LAWS.index(study.config["figures"]["law"]), 0, names.index(study.figure_point)],
+        "first": [study.laws.index(study.config["figures"]["law"]), 0, names.index(study.figure_point)],
         "mean_distance": _nested(mean_distance["mean_distance"].values),
         "mean_distance_error": _nested(mean_distance["mean_distance_error"].values),
         "status": mean_distance["status"].values.tolist(),
@@ -68,10 +70,10 @@ def embedded_runs(
         "exponents": _nested(exponent),
         "exponent_errors": _nested(error),
         "agrees": agreement["agrees"].values.tolist(),
-        "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in LAWS],
+        "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in study.laws],
         "configfile": shlex.join(["--configfile", commands.configfile]) if commands.configfile else "",
         "results": f"results/{study.name}",
-        "statuses": list(STATUS),
+        "statuses": STATUSES,
         "kinds": {str(number): name for number, name in KINDS.items()},
     }
 
@@ -91,11 +93,11 @@ def _halves(commands: Commands, law: str, initial: str) -> list[str]:
 def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xarray.Dataset) -> list[dict[str, str]]:
     """Return the runs that did not complete, then those whose kind of motion is undetermined."""
     failed, undetermined = [], []
-    for i, law in enumerate(LAWS):
+    for i, law in enumerate(commands.study.laws):
         for j, initial in enumerate(commands.study.initial):
             for k, a in enumerate(commands.study.grid):
                 status = int(mean_distance["status"].values[i, j, k])
-                if status == COMPLETED and int(lyapunov["kind"].values[i, j, k]) != UNDETERMINED:
+                if status == Status.COMPLETED and int(lyapunov["kind"].values[i, j, k]) != UNDETERMINED:
                     continue
                 run = {
                     "law": law,
@@ -104,8 +106,8 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xa
                     "path": commands.point(law, initial, a),
                     "command": commands.snakemake(law, initial, a),
                 }
-                if status == COMPLETED:
+                if status == Status.COMPLETED:
                     undetermined.append({**run, "what": "kind of motion undetermined"})
                 else:
-                    failed.append({**run, "what": f"did not complete: {STATUS[status]}"})
+                    failed.append({**run, "what": f"did not complete: {STATUSES[status]}"})
     return [*failed, *undetermined]

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.report.numbers import rounded
 
 BINS = 300
@@ -25,15 +24,15 @@ def section_counts(bifurcation: xarray.Dataset) -> dict[str, Any]:
     directions = bifurcation["crossing_direction"].values.astype(float)
     low, high = _edges(velocity)
     edges = np.linspace(low, high, BINS + 1)
-    states = bifurcation["initial"].attrs["flag_meanings"].split()
+    laws, states = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
     # Points come in the order law, initial, a.
-    a_size = len(counts) // (len(LAWS) * len(states))
+    a_size = len(counts) // (len(laws) * len(states))
     stops = np.cumsum(counts)
     columns = np.zeros((len(counts), BINS), dtype=int)
     for n, (stop, count) in enumerate(zip(stops, counts, strict=True)):
         own = slice(stop - count, stop)
         columns[n] = np.histogram(velocity[own], edges, weights=directions[own])[0]
-    runs = columns.reshape(len(LAWS), len(states), a_size * BINS)
+    runs = columns.reshape(len(laws), len(states), a_size * BINS)
     return {"edges": rounded([low, high]), "bins": BINS, "runs": [[_sparse(run) for run in law] for law in runs]}
 
 

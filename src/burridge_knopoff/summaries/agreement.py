@@ -1,4 +1,4 @@
-"""Linearized against nonlinear friction law, for each initial state and a: do they agree, and where do they part?"""
+"""Each friction law of a study against its first one, for each initial state and a: where do they agree and part?"""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.motion import KINDS
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import judge
@@ -22,14 +21,16 @@ from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_poi
 DIGITS = 12
 
 _POINT = ("law", "initial", "a")
-_PAIR = ("initial", "a")
+_PAIR = ("other_law", "initial", "a")
 _VERDICT = {-1: "undetermined", 0: "no", 1: "yes"}
 _YES_NO = flag("i1", _VERDICT)
-VARIABLES = {
+POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
     "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", KINDS)),
-    "difference": Variable(_PAIR, "f8", "<J> of the nonlinear law minus <J> of the linearized law"),
+}
+PAIR_VARIABLES = {
+    "difference": Variable(_PAIR, "f8", "<J> of the other law minus <J> of the first law"),
     "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
     "section_distance": Variable(
         _PAIR, "f8", "Wasserstein distance between the distributions of W' on upward crossings of both laws"
@@ -38,8 +39,10 @@ VARIABLES = {
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
     "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _YES_NO),
     "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _YES_NO),
-    "parting_a": Variable(("initial",), "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
+    "parting_a": Variable(_PAIR[:2], "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
 }
+VARIABLES = {**POINT_VARIABLES, **PAIR_VARIABLES}
+OTHER_LAW = Variable(("other_law",), "O", "friction law that is compared with the first one", coordinate=True)
 _READ = [
     *("end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
     *EVENTS,
@@ -49,37 +52,44 @@ _READ = [
 def summarize(
     grid: Grid, lyapunov: xarray.Dataset, synchronization_threshold: float, agreement: Mapping[str, Any]
 ) -> xarray.Dataset:
-    """Compare both laws at every grid point.
+    """Compare each law with the first one at every grid point.
 
     lyapunov : the summary of that name, for the kinds of motion
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
-    values = {}
-    shapes = {_POINT: (len(PAPER_LAWS), *grid.shape[1:]), _PAIR: grid.shape[1:]}
-    for name, item in VARIABLES.items():
-        shape = shapes.get(item.dimensions, grid.shape[1:2])
-        values[name] = np.zeros(shape, dtype=item.dtype)
+    sizes = dict(zip(_POINT, grid.shape, strict=True), other_law=len(grid.laws) - 1)
+    values = {name: np.zeros([sizes[key] for key in item.dimensions], item.dtype) for name, item in VARIABLES.items()}
     for j, initial in enumerate(grid.initial):
         for k, a in enumerate(grid.a):
-            pair = [read_point(grid, law, initial, a, _READ) for law in PAPER_LAWS]
-            upward = [point["crossing_velocity"][point["crossing_direction"] > 0] for point in pair]
-            for i, point in enumerate(pair):
-                values["mean_distance"][i, j, k] = point["mean_distance"]
-                values["mean_distance_error"][i, j, k] = point["mean_distance_error"]
-            values["section_distance"][j, k] = _section_distance(*upward)
-            count, until = common_order(*(all_events(point) for point in pair))
-            values["event_order_count"][j, k] = count
-            values["event_order_time"][j, k] = min(until, *(float(point["end_time"]) for point in pair))
-    values["kind"][...] = lyapunov["kind"].sel(law=list(PAPER_LAWS)).values
-    judge(values, np.array(list(grid.a.values())), synchronization_threshold, agreement)
+            runs = [read_point(grid, law, initial, a, _READ) for law in grid.laws]
+            for i, run in enumerate(runs):
+                values["mean_distance"][i, j, k] = run["mean_distance"]
+                values["mean_distance_error"][i, j, k] = run["mean_distance_error"]
+            for i, run in enumerate(runs[1:]):
+                values["section_distance"][i, j, k] = _section_distance(_upward(runs[0]), _upward(run))
+                count, until = common_order(all_events(runs[0]), all_events(run))
+                values["event_order_count"][i, j, k] = count
+                values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
+    values["kind"][...] = lyapunov["kind"].sel(law=list(grid.laws)).values
+    for i in range(sizes["other_law"]):
+        pair = {name: values[name][[0, i + 1]] for name in POINT_VARIABLES}
+        compared = {name: values[name][i] for name in PAIR_VARIABLES}
+        judge({**pair, **compared}, np.array(list(grid.a.values())), synchronization_threshold, agreement)
+    shared = axes(list(grid.initial), list(grid.a.values()), grid.laws)
+    others = ("other_law", np.array(grid.laws[1:], dtype=object), OTHER_LAW.all_attributes())
     return summary(
-        "Agreement of the linearized and the nonlinear friction law",
+        "Agreement of the friction laws with the first one",
         VARIABLES,
         values,
-        axes(list(grid.initial), list(grid.a.values()), PAPER_LAWS),
+        {"law": shared["law"], "other_law": others, **shared},
         {"synchronization_threshold": synchronization_threshold, **agreement},
         module=__name__,
     )
+
+
+def _upward(run: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return W' of the upward crossings of a run."""
+    return run["crossing_velocity"][run["crossing_direction"] > 0]
 
 
 def _section_distance(one: np.ndarray, other: np.ndarray) -> float:
@@ -90,51 +100,66 @@ def _section_distance(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def table(dataset: xarray.Dataset) -> str:
-    """Return the comparison as CSV, one line for each initial state and a."""
+    """Return the comparison as CSV, one line for each initial state and a.
+
+    Where more than one law is compared with the first, the columns of a comparison end with the name of the other law.
+    """
+    laws, others = (dataset[name].values.tolist() for name in ("law", "other_law"))
+    end = {other: f"_{other}" if len(others) > 1 else "" for other in others}
+    compared = ("difference", "difference_error", "section_distance", "event_order_time")
+    names = ["initial", "a", *(f"mean_distance_{law}" for law in laws)]
+    names += [f"{name}{end[other]}" for other in others for name in compared]
+    names += [*(f"kind_{law}" for law in laws), *(f"agrees{end[other]}" for other in others)]
     lines = io.StringIO()
-    lines.write(
-        "initial,a,mean_distance_linearized,mean_distance_nonlinear,difference,difference_error,section_distance,"
-        "event_order_time,kind_linearized,kind_nonlinear,agrees\n"
-    )
+    lines.write(",".join(names) + "\n")
     for initial in dataset["initial"].values:
         for a in dataset["a"].values:
             row = dataset.sel(initial=initial, a=a)
-            mean = row["mean_distance"].values
-            kind = [KINDS[int(value)] for value in row["kind"].values]
-            lines.write(
-                f"{initial},{a:.10g},{mean[0]:.8e},{mean[1]:.8e},{row['difference'].item():.8e},"
-                f"{row['difference_error'].item():.2e},{row['section_distance'].item():.6e},"
-                f"{row['event_order_time'].item():.3f},{kind[0]},{kind[1]},{_VERDICT[row['agrees'].item()]}\n"
-            )
+            cells = [initial, f"{a:.10g}", *(f"{mean:.8e}" for mean in row["mean_distance"].values)]
+            for other in others:
+                difference, error, section, order = (row[name].sel(other_law=other).item() for name in compared)
+                cells += [f"{difference:.8e}", f"{error:.2e}", f"{section:.6e}", f"{order:.3f}"]
+            cells += [KINDS[int(kind)] for kind in row["kind"].values]
+            cells += [_VERDICT[int(agrees)] for agrees in row["agrees"].values]
+            lines.write(",".join(cells) + "\n")
     return lines.getvalue()
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return, in a line for each initial state, the a at which the laws part."""
+    """Return, in a line for each other law and initial state, the a at which it parts from the first law."""
+    first, others = dataset["law"].values[0], dataset["other_law"].values
+    if not len(others):
+        return f"The {first} law is the only one: there is nothing to compare.\n"
     lines = []
-    for initial in dataset["initial"].values:
-        row = dataset.sel(initial=initial)
-        verdict = row["agrees"].values
-        a = dataset["a"].values[verdict >= 0]
-        apart = dataset["a"].values[verdict == 0]
-        failed = np.count_nonzero(verdict < 0)
-        undetermined = (
-            f" {failed} values of a are undetermined: a run did not complete, or its kind of motion is not clear."
-            if failed
-            else ""
-        )
-        if not len(a):
-            text = "no value of a could be compared."
-        elif not len(apart):
-            text = f"the laws agree at all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}."
-        else:
-            before = a[a < apart[0]]
-            agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
-            other_kind = np.count_nonzero(row["same_kind"].values == 0)
-            kinds = f"; the kind of motion differs at {other_kind}" if other_kind else ""
-            text = (
-                f"the laws {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
-                f"the last {apart[-1]:g}{kinds}."
-            )
-        lines.append(f"{initial}: {text}{undetermined}")
+    for other in others:
+        for initial in dataset["initial"].values:
+            found = _parting(dataset.sel(other_law=other, initial=initial))
+            lines.append(f"{initial}, {other} law compared with the {first} law: {found}")
     return "\n".join(lines) + "\n"
+
+
+def _parting(row: xarray.Dataset) -> str:
+    """Return in words where two laws agree and part, from one initial state."""
+    verdict = row["agrees"].values
+    a = row["a"].values[verdict >= 0]
+    apart = row["a"].values[verdict == 0]
+    failed = np.count_nonzero(verdict < 0)
+    undetermined = (
+        f" {failed} values of a are undetermined: a run did not complete, or its kind of motion is not clear."
+        if failed
+        else ""
+    )
+    if not len(a):
+        text = "no value of a could be compared."
+    elif not len(apart):
+        text = f"they agree at all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}."
+    else:
+        before = a[a < apart[0]]
+        agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
+        other_kind = np.count_nonzero(row["same_kind"].values == 0)
+        kinds = f"; the kind of motion differs at {other_kind}" if other_kind else ""
+        text = (
+            f"they {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
+            f"the last {apart[-1]:g}{kinds}."
+        )
+    return text + undetermined

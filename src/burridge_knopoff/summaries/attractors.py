@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.friction import Friction
-from burridge_knopoff.initial import CONTACTS, STARTS, InitialState
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.provenance import provenance
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
-from burridge_knopoff.stability.flow import Instant, Model, begin
 from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
 from burridge_knopoff.stability.motion import KINDS
-from burridge_knopoff.stability.sampling import fraction_interval, sample_states
+from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import EXPONENTS
 
 #: Difference of ⟨J⟩ up to which branches of two laws may be the same at one a.
@@ -71,48 +70,42 @@ VARIABLES = {
 
 
 def one_law(
-    law: str, grid: Sequence[float], initial: Mapping[str, Mapping[str, Sequence[float]]], config: Mapping[str, Any]
+    model: Model,
+    grid: Sequence[float],
+    initial: Sequence[InitialState],
+    settings: SearchSettings,
+    motion: MotionSettings,
+    start: str,
 ) -> xarray.Dataset:
-    """Find and match the attractors of one law.
+    """Find and match the attractors of one law along a.
 
-    grid : values of a, ascending
-    initial : named initial states with `position` and `velocity`
-    config : the config's v, contact, start, synchronization_threshold and the sections attractors and motion
+    model : under that law, at any a; grid : values of a, ascending
+    initial : states whose attractor is told under each convention, and from which attractors are looked for
+    settings : of the search; motion : how kinds of motion are told; start : convention for the drawn states
     """
-    states = {
-        name: InitialState(name, tuple(state["position"]), tuple(state["velocity"])) for name, state in initial.items()
-    }
-    blocks = len(next(iter(states.values())).position)
-    chain, settings = Chain(blocks), config["attractors"]
-    models = [Model(chain, Friction(law, a), config["v"], config["contact"]) for a in grid]
-    sampled = sample_states(blocks, settings["samples"], settings["position"], settings["velocity"], settings["seed"])
-
-    def samples(model: Model) -> list[Instant]:
-        random = [InitialState("sample", tuple(u), tuple(w)) for u, w in zip(*sampled, strict=True)]
-        return [begin(model, state, config["start"]) for state in (*random, *states.values())]
-
-    found = continue_attractors(models, samples, settings, config["synchronization_threshold"], config["motion"])
-    values = _features(models, found, settings["samples"])
-    values.update(_reached(models, found, states))
+    models = [model.at(a) for a in grid]
+    found = continue_attractors(models, settings, motion, starts=initial, start=start)
+    values = _features(models, found, settings.samples)
+    values.update(_reached(models, found, initial, settings.time_limit))
     values.update(_sweeps(found))
-    coordinates = {name: value for name, value in axes(list(states), list(grid)).items() if name != "law"}
-    coordinates["block"] = ("block", np.arange(1, blocks + 1, dtype="i2"), {"long_name": "block number", "units": "1"})
+    law = model.law.name
+    coordinates = axes([state.name for state in initial], list(grid), [law])
+    del coordinates["law"]
+    numbers = np.arange(1, model.blocks + 1, dtype="i2")
+    coordinates["block"] = ("block", numbers, {"long_name": "block number", "units": "1"})
     for name, names in (("contact", CONTACTS), ("start", STARTS), ("direction", DIRECTIONS)):
         coordinates[name] = (name, np.array(names, dtype=object), {"long_name": f"convention of {name}"})
     coordinates["direction"][2]["long_name"] = "direction in which a is swept"
     attributes = {
         "law": law,
         "history": "snakemake, from sampled initial states",
-        "v": config["v"],
-        "contact_convention": config["contact"],
-        "start_convention": config["start"],
-        "synchronization_threshold": config["synchronization_threshold"],
-        "position_box": np.array(settings["position"], dtype=float),
-        "velocity_box": np.array(settings["velocity"], dtype=float),
-        **{
-            key: settings[key]
-            for key in ("samples", "seed", "transient", "window", "time_limit", "resolution", "pushes")
-        },
+        "v": model.v,
+        "contact_convention": model.contact,
+        "start_convention": start,
+        "synchronization_threshold": motion.synchronization_threshold,
+        "position_box": np.array(settings.position),
+        "velocity_box": np.array(settings.velocity),
+        **{key: value for key, value in asdict(settings).items() if key not in ("position", "velocity")},
     }
     return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes, module=__name__)
 
@@ -120,12 +113,15 @@ def one_law(
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN.
 
-    Branches that the other laws share with the first one take its numbers.
+    Branches that another law shares with the first one take its numbers; all others have a number of their own.
     """
     values = {}
     variables = {}
     curves = [_curves(part) for part in parts]
-    numbers = [{n: n for n in curves[0]}, *(same_numbers(curves[0], other, SAME_BRANCH) for other in curves[1:])]
+    numbers = [{n: n for n in curves[0]}]
+    for other in curves[1:]:
+        largest = max((0, *(n for renamed in numbers for n in renamed.values())))
+        numbers.append(same_numbers(curves[0], other, SAME_BRANCH, largest))
     for name, item in VARIABLES.items():
         arrays = [part[name].values for part in parts]
         if name.endswith("branch"):
@@ -138,10 +134,9 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
         values[name] = whole
         variables[name] = replace(item, dimensions=("law", *item.dimensions))
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
-    law = axes([], [])["law"]
-    coordinates["law"] = (law[0], np.array([part.attrs["law"] for part in parts], dtype=object), law[2])
+    coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
-    return summary("Attractors of both friction laws", variables, values, coordinates, attributes, module=__name__)
+    return summary("Attractors", variables, values, coordinates, attributes, module=__name__)
 
 
 _HEAD = ("Conventions", "title", "law", *provenance(__name__))
@@ -216,7 +211,7 @@ def _empty(shape: Mapping[str, int]) -> dict[str, np.ndarray]:
 
 def _features(models: Sequence[Model], found: Continuation, samples: int) -> dict[str, np.ndarray]:
     """Return all variables of single attractors; in each slot order they are sorted by branch and side."""
-    blocks = models[0].chain.blocks
+    blocks = models[0].blocks
     slots = max(1, *(len(here) for here in found.attractors))
     values = _empty({"a": len(models), "attractor": slots, "block": blocks, "exponent": EXPONENTS})
     for k, here in enumerate(found.attractors):
@@ -245,7 +240,9 @@ def _features(models: Sequence[Model], found: Continuation, samples: int) -> dic
     return values
 
 
-def _reached(models: Sequence[Model], found: Continuation, states: Mapping[str, InitialState]) -> dict[str, np.ndarray]:
+def _reached(
+    models: Sequence[Model], found: Continuation, states: Sequence[InitialState], time_limit: float
+) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(models)}
     values = {name: value for name, value in _empty(shape).items() if name.startswith("initial")}
@@ -253,11 +250,9 @@ def _reached(models: Sequence[Model], found: Continuation, states: Mapping[str, 
         for i, contact in enumerate(CONTACTS):
             for j, start in enumerate(STARTS):
                 other = replace(model, contact=contact)
-                allowed = [
-                    n for n, state in enumerate(states.values()) if contact == "symmetric" or min(state.velocity) >= 0
-                ]
-                starts = [begin(other, list(states.values())[n], start) for n in allowed]
-                reached, _ = label(other, found.attractors[k], starts, found.time_limit)
+                allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
+                starts = [other.begin(states[n], start) for n in allowed]
+                reached, _ = label(other, found.attractors[k], starts, time_limit)
                 for n, index in zip(allowed, reached, strict=True):
                     if index != UNDETERMINED:
                         values["initial_branch"][i, j, n, k] = found.branch[k][index]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,10 @@ import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.friction import LAWS
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, label_states, pixel_centres, plane
 from burridge_knopoff.stability.labels import UNDETERMINED
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
 from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 
 _PLANE = ("last_position", "first_position")
@@ -40,98 +41,122 @@ COORDINATES = {
 
 
 def tile(
-    attractors: xarray.Dataset, law: str, a: float, number: int, config: Mapping[str, Any], threads: int
+    attractors: xarray.Dataset,
+    model: Model,
+    number: int,
+    basins: BasinSettings,
+    settings: SearchSettings,
+    motion: MotionSettings,
+    start: str,
 ) -> xarray.Dataset:
     """Label one tile of a map: a band of rows of equal U_N(0).
 
-    attractors : the summary of that name; number : of the tile, from 0
-    config : the config's v, contact, start, initial, synchronization_threshold and sections attractors, motion, basins
+    attractors : the summary of that name, made with these settings of the search and of kinds of motion
+    number : of the tile, from 0
     """
-    basins = config["basins"]
-    known = known_attractors(attractors, law, a, config)
-    first = pixel_centres(basins["first_position"], basins["pixels"])
-    last = np.array_split(pixel_centres(basins["last_position"], basins["pixels"]), basins["tiles"])[number]
-    state = config["initial"][basins["initial"]]
-    position, velocity = plane(state["position"], first, last, state["velocity"])
-    time_limit = config["attractors"]["time_limit"]
-    labels, times = _labels(known, position, velocity, config["start"], time_limit, threads)
+    known = known_attractors(attractors, model, settings, motion)
+    first = pixel_centres(basins.first_position, basins.pixels)
+    last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
+    position, velocity = plane(basins.initial.position, first, last, basins.initial.velocity)
+    labels, times = _labels(known, position, velocity, basins, settings, start)
     shape = (len(last), len(first))
     values = {
         name: np.where(labels == UNDETERMINED, missing, table[labels] if len(table) else missing).reshape(shape)
         for name, table, missing in (("branch", known.branch, UNDETERMINED), ("side", known.side, 0))
     }
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
-    attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
+    attributes = {"law": model.law.name, "a": model.a, "history": "snakemake, from attractors.nc"}
     coordinates = _coordinates(first, last)
     return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
-def pairs(attractors: xarray.Dataset, law: str, a: float, config: Mapping[str, Any], threads: int) -> xarray.Dataset:
+def pairs(
+    attractors: xarray.Dataset,
+    model: Model,
+    basins: BasinSettings,
+    settings: SearchSettings,
+    motion: MotionSettings,
+    start: str,
+) -> xarray.Dataset:
     """Label pairs of near states of the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
-    basins = config["basins"]
-    known = known_attractors(attractors, law, a, config)
-    ranges = basins["first_position"], basins["last_position"]
-    points, partners = sample_pairs(*ranges, basins["pairs"], config["attractors"]["seed"])
+    known = known_attractors(attractors, model, settings, motion)
+    points, partners = sample_pairs(basins.first_position, basins.last_position, basins.pairs, settings.seed)
     ends = np.concatenate([points, partners.reshape(-1, 2)])
-    state = config["initial"][basins["initial"]]
-    position = np.tile(np.array(state["position"], dtype=float), (len(ends), 1))
+    position = np.tile(np.array(basins.initial.position), (len(ends), 1))
     position[:, 0], position[:, -1] = ends.T
-    velocity = np.tile(np.array(state["velocity"], dtype=float), (len(ends), 1))
-    time_limit = config["attractors"]["time_limit"]
-    labels, _ = _labels(known, position, velocity, config["start"], time_limit, threads)
+    velocity = np.tile(np.array(basins.initial.velocity), (len(ends), 1))
+    labels, _ = _labels(known, position, velocity, basins, settings, start)
     counts = uncertain_counts(labels[: len(points)], labels[len(points) :].reshape(len(SEPARATIONS), -1))
     values = dict(zip(PAIR_VARIABLES, counts, strict=True))
-    attributes = {"law": law, "a": a, "history": "snakemake, from attractors.nc"}
+    attributes = {"law": model.law.name, "a": model.a, "history": "snakemake, from attractors.nc"}
     coordinates = {"separation": _separation(basins)}
     return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
-def _labels(known: KnownAttractors, position: np.ndarray, *others: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return what `label_states` does; where no attractor is known, as at a = 0, nothing is determined."""
-    if not known.attractors:
-        return np.full(len(position), UNDETERMINED, dtype=np.intc), np.zeros(len(position))
-    return label_states(known, position, *others)
+def _labels(
+    known: KnownAttractors,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    basins: BasinSettings,
+    settings: SearchSettings,
+    start: str,
+) -> tuple[np.ndarray, np.ndarray]:
+    return label_states(
+        known.model,
+        known.attractors,
+        position,
+        velocity,
+        start=start,
+        time_limit=settings.time_limit,
+        threads=basins.threads,
+    )
 
 
-def _separation(basins: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str, str]]:
-    width = basins["first_position"][1] - basins["first_position"][0]
+def _separation(basins: BasinSettings) -> tuple[str, np.ndarray, dict[str, str]]:
+    width = basins.first_position[1] - basins.first_position[0]
     text = "distance between the two states of a pair in the plane"
     return "separation", np.array(SEPARATIONS) * width, {"long_name": text, "units": "1"}
 
 
 def merge(
-    maps: Sequence[tuple[str, float, Sequence[xarray.Dataset], xarray.Dataset]], config: Mapping[str, Any]
+    maps: Sequence[tuple[Model, Sequence[xarray.Dataset], xarray.Dataset]],
+    laws: Sequence[str],
+    basins: BasinSettings,
+    time_limit: float,
+    start: str,
 ) -> xarray.Dataset:
-    """Put the maps together, each (law, a, its tiles in order, its pairs), with the exponents of their boundaries."""
-    wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, _, tiles, _ in maps]
+    """Put the maps together, each (model, its tiles in order, its pairs), with the exponents of their boundaries.
+
+    laws : names of the laws of the study, in order; basins, time_limit, start : what the maps were made with
+    """
+    wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
     values["undetermined_count"] = [np.count_nonzero(whole["branch"] == UNDETERMINED) for whole in wholes]
     for name in PAIR_VARIABLES:
-        values[name] = np.stack([near[name].values for _, _, _, near in maps])
+        values[name] = np.stack([near[name].values for _, _, near in maps])
     exponents = [uncertainty_exponent(near["uncertain_count"].values, near["pair_count"].values) for *_, near in maps]
     values["uncertainty_exponent"], values["uncertainty_exponent_error"] = np.array(exponents).T
-    basins = config["basins"]
     coordinates = _coordinates(wholes[0]["first_position"].values, wholes[0]["last_position"].values)
     coordinates["separation"] = _separation(basins)
+    models = [model for model, *_ in maps]
     law = {
         "long_name": "friction law",
-        "flag_values": np.arange(len(LAWS), dtype="i1"),
-        "flag_meanings": " ".join(LAWS),
+        "flag_values": np.arange(len(laws), dtype="i1"),
+        "flag_meanings": " ".join(laws),
     }
-    coordinates["law"] = ("map", np.array([LAWS.index(name) for name, *_ in maps], dtype="i1"), law)
+    coordinates["law"] = ("map", np.array([laws.index(model.law.name) for model in models], dtype="i1"), law)
     a = {"long_name": "friction parameter a", "units": "1"}
-    coordinates["a"] = ("map", np.array([value for _, value, *_ in maps]), a)
-    state = config["initial"][basins["initial"]]
+    coordinates["a"] = ("map", np.array([model.a for model in models]), a)
     attributes = {
         "history": "snakemake, from attractors.nc",
-        "v": config["v"],
-        "contact": config["contact"],
-        "start": config["start"],
-        "plane_position": np.array(state["position"], dtype=float),
-        "plane_velocity": np.array(state["velocity"], dtype=float),
-        "first_range": np.array(basins["first_position"], dtype=float),
-        "last_range": np.array(basins["last_position"], dtype=float),
-        "time_limit": config["attractors"]["time_limit"],
+        "v": models[0].v,
+        "contact": models[0].contact,
+        "start": start,
+        "plane_position": np.array(basins.initial.position),
+        "plane_velocity": np.array(basins.initial.velocity),
+        "first_range": np.array(basins.first_position),
+        "last_range": np.array(basins.last_position),
+        "time_limit": time_limit,
     }
     return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes, module=__name__)
 
@@ -139,6 +164,7 @@ def merge(
 def digest(dataset: xarray.Dataset) -> str:
     """Return, in a line for each map, the shares of the basins and the uncertainty exponent of their boundary."""
     lines = []
+    laws = dataset["law"].attrs["flag_meanings"].split()
     for number in range(dataset.sizes["map"]):
         one = dataset.isel(map=number)
         pairs, counts = np.unique(
@@ -153,7 +179,7 @@ def digest(dataset: xarray.Dataset) -> str:
         times = one["decision_time"].values
         decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
         lines.append(
-            f"{LAWS[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; "
+            f"{laws[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; "
             f"uncertainty exponent {alpha:.3f} +- {error:.3f}{decided}"
         )
     return "\n".join(lines) + "\n"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import DIRECTION, Variable
-from burridge_knopoff.friction import LAWS
 from burridge_knopoff.summaries.points import Grid, read_point
 
 VARIABLES = {
@@ -30,12 +31,12 @@ def summarize(grid: Grid) -> xarray.Dataset:
         velocity.append(read["crossing_velocity"])
         direction.append(read["crossing_direction"])
         count.append(len(read["crossing_velocity"]))
-        law.append(LAWS.index(point[0]))
+        law.append(grid.laws.index(point[0]))
         initial.append(names.index(point[1]))
         a.append(grid.a[point[2]])
     coordinates = {
-        "law": ("point", np.array(law, dtype="i1"), _flag("friction law", LAWS)),
-        "initial": ("point", np.array(initial, dtype="i2"), _flag("initial state", names)),
+        "law": ("point", np.array(law, dtype="i1"), _flag("friction law", grid.laws, "i1")),
+        "initial": ("point", np.array(initial, dtype="i2"), _flag("initial state", names, "i2")),
         "a": ("point", np.array(a), {"long_name": "friction parameter a", "units": "1"}),
     }
     values = {
@@ -53,8 +54,8 @@ def summarize(grid: Grid) -> xarray.Dataset:
     )
 
 
-def _flag(long_name: str, meanings: tuple[str, ...]) -> dict:
-    values = np.arange(len(meanings), dtype="i1" if meanings == LAWS else "i2")
+def _flag(long_name: str, meanings: tuple[str, ...], dtype: str) -> dict[str, Any]:
+    values = np.arange(len(meanings), dtype=dtype)
     return {"long_name": long_name, "flag_values": values, "flag_meanings": " ".join(meanings)}
 
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.dataset.summary import STATE, axes, open_summary, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance import provenance
 from burridge_knopoff.stability.chains import (
     NOT_SYNCHRONIZED,
@@ -71,21 +72,20 @@ VARIABLES = {
 }
 
 
-def chain_dataset(
-    blocks: int, laws: Sequence[str], grid: Sequence[float], sample: Sample, watch: Watch, v: float, contact: str
-) -> xarray.Dataset:
+def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample, watch: Watch) -> xarray.Dataset:
     """Return the chain file of one number of blocks; see `watch_chain`."""
-    values = watch_chain(blocks, laws, grid, sample, watch, v, contact)
+    values = watch_chain(models, grid, sample, watch)
+    first = models[0]
     return summary(
-        f"Mirror synchrony of sampled initial states, {blocks} blocks",
+        f"Mirror synchrony of sampled initial states, {first.blocks} blocks",
         CHAIN_VARIABLES,
         values,
-        _coordinates(laws, grid, sample.samples, sample.symmetric_samples),
+        _coordinates([model.law.name for model in models], grid, sample.samples, sample.symmetric_samples),
         {
             "history": "snakemake chains",
-            "blocks": blocks,
-            "v": v,
-            "contact": contact,
+            "blocks": first.blocks,
+            "v": first.v,
+            "contact": first.contact,
             **asdict(watch),
             **asdict(sample),
         },
@@ -133,9 +133,9 @@ def _settings(chain: xarray.Dataset) -> str:
 
 def _coordinates(laws: ArrayLike, grid: ArrayLike, states: int, symmetric_states: int) -> dict[str, Any]:
     symmetric = {"long_name": "number of the sampled initial state that was made symmetric", "units": "1"}
-    shared = axes([], np.asarray(grid).tolist())
+    shared = axes([], np.asarray(grid).tolist(), np.asarray(laws).tolist())
     return {
-        "law": ("law", np.array(laws, dtype=object), shared["law"][2]),
+        "law": shared["law"],
         "a": shared["a"],
         "state": ("state", np.arange(1, states + 1, dtype="i4"), STATE.all_attributes()),
         "symmetric_state": ("symmetric_state", np.arange(1, symmetric_states + 1, dtype="i4"), symmetric),

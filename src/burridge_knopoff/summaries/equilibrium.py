@@ -1,9 +1,9 @@
 """Uniform sliding over law and a: where the blocks lie, and how perturbations of it grow.
 
-In uniform sliding U_i = vτ + e_i with K e = −Φ(av)·1. A perturbation obeys δU'' = −K δU + g δU' with the slope
-g = −dΦ(aU')/dU' at U' = v, which is a under the linearized law and a Φ(av)² under the nonlinear one. A normal mode of K
-with the eigenvalue κ has λ² − gλ + κ = 0, so that the Jacobian [[0, 1], [−K, g]] has the eigenvalues
-λ = g/2 ± i sqrt(κ − g²/4): all real parts are g/2.
+In uniform sliding U_i = vτ + e_i with K e = −Φ(v)·threshold. A perturbation obeys δU'' = −K δU + G δU' with the
+diagonal matrix G of g_i = −threshold_i·dΦ/dU' at U' = v; under the linearized law with thresholds of 1 they are a. Its
+growth rates are the eigenvalues λ of the Jacobian [[0, 1], [−K, G]]. Where all g_i are one g, a normal mode of K with
+the eigenvalue κ has λ² − gλ + κ = 0, so that λ = g/2 ± i sqrt(κ − g²/4): real parts of modes that oscillate are g/2.
 """
 
 from __future__ import annotations
@@ -13,17 +13,19 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray
-from scipy.linalg import eigvalsh_tridiagonal, solveh_banded
+from scipy.linalg import eigvalsh, eigvalsh_tridiagonal, solve, solveh_banded
 
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.friction import LAWS, Friction
-from burridge_knopoff.initial import InitialState
-from burridge_knopoff.stability.flow import COMPLETED, RUNNING, Instant, Model, begin, instant, new_solver
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.runner import Runner
 
-#: Time for which the equations are simulated from uniform sliding: a few periods of the slowest mode.
+#: Time for which the equations are simulated from uniform sliding: a few periods of the slowest mode of the paper.
 DURATION = 20.0
+
+# Logarithm of how much a perturbation may grow in that time; where growth is faster, the time is shorter.
+LARGEST_GROWTH = 20.0
 
 PARTS = ("real", "imaginary")
 
@@ -33,7 +35,10 @@ DIGITS = 12
 _CURVE = ("law", "a")
 VARIABLES = {
     "equilibrium_position": Variable(
-        (*_CURVE, "block"), "f8", "position e = U - v*tau of a block in uniform sliding", {"comment": "K e = -Phi(a v)"}
+        (*_CURVE, "block"),
+        "f8",
+        "position e = U - v*tau of a block in uniform sliding",
+        {"comment": "K e = -Phi(v) threshold"},
     ),
     "equilibrium_drift": Variable(
         _CURVE, "f8", "largest distance of a block from uniform sliding when it has been simulated for a while from it"
@@ -52,19 +57,23 @@ _COORDINATES = {
 }
 
 
-def summarize(blocks: int, grid: Sequence[float], v: float) -> xarray.Dataset:
-    """Return position, simulated drift, eigenvalues and simulated growth rate of uniform sliding at each a."""
-    sizes = {"law": len(LAWS), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
+def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
+    """Return position, simulated drift, eigenvalues and simulated growth rate of uniform sliding at each a of a grid.
+
+    models : one for each law, at any a, of one chain and velocity
+    """
+    blocks = models[0].blocks
+    sizes = {"law": len(models), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
-    for i, law in enumerate(LAWS):
+    for i, of_law in enumerate(models):
         for k, a in enumerate(grid):
-            model = Model(Chain(blocks), Friction(law, a), v)
+            model = of_law.at(a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
             found = eigenvalues(model)
             values["eigenvalue"][i, k] = np.stack([found.real, found.imag], axis=-1)
             values["equilibrium_drift"][i, k], values["growth_rate"][i, k] = simulate_sliding(model, position)
-    shared = axes((), grid)
+    shared = axes((), grid, [model.law.name for model in models])
     coordinates = {"law": shared["law"], "a": shared["a"]}
     labels = {"block": np.arange(1, blocks + 1), "mode": np.arange(1, 2 * blocks + 1), "part": PARTS}
     for name, item in _COORDINATES.items():
@@ -74,35 +83,48 @@ def summarize(blocks: int, grid: Sequence[float], v: float) -> xarray.Dataset:
         VARIABLES,
         values,
         coordinates,
-        {"history": "snakemake, from the equations of motion", "v": v, "duration": DURATION},
+        {"history": "snakemake, from the equations of motion", "v": models[0].v, "duration": DURATION},
         module=__name__,
     )
 
 
 def sliding_position(model: Model) -> np.ndarray:
-    """Return e with K e = −Φ(av)·1, shape (blocks,), in a way that the simulation has no part in."""
-    stiffness = model.chain.stiffness
-    bands = np.stack([np.append(0.0, np.diag(stiffness, 1)), np.diag(stiffness)])
-    return solveh_banded(bands, np.full(model.chain.blocks, -float(model.friction(model.v))))
+    """Return e with K e = −Φ(v)·threshold, shape (blocks,), in a way that the simulation has no part in."""
+    chain = model.chain
+    load = -float(model.law(model.v)) * chain.thresholds
+    if chain.ends == "ring":
+        return np.array([_rounded(value) for value in solve(chain.stiffness, load, assume_a="pos")])
+    bands = np.stack([np.append(0.0, np.diag(chain.stiffness, 1)), np.diag(chain.stiffness)])
+    return solveh_banded(bands, load)
 
 
-def friction_slope(model: Model) -> float:
-    """Return g = −dΦ(aU')/dU' at the velocity of the driver."""
-    a = model.friction.a
-    return a if model.friction.law == "linearized" else a * float(model.friction(model.v)) ** 2
+def damping(model: Model) -> np.ndarray:
+    """Return g = −threshold·dΦ/dU' of each block at the velocity of the driver, shape (blocks,)."""
+    return -model.chain.thresholds * float(model.law.slope(model.v))
 
 
 def eigenvalues(model: Model) -> np.ndarray:
-    """Return the eigenvalues of the Jacobian at uniform sliding, shape (2 blocks,).
+    """Return the eigenvalues of the Jacobian at uniform sliding, complex, shape (2 blocks,).
 
-    Pairs λ = g/2 ± i sqrt(κ − g²/4), the positive imaginary part first, in the order of the eigenvalues κ of K; these
-    lie above 1, and g is below 2, so that every mode oscillates.
+    From the slowest oscillation to the fastest, of a pair the positive imaginary part first; those without oscillation
+    come before, the one that grows most first.
     """
-    stiffness = model.chain.stiffness
-    kappa = eigvalsh_tridiagonal(np.diag(stiffness), np.diag(stiffness, 1), lapack_driver="sterf")
-    half = 0.5 * friction_slope(model)
-    frequency = np.array([_rounded(value) for value in np.sqrt(kappa - half**2)])
-    return (half + 1j * frequency[:, None] * np.array([1.0, -1.0])).ravel()
+    stiffness, rates = model.chain.stiffness, damping(model)
+    if (rates != rates[0]).any():
+        blocks = model.blocks
+        jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness, np.diag(rates)]])
+        found = [complex(_rounded(value.real), _rounded(value.imag)) for value in np.linalg.eigvals(jacobian)]
+        return np.array(sorted(found, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
+    half = 0.5 * rates[0]
+    if model.chain.ends == "ring":
+        kappa = eigvalsh(stiffness)
+    else:
+        kappa = eigvalsh_tridiagonal(np.diag(stiffness), np.diag(stiffness, 1), lapack_driver="sterf")
+    square = kappa - half**2
+    root = np.array([_rounded(value) for value in np.sqrt(np.abs(square))])
+    # A mode that does not oscillate has two real eigenvalues.
+    shift = np.where(square > 0.0, 1j, 1.0) * root
+    return (half + shift[:, None] * np.array([1.0, -1.0])).ravel()
 
 
 def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
@@ -111,17 +133,15 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
     The tangent map M of the simulation over the time t has the eigenvalues exp(λt); the growth rate is the logarithm of
     the largest modulus over t. NaN if the run does not complete.
     """
-    start = begin(model, InitialState("sliding", tuple(position), (model.v,) * model.chain.blocks))
-    solver = new_solver(model, perturbations=np.eye(2 * model.chain.blocks))
-    solver.end = DURATION
-    solver.begin(start.position, start.velocity, start.stuck)
-    while (code := solver.run()) == RUNNING:
-        pass
-    if code != COMPLETED:
+    start = model.begin(InitialState("sliding", tuple(position), (model.v,) * model.blocks))
+    runner = Runner(model, perturbations=np.eye(2 * model.blocks))
+    fastest = float(eigenvalues(model).real.max())
+    duration = min(DURATION, LARGEST_GROWTH / fastest) if fastest > 0.0 else DURATION
+    end = runner.after(start, duration)
+    if end is None:
         return math.nan, math.nan
-    end: Instant = instant(solver)
-    moduli = np.abs(np.linalg.eigvals(solver.tangent.matrix()))
-    rate = round(math.log(float(moduli.max())) / DURATION, DIGITS)
+    moduli = np.abs(np.linalg.eigvals(runner.perturbations))
+    rate = round(math.log(float(moduli.max())) / duration, DIGITS)
     # Adding 0 turns -0.0 into 0.0.
     return float(np.abs(end.position).max()), rate + 0.0
 

@@ -14,18 +14,21 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
     """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
 
     There is no verdict where the kind of one of the two motions is not determined.
+    values : mean_distance, its error and kind of both laws, the first and the other, shape (2, …, a); the rest is
+        filled in
+    a : ascending, shape (a,)
     """
-    linearized, nonlinear = values["mean_distance"]
+    first, other = values["mean_distance"]
     kind = values["kind"]
-    values["difference"][...] = nonlinear - linearized
+    values["difference"][...] = other - first
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
     determined = (kind != UNDETERMINED).all(axis=0)
     values["same_kind"][...] = np.where(determined, kind[0] == kind[1], -1)
     tolerance = np.maximum.reduce(
         [
-            agreement["relative_tolerance"] * np.maximum(linearized, nonlinear),
+            agreement["relative_tolerance"] * np.maximum(first, other),
             agreement["standard_errors"] * values["difference_error"],
-            np.full_like(linearized, threshold),
+            np.full_like(first, threshold),
         ]
     )
     agrees = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
     KINDS,
     PERIODIC,
@@ -21,6 +23,7 @@ from burridge_knopoff.stability.motion import (
     section_period,
     zero_exponents,
 )
+from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _AXES = ("law", "initial", "a")
@@ -37,7 +40,7 @@ VARIABLES = {
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
     "section_period": Variable(_AXES, "i2", "upward section points after which W' repeats, 0 if it does not"),
     "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
-    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", dict(enumerate(STATUS)))),
+    "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
 }
 _COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
 
@@ -50,6 +53,8 @@ def summarize(
     exponents : how many were computed in each run
     motion : the config's section of that name: thresholds of the kinds of motion
     """
+    settings = MotionSettings(**motion, synchronization_threshold=synchronization_threshold)
+    symmetric = grid.is_mirror_symmetric
     values = {}
     for name, item in VARIABLES.items():
         shape = (*grid.shape, exponents) if "exponent" in item.dimensions else grid.shape
@@ -60,22 +65,23 @@ def summarize(
             values[name][index] = read[name]
         exponent, error = read["lyapunov_exponent"], read["lyapunov_error"]
         upward = read["crossing_velocity"][read["crossing_direction"] > 0]
-        period = section_period(upward, motion["period_tolerance"], motion["longest_period"])
+        period = section_period(upward, settings.period_tolerance, settings.longest_period)
         kind = UNDETERMINED
-        if STATUS[int(read["status"])] == "completed":
-            mean = float(read["mean_distance"])
-            kind = motion_kind(mean, synchronization_threshold, period, exponent, error, motion)
-            if kind == QUASIPERIODIC and section_closed(upward, motion["period_tolerance"]):
+        if read["status"] == Status.COMPLETED:
+            # End blocks that are not each other's mirror images do not synchronize.
+            mean = float(read["mean_distance"]) if symmetric else math.inf
+            kind = motion_kind(mean, period, exponent, error, settings)
+            if kind == QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
                 # A weakly attracting orbit of a long period.
                 kind = PERIODIC
         values["kind"][index] = kind
         values["section_period"][index] = period
-        values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, motion))
+        values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, settings))
     return summary(
         "Lyapunov exponents and kinds of motion",
         VARIABLES,
         values,
-        axes(list(grid.initial), list(grid.a.values())),
+        axes(list(grid.initial), list(grid.a.values()), grid.laws),
         {"synchronization_threshold": synchronization_threshold, **motion},
         module=__name__,
     )

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
 
 #: Levels of J below which a run has to stay to have settled: the eye's, that of a figure, and synchrony.
@@ -26,21 +28,28 @@ VARIABLES = {
     ),
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
     "synchronized": Variable(_AXES, "i1", "whether <J> is below the threshold", flag("i1", {0: "no", 1: "yes"})),
-    "least_friction": Variable(_AXES, "f8", "least friction Phi(a U') on a slipping block in the whole run"),
+    "least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the whole run"),
     "window_least_spring_force": Variable(_AXES, "f8", "least spring force s on a stuck block in the window"),
     "event_count": Variable(_AXES, "i8", "number of stops and starts in the whole run"),
-    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", dict(enumerate(STATUS)))),
+    "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
     "settling_time": Variable(
         (*_AXES, "level"), "f8", "least sampled time tau from which on all samples of J are below the level"
     ),
 }
+_UNDEFINED = replace(
+    VARIABLES["synchronized"],
+    attributes={
+        **VARIABLES["synchronized"].attributes,
+        "comment": "no synchrony is defined: the chain is not its own mirror image",
+    },
+)
 _READ = [name for name in VARIABLES if name not in ("synchronized", "settling_time")]
 
 
 def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
     """Return ⟨J⟩, its error, when J settles and which points are synchronized.
 
-    A run that did not complete has NaN and is not synchronized.
+    A run that did not complete has NaN and is not synchronized. In a chain that is not its own mirror image no run is.
     """
     values = {name: np.zeros(grid.shape, dtype=item.dtype) for name, item in VARIABLES.items()}
     values["settling_time"] = np.full((*grid.shape, len(LEVELS)), np.nan)
@@ -48,15 +57,19 @@ def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
         read = read_point(grid, *point, [*_READ, "time", "distance"])
         for name in _READ:
             values[name][index] = read[name]
-        if STATUS[int(read["status"])] == "completed":
+        if read["status"] == Status.COMPLETED:
             values["settling_time"][index] = settling_time(read["time"], read["distance"], LEVELS)
     values["synchronized"] = values["mean_distance"] < synchronization_threshold
+    variables = VARIABLES
+    if not grid.is_mirror_symmetric:
+        values["synchronized"][...] = False
+        variables = {**VARIABLES, "synchronized": _UNDEFINED}
     return summary(
         "Mean distance <J> between the end blocks",
-        VARIABLES,
+        variables,
         values,
         {
-            **axes(list(grid.initial), list(grid.a.values())),
+            **axes(list(grid.initial), list(grid.a.values()), grid.laws),
             "level": ("level", np.array(LEVELS), LEVEL.all_attributes()),
         },
         {"synchronization_threshold": synchronization_threshold},

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.chain import Chain
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.friction import LAWS, Friction
+from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.flow import Model
 from burridge_knopoff.stability.orbit import OrbitError, multipliers, transverse_multiplier
 from burridge_knopoff.stability.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
 
@@ -22,7 +22,8 @@ MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2
 PARTS = ("real", "imaginary")
 DIRECTIONS = ("upward", "downward")
 
-#: Whether there is an orbit. At a = 0 nothing feeds or damps the motion: no periodic orbit is isolated.
+#: Whether there is an orbit. Where friction does not depend on speed, as under most laws at a = 0, nothing feeds or
+#: damps the motion: no periodic orbit is isolated.
 ORBIT_STATUS = {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"}
 FOUND, NEUTRAL, NOT_FOUND, NOT_THREE_BLOCKS = ORBIT_STATUS
 
@@ -68,7 +69,13 @@ VARIABLES = {
         ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| of runs that go through a_c in steps of a"
     ),
     "hysteresis": Variable(("law",), "f8", "largest difference of |x_1 - x_3| between going up and going down"),
-    "effective_a": Variable(("a",), "f8", "a / (1 + a v)^2, slope of the nonlinear law at the driver velocity"),
+}
+
+#: How the second of the paper's laws at a differs from the first one at the same slope; only in studies with both.
+COMPARISON = {
+    "effective_a": Variable(
+        ("a",), "f8", "minus the slope of the nonlinear law at the driver velocity, a / (1 + a v)^2"
+    ),
     "effective_period_difference": Variable(
         ("a",), "f8", "period of the nonlinear law at a minus that of the linearized law at effective_a"
     ),
@@ -89,33 +96,39 @@ _COORDINATES = {
 }
 
 
-def summarize(blocks: int, grid: Sequence[float], v: float, contact: str) -> xarray.Dataset:
+def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     """Return the Dataset of the synchronized orbits of a chain, which has three blocks for there to be any.
 
+    models : one for each law, at any a, of one chain, velocity and contact
     grid : values of a; the transitions do not depend on them
     """
+    v, contact = models[0].v, models[0].contact
     asymmetry = v * np.array(ASYMMETRIES)
-    coordinates = _coordinates(grid, asymmetry)
+    laws = [model.law.name for model in models]
+    coordinates = _coordinates(laws, grid, asymmetry)
     sizes = {name: len(coordinates[name][1]) for name in coordinates}
+    pair = [model for law in PAPER_LAWS for model in models if model.law == law_of(law, model.a)]
+    variables = {**VARIABLES, **(COMPARISON if len(pair) == len(PAPER_LAWS) else {})}
     values: dict[str, Any] = {
         name: np.full(
             [sizes[dimension] for dimension in item.dimensions], UNDETERMINED if item.dtype == "i1" else np.nan
         )
-        for name, item in VARIABLES.items()
+        for name, item in variables.items()
     }
-    families: list[Family | None] = []
-    for i, law in enumerate(LAWS):
+    families: dict[str, Family | None] = {}
+    for i, model in enumerate(models):
         try:
-            families.append(Family(Model(Chain(blocks), Friction(law, 0.0), v, contact)))
+            families[laws[i]] = Family(model)
         except OrbitError as error:
-            print(f"{law}: {error}")
-            families.append(None)
-        _fill_curve(values, i, families[i], grid, NOT_FOUND if blocks == 3 else NOT_THREE_BLOCKS)
-        _fill_transition(values, i, families[i], asymmetry)
-    _compare(values, families, grid, v)
+            print(f"{laws[i]}: {error}")
+            families[laws[i]] = None
+        _fill_curve(values, i, model, families[laws[i]], grid)
+        _fill_transition(values, i, families[laws[i]], asymmetry)
+    if len(pair) == len(PAPER_LAWS):
+        _compare(values, laws, pair[1], families[PAPER_LAWS[0]], grid)
     return summary(
         "The synchronized orbit of three blocks, its Floquet multipliers, and where it is lost",
-        VARIABLES,
+        variables,
         values,
         coordinates,
         {"history": "snakemake, from the equations of motion", "v": v, "contact": contact},
@@ -123,7 +136,7 @@ def summarize(blocks: int, grid: Sequence[float], v: float, contact: str) -> xar
     )
 
 
-def _coordinates(grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]:
+def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]:
     values = {
         "mode": MODES,
         "part": PARTS,
@@ -131,23 +144,25 @@ def _coordinates(grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]
         "direction": DIRECTIONS,
         "sweep_offset": OFFSETS,
     }
-    named = axes((), grid)
+    named = axes((), grid, laws)
     del named["initial"]
     for name, item in _COORDINATES.items():
         named[name] = (name, np.array(values[name], dtype=item.dtype), item.all_attributes())
     return named
 
 
-def _fill_curve(values: dict[str, Any], i: int, family: Family | None, grid: Sequence[float], missing: int) -> None:
+def _fill_curve(values: dict[str, Any], i: int, model: Model, family: Family | None, grid: Sequence[float]) -> None:
     """Fill in what is known along the grid for the law of that number."""
     for k, a in enumerate(grid):
-        values["status"][i, k] = NEUTRAL if a == 0.0 and missing == NOT_FOUND else missing
+        values["status"][i, k] = NOT_FOUND if model.blocks == 3 else NOT_THREE_BLOCKS
+        if model.blocks == 3 and _is_constant(model.at(a).law):
+            values["status"][i, k] = NEUTRAL
         if family is None or a == 0.0:
             continue
         try:
             orbit = family.at(a)
         except OrbitError as error:
-            print(f"{LAWS[i]}: {error}")
+            print(f"{family.model.law.name}: {error}")
             continue
         found = multipliers(orbit)
         values["status"][i, k] = FOUND
@@ -157,6 +172,11 @@ def _fill_curve(values: dict[str, Any], i: int, family: Family | None, grid: Seq
         values["center_stick_time"][i, k] = orbit.center_stick_time
         values["transverse_multiplier"][i, k] = transverse_multiplier(orbit)
         values["multiplier"][i, k] = np.stack([found.real, found.imag], axis=-1)
+
+
+def _is_constant(law: Law) -> bool:
+    """Tell whether friction is the static one at every speed."""
+    return law.is_linear and float(law.slope(0.0)) == 0.0 and float(law(0.0)) == 1.0
 
 
 def _fill_transition(values: dict[str, Any], i: int, family: Family | None, asymmetry: np.ndarray) -> None:
@@ -185,9 +205,9 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
         try:
             orbit = branch_orbit(family, critical, float(d))
         except OrbitError as error:
-            print(f"{LAWS[i]}: {error}")
+            print(f"{family.model.law.name}: {error}")
             continue
-        values["branch_offset"][i, k] = orbit.model.friction.a - critical
+        values["branch_offset"][i, k] = orbit.model.a - critical
         values["branch_period"][i, k] = orbit.period
         values["branch_residual"][i, k] = orbit.residual
         values["branch_multiplier"][i, k] = leading_modulus(orbit)
@@ -202,27 +222,29 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
         values["amplitude_coefficient"][i] = fit.coefficient
 
 
-def _compare(values: dict[str, Any], families: Sequence[Family | None], grid: Sequence[float], v: float) -> None:
-    """Fill in how the nonlinear law at a differs from the linearized one at a / (1 + a v)²."""
-    linearized_row, nonlinear_row = LAWS.index("linearized"), LAWS.index("nonlinear")
-    values["effective_a"] = effective_a(np.asarray(grid, dtype=float), v)
+def _compare(
+    values: dict[str, Any], laws: Sequence[str], other: Model, first: Family | None, grid: Sequence[float]
+) -> None:
+    """Fill in how the second of the paper's laws at a differs from the first one at the same slope.
+
+    other : a model under the second law; first : the orbits under the first one, whose slope is −a at any speed
+    """
+    first_row, other_row = (laws.index(law) for law in PAPER_LAWS)
+    values["effective_a"] = np.array([effective_a(other, a) for a in grid])
     for name in ("critical_a", "grazing_a"):
-        linearized, nonlinear = values[name][[linearized_row, nonlinear_row]]
-        values[f"effective_{name}_difference"] = effective_a(nonlinear, v) - linearized
-    linearized_family = families[linearized_row]
+        values[f"effective_{name}_difference"] = effective_a(other, values[name][other_row]) - values[name][first_row]
     for k, a in enumerate(values["effective_a"]):
-        if linearized_family is None or values["status"][nonlinear_row, k] != FOUND:
+        if first is None or values["status"][other_row, k] != FOUND:
             continue
         try:
-            orbit = linearized_family.at(float(a))
+            orbit = first.at(float(a))
         except OrbitError:
             continue
-        values["effective_period_difference"][k] = values["period"][nonlinear_row, k] - orbit.period
-        values["effective_multiplier_difference"][k] = values["transverse_multiplier"][
-            nonlinear_row, k
-        ] - transverse_multiplier(orbit)
+        values["effective_period_difference"][k] = values["period"][other_row, k] - orbit.period
+        difference = values["transverse_multiplier"][other_row, k] - transverse_multiplier(orbit)
+        values["effective_multiplier_difference"][k] = difference
 
 
-def effective_a(a: Any, v: float) -> Any:
-    """Return minus the slope of the nonlinear law 1/(1 + a U') at U' = v, elementwise."""
-    return a / (1.0 + a * v) ** 2
+def effective_a(model: Model, a: float) -> float:
+    """Return minus the slope of a model's law, at this a, at the velocity of the driver; NaN for NaN."""
+    return a if np.isnan(a) else -float(model.law.at(float(a)).slope(model.v))

@@ -12,12 +12,13 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.command import difference, simulate_command
+from burridge_knopoff.config.model import MODEL_KEYS, model_of
 from burridge_knopoff.dataset.point import point_identity
 from burridge_knopoff.dataset.seal import BadFile, Seal, read_seal
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.initial import InitialState
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance import SOFTWARE
-from burridge_knopoff.settings import Settings
+from burridge_knopoff.running.settings import Settings
 
 _EVENT = ("time", "block", "kind")
 
@@ -33,12 +34,14 @@ class Grid:
     initial : {name: initial state}
     a : {name in file names: value of a}
     settings : {law: settings of its runs}
+    models : what decides the models: the config's laws, chain, v and contact
     """
 
     folder: Path
     initial: Mapping[str, InitialState]
     a: Mapping[str, float]
     settings: Mapping[str, Settings]
+    models: Mapping[str, Any]
 
     @classmethod
     def of(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
@@ -48,16 +51,37 @@ class Grid:
             {name: InitialState(name, **state) for name, state in points["initial"].items()},
             points["a"],
             {law: Settings(**settings) for law, settings in points["settings"].items()},
+            {key: points[key] for key in MODEL_KEYS},
         )
 
     def elsewhere(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
         """Return the same points as they were run with other settings, {law: settings}, below another folder."""
-        return Grid(folder, self.initial, self.a, {law: Settings(**items) for law, items in settings.items()})
+        others = {law: Settings(**items) for law, items in settings.items()}
+        return Grid(folder, self.initial, self.a, others, self.models)
+
+    @property
+    def laws(self) -> tuple[str, ...]:
+        """Names of the friction laws."""
+        return tuple(self.models["laws"])
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return len(next(iter(self.initial.values())).position)
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the chain is its own mirror image: only then can its end blocks synchronize."""
+        return self.model(self.laws[0], next(iter(self.a.values()))).chain.is_mirror_symmetric
+
+    def model(self, law: str, a: float) -> Model:
+        """Return the model of the points under one law at one a."""
+        return model_of(self.models, law, a, self.blocks)
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """Numbers of laws, initial states and values of a."""
-        return len(LAWS), len(self.initial), len(self.a)
+        return len(self.laws), len(self.initial), len(self.a)
 
     def path(self, law: str, initial: str, a: str) -> Path:
         """Return the path of a point file."""
@@ -65,11 +89,11 @@ class Grid:
 
     def command(self, law: str, initial: str, a: str) -> str:
         """Return the `bk simulate` command that makes a point."""
-        return simulate_command(law, self.a[a], self.initial[initial], self.settings[law])
+        return simulate_command(self.model(law, self.a[a]), self.initial[initial], self.settings[law])
 
     def __iter__(self) -> Iterator[tuple[tuple[int, int, int], tuple[str, str, str]]]:
         """Yield (index, (law, initial, a)) in the order law, initial, a."""
-        for i, law in enumerate(LAWS):
+        for i, law in enumerate(self.laws):
             for j, initial in enumerate(self.initial):
                 for k, a in enumerate(self.a):
                     yield (i, j, k), (law, initial, a)

@@ -9,16 +9,17 @@ import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.friction import LAWS
-from burridge_knopoff.settings import SOLVERS
-from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 NO_RUN = -1
 
 _AXES = ("law", "solver", "initial", "a")
-_NO_RUN = {NO_RUN: "no_such_solver"}
+_ENDS = {NO_RUN: "no_such_solver"} | {
+    int(status): status.name.lower() for status in Status if status >= Status.COMPLETED
+}
 VARIABLES = {
     "mean_distance": Variable(
         _AXES,
@@ -27,7 +28,7 @@ VARIABLES = {
         {"ancillary_variables": "mean_distance_error status"},
     ),
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
-    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", {**_NO_RUN, **dict(enumerate(STATUS))})),
+    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", _ENDS)),
     "step_count": Variable(_AXES, "i8", "number of solver steps in the whole run, -1 if there is no run"),
     "end_time": Variable(_AXES, "f8", "time tau at which the run ended"),
     "difference": Variable(_AXES, "f8", "<J> minus <J> of the solver of the study's points"),
@@ -55,7 +56,7 @@ def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dat
     others : {solver: its runs of the same points, with settings for each law that it is another solver of}
     step : of rk4 in these runs, unless it makes the points
     """
-    shape = (len(LAWS), len(SOLVERS), *grid.shape[1:])
+    shape = (grid.shape[0], len(SOLVERS), *grid.shape[1:])
     values = {name: np.full(shape, NO_RUN if item.dtype[0] == "i" else np.nan) for name, item in VARIABLES.items()}
     for (i, j, k), (law, initial, a) in grid:
         reference: dict[str, np.ndarray] = {}
@@ -72,13 +73,13 @@ def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dat
             count, until = common_order(all_events(run), all_events(reference))
             values["event_order_count"][index] = count
             values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
-    shared = axes(list(grid.initial), list(grid.a.values()))
+    shared = axes(list(grid.initial), list(grid.a.values()), grid.laws)
     names = ("solver", np.array(SOLVERS, dtype=object), SOLVER.all_attributes())
     return summary(
         "Independent solvers of the same equations",
         VARIABLES,
         values,
         {"law": shared["law"], "solver": names, **shared},
-        {**{f"solver_{law}": grid.settings[law].solver for law in LAWS}, "step": step},
+        {**{f"solver_{law}": grid.settings[law].solver for law in grid.laws}, "step": step},
         module=__name__,
     )

@@ -10,7 +10,7 @@ from scipy.signal import find_peaks, periodogram
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.simulation import STATUS
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 STOP, START = 0, 1
@@ -60,7 +60,7 @@ def summarize(grid: Grid, blocks: int, transient: float, window: float, batches:
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for index, point in grid:
         read = read_point(grid, *point, _READ)
-        if STATUS[int(read["status"])] != "completed":
+        if read["status"] != Status.COMPLETED:
             continue
         time, block, kind = all_events(read)
         velocity, duration = read["velocity"], np.ptp(read["trajectory_time"])
@@ -83,7 +83,7 @@ def summarize(grid: Grid, blocks: int, transient: float, window: float, batches:
         VARIABLES,
         values,
         {
-            **axes(list(grid.initial), list(grid.a.values())),
+            **axes(list(grid.initial), list(grid.a.values()), grid.laws),
             "block": ("block", np.arange(1, blocks + 1, dtype=BLOCK.dtype), BLOCK.all_attributes()),
         },
         {"transient": transient, "window": window, "batches": batches},

@@ -48,7 +48,7 @@ builders.distance = (box) => {
   return { traces: [...attractors.filter((trace) => trace.x.length), ...curves, mark], xaxis: aAxis(), yaxis: axis("⟨<i>J</i>⟩", { range: distanceRange() }) };
 };
 
-/** Both laws share the range of ⟨J⟩. */
+/** All laws share the range of ⟨J⟩. */
 function distanceRange() {
   const all = [...runs.mean_distance.flat(2), ...data.attractors.flatMap((law) => law.mean_distance)].filter((value) => typeof value === "number");
   const largest = Math.max(0.01, ...all);

@@ -3,6 +3,10 @@ const runs = data.runs;
 const picked = { law: 0, initial: 0, a: 0 };
 const agreementWords = { "-1": "undetermined", 0: "the laws disagree here", 1: "the laws agree here" };
 
+/** Return rows [name, value] of the laws that a run is compared with: of the first law all others, else that one. */
+const comparedRows = ({ law, initial, a }) => runs.laws.slice(1).flatMap((name, n) => (law === 0 || law === n + 1
+  ? [[`${name} law compared with the ${runs.laws[0]} law`, agreementWords[runs.agrees[n][initial][a]]]] : []));
+
 const commandsOf = ({ law, initial, a }) => {
   const path = `points/${runs.laws[law]}/${runs.initial[initial]}/a${runs.names[a]}.nc`;
   const [before, after] = runs.simulate[law][initial];
@@ -25,7 +29,7 @@ function rowsOf({ law, initial, a }) {
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", kind + (period > 0 ? `, section points repeat after ${period}` : "")],
     ["Lyapunov exponents", exponents.length ? element("ul", {}, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
-    ["Linearized against nonlinear law", agreementWords[runs.agrees[initial][a]]],
+    ...comparedRows({ law, initial, a }),
     ["File", element("a", { href: commandsOf({ law, initial, a }).path, id: "run-file" }, commandsOf({ law, initial, a }).path)],
   ];
 }

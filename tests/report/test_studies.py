@@ -1,0 +1,68 @@
+"""The report of studies of one law, of four laws, of a ring and of blocks that are not alike."""
+
+import json
+import re
+
+import pytest
+
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.report.page import Sources, render
+from tests.report.conftest import CLAIMS
+from tests.report.test_page import Page
+from tests.small_study import STUDIES
+
+STORED = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits", "attractors", "basins", "two_blocks")
+
+
+@pytest.fixture(scope="module", params=STUDIES)
+def small(request, small_studies):
+    return small_studies(request.param)
+
+
+@pytest.fixture(scope="module")
+def html(small, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("summaries")
+    for name in STORED:
+        write_summary(small.found[name], folder / f"{name}.nc")
+    return render(small.study, Sources(CLAIMS, {name: folder / f"{name}.nc" for name in STORED}, {}))
+
+
+def test_every_law_has_its_charts_and_its_formula(small, html):
+    page = Page(html)
+    text = " ".join(" ".join(page.text).split())
+    laws, states = small.study.laws, small.study.initial
+    charts = [attributes for _, attributes in page.elements if "data-chart" in attributes]
+    for name, count in {
+        "distance": len(laws),
+        "fractions": len(laws),
+        "exponents": len(laws) * len(states),
+        "agreement": (len(laws) - 1) * len(states),
+        "map": small.found["basins"].sizes["map"],
+    }.items():
+        assert sum(chart["data-chart"] == name for chart in charts) == count, name
+    for law, model in zip(laws, small.models, strict=True):
+        assert f"{law}, {model.law.text}" in text
+    assert ("is the only one of the study" in text) == (len(laws) == 1)
+    for other in laws[1:]:
+        assert f"{other.capitalize()} law compared with the {laws[0]} law" in text
+
+
+def test_what_does_not_hold_in_the_chain_is_said(small, html):
+    chain = small.models[0].chain
+    assert ("The chain is not its own mirror image." in html) == (not chain.is_mirror_symmetric)
+    assert ("a ring; coupling 1;" in html) == (chain.ends == "ring")
+    assert ("coupling 1, 1.3; pulling 1.5; static friction 1, 1.1, 1.2" in html) == (not chain.is_mirror_symmetric)
+    if not chain.is_mirror_symmetric:
+        assert (small.found["mean_distance"]["synchronized"] == 0).all()
+        assert (small.found["lyapunov"]["kind"] != 0).all()
+        assert (small.found["attractors"]["side"] == 0).all()
+
+
+def test_the_embedded_numbers_are_over_the_laws_of_the_study(small, html):
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', html, re.DOTALL)[1])
+    laws, states = small.study.laws, small.study.initial
+    assert data["runs"]["laws"] == list(laws)
+    assert len(data["runs"]["agrees"]) == len(data["agreement"]["difference"]) == len(laws) - 1
+    assert len(data["sections"]["runs"]) == len(data["attractors"]) == len(laws)
+    assert all(len(row) == len(states) for row in data["runs"]["agrees"])
+    assert {one["law"] for one in data["basins"]["maps"]} <= set(laws)

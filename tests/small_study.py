@@ -1,0 +1,189 @@
+"""Studies small enough to be run inside a test: their points, and the summaries that figures and reports show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import xarray
+
+from burridge_knopoff.config import Study, load_study, read_schema
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.stability.sampling import sampled_states
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.summaries import (
+    agreement,
+    attractors,
+    basins,
+    bifurcation,
+    equilibrium,
+    lyapunov,
+    mean_distance,
+    orbits,
+    solvers,
+    stick_slip,
+    two_blocks,
+)
+from burridge_knopoff.summaries.points import Grid
+
+ROOT = Path(__file__).parents[1]
+
+#: Runs that are long enough to have something in every panel.
+SMALL = {
+    "study": "small",
+    "a": [0.05, 0.2],
+    "initial": {"minus": {}, "plus": {}},
+    "transient": 100,
+    "window": 200,
+    "batches": 2,
+    "attractors": {"samples": 2, "transient": 100, "window": 100, "time_limit": 1000, "pushes": 4},
+    "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
+    "solvers": {"a": [0.2], "step": 0.05},
+}
+
+
+_EQUAL = [-0.95, -1.0, -0.97]
+_STATES = {"pushed": {"position": _EQUAL, "velocity": [0.1, 0.12, 0.09]}}
+
+#: What differs from it in the studies for which every figure and the report are drawn.
+STUDIES: dict[str, dict[str, Any]] = {
+    "paper": {},
+    "one_law": {"laws": {"linearized": {}}},
+    "four_laws": {
+        "laws": {
+            "linearized": {},
+            "nonlinear": {},
+            "squared": {"formula": "1/(1 + c*a*u)**2", "c": 0.5},
+            "stribeck": {"sigma": 0.3},
+        }
+    },
+    "ring": {
+        "laws": {"slow": {"law": "exponential"}, "linearized": {}, "drop": {"law": "carlson_langer"}},
+        "chain": {"ends": "ring"},
+        "initial": _STATES,
+    },
+    "unequal": {
+        "laws": {"rough": {"law": "nonlinear"}, "smooth": {"formula": "1 - a*u"}},
+        "chain": {"coupling": [1.0, 1.3], "pulling": 1.5, "threshold": [1.0, 1.1, 1.2]},
+        "initial": _STATES,
+    },
+    "two_blocks": {"initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}}},
+}
+
+
+@dataclass(frozen=True)
+class SmallStudy:
+    """A study whose points have been run.
+
+    folder : of its results; models : one for each law, at the first a
+    """
+
+    study: Study
+    folder: Path
+
+    @property
+    def grid(self) -> Grid:
+        """Its points."""
+        return Grid.of(self.folder / "points", self.study.points)
+
+    @property
+    def models(self) -> list[Model]:
+        """One model for each law, at the first a."""
+        return [self.study.model(law, next(iter(self.study.grid.values()))) for law in self.study.laws]
+
+    @property
+    def motion(self) -> MotionSettings:
+        """How kinds of motion are told."""
+        config = self.study.config
+        return MotionSettings(**config["motion"], synchronization_threshold=config["synchronization_threshold"])
+
+    @property
+    def search(self) -> SearchSettings:
+        """How attractors are looked for."""
+        return SearchSettings(**self.study.config["attractors"])
+
+    @cached_property
+    def found(self) -> dict[str, xarray.Dataset]:
+        """All summaries by name."""
+        needed = self.summaries()
+        return {**needed, **self.further_summaries(needed)}
+
+    def summaries(self) -> dict[str, xarray.Dataset]:
+        """Return the summaries without which there is no report."""
+        config, grid, values = self.study.config, self.grid, list(self.study.grid.values())
+        threshold = config["synchronization_threshold"]
+        kinds = lyapunov.summarize(grid, config["lyapunov_exponents"], threshold, config["motion"])
+        states = list(grid.initial.values())
+        found = [
+            attractors.one_law(model, values, states, self.search, self.motion, config["start"])
+            for model in self.models
+        ]
+        return {
+            "mean_distance": mean_distance.summarize(grid, threshold),
+            "bifurcation": bifurcation.summarize(grid),
+            "lyapunov": kinds,
+            "agreement": agreement.summarize(grid, kinds, threshold, config["agreement"]),
+            "orbits": orbits.summarize(self.models, values),
+            "attractors": attractors.merge(found),
+        }
+
+    def further_summaries(self, found: Mapping[str, xarray.Dataset]) -> dict[str, xarray.Dataset]:
+        """Return all others, made of the first ones where they take them."""
+        config, study, values = self.study.config, self.study, list(self.study.grid.values())
+        window = {key: config[key] for key in ("transient", "window", "batches")}
+        sample = sampled_states(2, 2, (-1.5, 1.5), (0.0, 0.2), 1)
+        pair = [Model(Chain(2), model.law) for model in self.models]
+        settings = two_blocks.run_settings(transient=100.0, window=100.0, batches=2)
+        return {
+            "stick_slip": stick_slip.summarize(self.grid, study.blocks, **window),
+            "equilibrium": equilibrium.summarize(self.models, values),
+            "solvers": self._solvers(),
+            "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
+            "basins": self._basins(found["attractors"]),
+        }
+
+    def _solvers(self) -> xarray.Dataset:
+        study = self.study
+        compared = {"a": {name: value for name, value in study.grid.items() if value in study.config["solvers"]["a"]}}
+        grid = Grid.of(self.folder / "points", {**study.points, **compared})
+        others = {}
+        for solver in ("series", "map", "rk4"):
+            known = [law for law in study.laws if solver in study.other_solvers(law)]
+            settings = {law: asdict(study.settings(law, solver)) for law in known}
+            others[solver] = grid.elsewhere(self.folder / "solvers" / solver, settings)
+            for _, (law, initial, a) in grid:
+                if law in known:
+                    _write(others[solver], law, initial, a)
+        return solvers.summarize(grid, others, study.config["solvers"]["step"])
+
+    def _basins(self, found: xarray.Dataset) -> xarray.Dataset:
+        config = self.study.config
+        section = {key: value for key, value in config["basins"].items() if key not in ("a", "initial", "threads")}
+        plane = BasinSettings(initial=self.study.state(config["basins"]["initial"]), **section)
+        maps = []
+        for law, where in config["basins"]["a"].items():
+            for a in where:
+                model = self.study.model(law, a)
+                told = (plane, self.search, self.motion, config["start"])
+                maps.append((model, [basins.tile(found, model, 0, *told)], basins.pairs(found, model, *told)))
+        return basins.merge(maps, self.study.laws, plane, self.search.time_limit, config["start"])
+
+
+def run_study(folder: Path, config: Mapping[str, Any]) -> SmallStudy:
+    """Run the points of a study into a folder."""
+    study = load_study(config, read_schema(ROOT / "workflow/schemas/config.schema.yaml"), f"{config['study']}.yaml")
+    small = SmallStudy(study, folder)
+    for _, (law, initial, a) in small.grid:
+        _write(small.grid, law, initial, a)
+    return small
+
+
+def _write(grid: Grid, law: str, initial: str, a: str) -> None:
+    trajectory = run(grid.model(law, grid.a[a]), grid.initial[initial], grid.settings[law])
+    write_point(trajectory, grid.path(law, initial, a))
