@@ -55,6 +55,7 @@ test: .venv/kernel .venv/test
 	@touch $@
 
 benchmark: .venv/kernel .venv-benchmark/ready
+	.venv-benchmark/bin/python benchmarks/kernel.py
 	.venv-benchmark/bin/python benchmarks/peers.py
 	.venv-benchmark/bin/python benchmarks/chain_length.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py

@@ -18,12 +18,11 @@ from pathlib import Path
 import numpy as np
 from measure import cpu_times, print_table, verdict
 
-from burridge_knopoff.config import load_study, read_schema
-from burridge_knopoff.initial import PAPER_STATES
-from burridge_knopoff.simulation import simulate
-from burridge_knopoff.stability.basins import known_attractors, label_states, pixel_centres, plane
-from burridge_knopoff.stability.flow import begin, new_solver
-from burridge_knopoff.summaries import attractors
+from burridge_knopoff import Chain, Model, find_attractors, law_of
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff.stability.basins import label_states, pixel_centres, plane
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 A = 0.08
@@ -31,14 +30,11 @@ LIMIT_MINUTES = 10.0
 SAMPLE_PIXELS = 64
 
 
-def full_run(known) -> None:
+def full_run(model) -> None:
     """Run 10 000 time units from `plus` without observables."""
-    solver = new_solver(known.model)
-    solver.end = 1e4
-    state = begin(known.model, PAPER_STATES["plus"])
-    solver.begin(state.position, state.velocity, state.stuck)
-    while solver.run() == -1:
-        pass
+    solver = Runner(model)
+    solver.begin(model.begin(PAPER_STATES["plus"]))
+    solver.run(1e4)
 
 
 def main() -> None:
@@ -47,17 +43,14 @@ def main() -> None:
     parser.add_argument("--pixels", type=int, default=1024, help="pixels along each axis (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=2, help="threads (default: %(default)s)")
     options = parser.parse_args()
-    schema = read_schema(REPOSITORY / "workflow" / "schemas" / "config.schema.yaml")
-    config = load_study({"study": "basins", "a": [A], "initial": {"minus": {}, "plus": {}}}, schema, "basins").config
-    part = attractors.one_law("linearized", [A], config["initial"], config)
-    known = known_attractors(attractors.merge([part]), "linearized", A, config)
-    state = config["initial"]["minus"]
-    limit = config["attractors"]["time_limit"]
+    model = Model(Chain(3), law_of("linearized", A))
+    attractors, _ = find_attractors(model, starts=list(PAPER_STATES.values()))
+    state = PAPER_STATES["minus"]
 
     def label(pixels: int, threads: int) -> tuple[np.ndarray, np.ndarray]:
         axis = pixel_centres((-1.5, 1.5), pixels)
-        position, velocity = plane(state["position"], axis, axis, state["velocity"])
-        return label_states(known, position, velocity, "moving", limit, threads)
+        position, velocity = plane(state.position, axis, axis, state.velocity)
+        return label_states(model, attractors, position, velocity, threads=threads)
 
     begin_time = time.perf_counter()
     labels, times = label(options.pixels, options.threads)
@@ -69,7 +62,7 @@ def main() -> None:
     cost = cpu_times(
         {
             "map": lambda: label(SAMPLE_PIXELS, 1),
-            "bare run": lambda: full_run(known),
+            "bare run": lambda: full_run(model),
             "run": lambda: simulate("linearized", A, "plus"),
         },
         5,

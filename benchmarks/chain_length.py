@@ -15,7 +15,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 from measure import cpu_times, print_table
 
-from burridge_knopoff import Chain, Friction, InitialState, simulate
+from burridge_knopoff import Chain, InitialState, law_of, simulate
 
 A = 0.08
 V = 0.1
@@ -36,7 +36,7 @@ VARIANTS = {
 def near_sliding(blocks: int, law: str) -> InitialState:
     """Return a random state near uniform sliding, the same in every run of the benchmark."""
     random = np.random.default_rng(blocks)
-    offset = Chain(blocks).sliding_offset(float(Friction(law, A)(V)))
+    offset = Chain(blocks).sliding_offset(float(law_of(law, A)(V)))
     position = offset + PERTURBATION * random.uniform(-1.0, 1.0, blocks)
     velocity = V + PERTURBATION * random.uniform(-1.0, 1.0, blocks)
     return InitialState("near_sliding", tuple(position.tolist()), tuple(velocity.tolist()))

@@ -15,7 +15,7 @@ from chain_length import near_sliding
 from measure import cpu_times, print_table, verdict
 
 from burridge_knopoff import InitialState, simulate
-from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.model.initial import PAPER_STATES
 
 A = 0.08
 LAWS = ("linearized", "nonlinear")

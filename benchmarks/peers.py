@@ -20,7 +20,7 @@ from peer_run import HORIZON, event_time_difference
 from peer_scipy import ScipyPeer
 
 from burridge_knopoff import simulate
-from burridge_knopoff.initial import PAPER_STATES
+from burridge_knopoff.model.initial import PAPER_STATES
 
 A = 0.08
 V = 0.1
