@@ -6,6 +6,8 @@ cdef double NEGLIGIBLE
 cdef double RESOLUTION
 cdef int LOW_DEGREE
 cdef int GUESSES
+cdef double LINE
+cdef double UNCERTAIN
 
 cdef class SearchedPolynomial(Polynomial):
     cdef double[:, ::1] bernstein
@@ -15,10 +17,12 @@ cdef class SearchedPolynomial(Polynomial):
     cdef double[::1] power
     cdef double length
     cdef double slope_there
+    cdef bint alone
     cdef readonly double lowest
     cdef readonly double highest
 
     cdef double first_root(self, double length) noexcept nogil
+    cdef double only_root(self, double length, int side, double margin) noexcept nogil
     cdef double maximum(self, double length, double floor) noexcept nogil
     cdef Py_ssize_t _scale(self, double length) noexcept nogil
     cdef void _bound(self, Py_ssize_t degree) noexcept nogil

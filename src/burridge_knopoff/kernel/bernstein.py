@@ -16,6 +16,7 @@ Reference: R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospe
 """
 
 import math
+from functools import cache
 
 import cython
 import numpy as np
@@ -39,11 +40,29 @@ RESOLUTION = 1.2e-16
 LOW_DEGREE = 8
 GUESSES = 3
 
+# Over an interval a function leaves the line between its ends by at most an eighth of its largest second derivative
+# times the interval squared; a little more than that, for rounding.
+LINE = 0.126
+
+# What `only_root` answers if its bounds do not tell.
+UNCERTAIN = -2.0
+
+
+@cache
+def inverse_binomials(capacity: int) -> np.ndarray:
+    """Return one over the binomial coefficients (n over k), row n, up to n = capacity; one array for all."""
+    inverse = np.zeros((capacity + 1, capacity + 1))
+    for n in range(capacity + 1):
+        for k in range(n + 1):
+            inverse[n, k] = 1.0 / math.comb(n, k)
+    return inverse
+
 
 class SearchedPolynomial(Polynomial):
     """A polynomial with the work space to find its first root and its maximum over [0, length].
 
-    After a search `lowest` and `highest` are bounds of the polynomial over that interval.
+    After a search `lowest` and `highest` are bounds of the polynomial over that interval, and `alone` tells whether a
+    root that was found is known to be the only one there; if it is, `slope_there` is the derivative at it.
     """
 
     def __init__(self, capacity: int) -> None:
@@ -51,14 +70,11 @@ class SearchedPolynomial(Polynomial):
         self.bernstein = np.zeros((MAXIMUM_DEPTH + 2, capacity + 1))
         self.left = np.zeros(MAXIMUM_DEPTH + 2)
         self.right = np.zeros(MAXIMUM_DEPTH + 2)
-        inverse = np.zeros((capacity + 1, capacity + 1))
-        for n in range(capacity + 1):
-            for k in range(n + 1):
-                inverse[n, k] = 1.0 / math.comb(n, k)
-        self.inverse_binomial = inverse
+        self.inverse_binomial = inverse_binomials(capacity)
         self.power = np.zeros(capacity + 1)
         self.length = -1.0
         self.slope_there = 0.0
+        self.alone = False
         self.lowest = 0.0
         self.highest = 0.0
 
@@ -73,6 +89,7 @@ class SearchedPolynomial(Polynomial):
         changes: cython.Py_ssize_t
         sign: cython.int
         first: cython.int
+        self.alone = False
         n = self._scale(length)
         if self.lowest > 0.0:
             return -1.0
@@ -102,6 +119,7 @@ class SearchedPolynomial(Polynomial):
             if changes == 0:
                 top -= 1
             elif changes == 1 and self.bernstein[top, 0] > 0.0 and self.bernstein[top, n] < 0.0:
+                self.alone = self.right[top] - self.left[top] == length
                 return self._root_between(top, n)
             elif top >= MAXIMUM_DEPTH or self.right[top] - self.left[top] <= 4e-15 * self.right[top]:
                 if sign < 0:
@@ -111,6 +129,44 @@ class SearchedPolynomial(Polynomial):
                 self._split(top, n)
                 top += 1
         return -1.0
+
+    def only_root(self, length, side, margin):
+        """Return the root of a polynomial that falls through 0 once in [0, length], or −1.0 if it stays positive.
+
+        UNCERTAIN if simple bounds show neither; the search is of side times the polynomial, which is negated if that is
+        −1. Its derivative at the root goes to `slope_there`.
+        """
+        k: cython.Py_ssize_t
+        factor: cython.double
+        term: cython.double
+        power: cython.double = 1.0
+        start: cython.double = side * self.coefficient[0]
+        end: cython.double = self.coefficient[0]
+        slope: cython.double = 0.0
+        curvature: cython.double = 0.0
+        third: cython.double = 0.0
+        for k in range(1, self.degree + 1):
+            factor = k
+            power *= length
+            term = self.coefficient[k] * power
+            end += term
+            slope += factor * term
+            term = (factor * (factor - 1.0)) * abs(term)
+            curvature += term
+            third += (factor - 2.0) * term
+        end *= side
+        if end > margin and min(start, end) > LINE * curvature:
+            return -1.0
+        slope = max(side * (self.coefficient[1] * length), side * slope)
+        if not (start > 0.0 and end < -margin and slope < -LINE * third):
+            return UNCERTAIN
+        if side < 0:
+            self.negate()
+        self.left[0] = 0.0
+        self.right[0] = length
+        self.bernstein[0, 0] = start
+        self.bernstein[0, self.degree] = end
+        return self._root_between(0, self.degree)
 
     def maximum(self, length, floor):
         """Return the larger of floor and the maximum over [0, length]."""
@@ -176,9 +232,10 @@ class SearchedPolynomial(Polynomial):
         positive: cython.double = 0.0
         if length != self.length:
             self.length = length
-            self.power[0] = 1.0
-            for k in range(1, self.capacity + 1):
-                self.power[k] = self.power[k - 1] * length
+            scaled = 1.0
+            for k in range(self.capacity + 1):
+                self.power[k] = scaled
+                scaled *= length
         self.bernstein[0, 0] = self.coefficient[0]
         for k in range(1, n + 1):
             scaled = self.coefficient[k] * self.power[k]

@@ -8,6 +8,8 @@ polynomial with a root near the real axis, and the halving closes in on it.
 Reference: L. N. Trefethen, "Is Gauss quadrature better than Clenshaw-Curtis?", SIAM Rev. 50 (2008) 67-87.
 """
 
+from functools import cache
+
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, root, splat, vec
@@ -30,6 +32,7 @@ def _legendre(degree, x):
     return here, below, before
 
 
+@cache
 def _gauss_legendre(nodes):
     """Return nodes and weights on [-1, 1], and P_(nodes-1) and P_(nodes-2) at the nodes, all in long double.
 

@@ -17,8 +17,9 @@ from cython.cimports.burridge_knopoff.kernel.friction import (
     fill,
     row,
     slopes,
+    squares,
 )
-from cython.cimports.burridge_knopoff.kernel.vector import Vectors, lane_of, splat
+from cython.cimports.burridge_knopoff.kernel.vector import Vectors, lane_of, splat, vec
 from cython.cimports.libc.math import exp, log
 from cython.cimports.libc.math import pow as power
 
@@ -110,9 +111,22 @@ class Friction:
         """Fill coefficients 0 … count − 1 of the registers of the slope, when those of Φ are complete."""
         r: cython.int
         n: cython.Py_ssize_t
+        alpha: cython.double
+        p: cython.pointer[vec]
+        out: cython.pointer[vec]
         for r in range(self.value, self.slope):
-            for n in range(count):
-                fill(self, column, n, r, r + 1)
+            alpha = self.constant[r, 0]
+            p = row(self, self.operation[r, 1], column)
+            out = row(self, r + 1, column)
+            if self.operation[r, 0] == MULTIPLY and self.operation[r, 1] == self.operation[r, 2]:
+                squares(p, out, count)
+            elif self.operation[r, 0] == LINEAR and self.operation[r, 2] < 0:
+                for n in range(count):
+                    out[n] = alpha * p[n]
+                out[0] = out[0] + self.constant[r, 2]
+            else:
+                for n in range(count):
+                    fill(self, column, n, r, r + 1)
 
     def series(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the Taylor coefficients of Φ and of its slope along a motion, each of the shape of those of the speed.

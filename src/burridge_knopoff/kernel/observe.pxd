@@ -40,4 +40,5 @@ cdef class Observer:
     cdef void _sample(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _cross(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef bint _keeps_its_side(self, State state, Piece piece, double length) noexcept nogil
+    cdef void _keep(self, double time, double rate) noexcept nogil
     cdef void _extreme(self, State state, Piece piece, int stage, double start, double stop) noexcept nogil

@@ -2,7 +2,7 @@
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
+from cython.cimports.burridge_knopoff.kernel.bernstein import UNCERTAIN, SearchedPolynomial
 from cython.cimports.burridge_knopoff.kernel.distance import Distance
 from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
 from cython.cimports.burridge_knopoff.kernel.record import Record
@@ -116,7 +116,6 @@ class Observer:
         """
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        row: cython.Py_ssize_t
         total: cython.double
         t: cython.double
         start: cython.double = 0.0
@@ -135,6 +134,13 @@ class Observer:
             if window > 0.0:
                 self.polynomial.shift(window)
                 start = window
+        else:
+            t = self.polynomial.only_root(length, self.side, SEAM)
+            if t != UNCERTAIN:
+                if t >= 0.0:
+                    self.side = -self.side
+                    self._keep(clock + (clock_rest + t), -self.side * self.polynomial.slope_there)
+                return
         value = self.side * self.polynomial.coefficient[0]
         if -SEAM < value < 0.0 and self.side * self.polynomial.coefficient[1] > 0.0:
             self.polynomial.coefficient[0] = 0.0
@@ -148,6 +154,10 @@ class Observer:
             if t < 0.0:
                 return
             start += t
+            if self.polynomial.alone:
+                self.side = -self.side
+                self._keep(clock + (clock_rest + start), -self.side * self.polynomial.slope_there)
+                return
             # The root is divided out, and with it what rounding leaves of W there. If the sign after it is the one
             # before it, W has touched 0 within rounding and not crossed.
             self.polynomial.shift(t)
@@ -159,9 +169,13 @@ class Observer:
             total = 0.0
             for i in range(piece.blocks):
                 total += evaluate(piece.velocity, i, piece.degree, start) - state.v
-            row = self.crossings.append(clock + (clock_rest + start))
-            self.crossings.value[row, 0] = total
-            self.crossings.value[row, 1] = self.side
+            self._keep(clock + (clock_rest + start), total)
+
+    def _keep(self, time, rate):
+        """Keep a crossing to what is now the side, with W'."""
+        row: cython.Py_ssize_t = self.crossings.append(time)
+        self.crossings.value[row, 0] = rate
+        self.crossings.value[row, 1] = self.side
 
     def _keeps_its_side(self, state, piece, length):
         """Tell whether W cannot come to 0, by the bounds on the speeds of its blocks."""

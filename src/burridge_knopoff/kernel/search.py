@@ -63,7 +63,7 @@ class EventSearch:
         self.lowest_table = self.lowest.table(1)[0]
         self.highest_table = self.highest.table(1)[0]
         self.root_table = self.root.table(1)[0]
-        self.power = np.zeros(order + 1)
+        self.power = np.zeros(order + 2)
         self.inverse_binomial = np.array([1.0 / math.comb(LOW, k) for k in range(LOW + 1)])
         self.zeros = np.zeros(blocks, dtype=np.intp)
 
@@ -148,10 +148,13 @@ class EventSearch:
         """Take the powers of an interval's length."""
         k: cython.Py_ssize_t
         square: cython.double = length * length
-        self.power[0] = 1.0
-        self.power[1] = length
-        for k in range(2, self.order + 1):
-            self.power[k] = self.power[k - 2] * square
+        even: cython.double = 1.0
+        odd: cython.double = length
+        for k in range(0, self.order + 1, 2):
+            self.power[k] = even
+            self.power[k + 1] = odd
+            even *= square
+            odd *= square
 
     def _scale(self, column):
         """Take the terms of one column at the end of the interval that was measured."""

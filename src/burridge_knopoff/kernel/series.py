@@ -15,8 +15,7 @@ import numpy as np
 from cython.cimports.burridge_knopoff.kernel.friction import convolution, prepare, row, settle, slopes
 from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, pulls, thresholds
 from cython.cimports.burridge_knopoff.kernel.state import YOUNG
-from cython.cimports.burridge_knopoff.kernel.vector import Vectors, exponent, index, shuffle, splat, vec
-from cython.cimports.libc.math import ldexp
+from cython.cimports.burridge_knopoff.kernel.vector import Vectors, exponent, index, scale, shuffle, splat, vec
 
 # Binary digits below 1 at which terms are left out.
 TRUNCATION = 53
@@ -149,19 +148,22 @@ class Series:
         line_slope: vec = splat(0.0)
         inverse_slope: vec = line_slope
         made: vec
-        scale: cython.double = state.friction.scale
+        first: vec = line_slope
+        plain: cython.bint = state.friction.scale == 1.0
+        multiple: cython.double = state.friction.scale
         if hyperbolic:
-            line_slope = slopes(state.friction, 0)[1]
-            inverse_slope = slopes(state.friction, 0)[2]
+            line_slope = slopes(state.friction, 0)[1] * direction
+            inverse_slope = slopes(state.friction, 0)[2] * direction
+            first = -inverse[0]
         for n in range(1, order):
             factor = self.reciprocal[n + 1]
             shift = speed * factor
             if hyperbolic:
                 # What `prepare` and `settle` do, without their tables.
-                made = -(convolution(line + 1, inverse, n - 1) * inverse[0])
-                force = force - signed * (scale * made)
-                line[n] = line_slope * (direction * speed)
-                inverse[n] = made + inverse_slope * (direction * speed)
+                made = convolution(line + 1, inverse, n - 1) * first
+                force = force - signed * (made if plain else multiple * made)
+                line[n] = line_slope * speed
+                inverse[n] = made + inverse_slope * speed
             elif not linear:
                 prepare(state.friction, 0, n)
                 force = force - signed * row(state.friction, value, 0)[n]
@@ -196,4 +198,4 @@ def _length(coefficient, root, power):
         return LONGEST
     digits = -TRUNCATION - (exponent(coefficient) - 1022)
     whole: cython.int = digits // power if digits >= 0 else -((power - 1 - digits) // power)
-    return ldexp(root[digits - whole * power], whole)
+    return scale(root[digits - whole * power], whole)

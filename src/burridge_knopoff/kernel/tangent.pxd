@@ -24,6 +24,7 @@ cdef class Tangent:
     cdef Py_ssize_t rate_terms
     cdef double pace
     cdef double[::1] reciprocal
+    cdef double[::1] enough
     cdef double[:, ::1] moved
     cdef double[:, ::1] sped
 

@@ -112,6 +112,9 @@ cdef extern from *:
     }
     /* The exponent of a double as it is stored: 0 to 2047, x in [2^(e - 1023), 2^(e - 1022)). */
     BK_INLINE int bk_exponent(double x) { int64_t bits; memcpy(&bits, &x, 8); return (int)(bits >> 52 & 2047); }
+    /* x 2^e, for numbers that are not subnormal. */
+    BK_INLINE double bk_scale(double x, int e) {
+        int64_t bits = (int64_t)(e + 1023) << 52; double power; memcpy(&power, &bits, 8); return x * power; }
     BK_INLINE bk_vec *bk_aligned(void *start) {
         return (bk_vec *)(((uintptr_t)start + sizeof(bk_vec) - 1) / sizeof(bk_vec) * sizeof(bk_vec));
     }
@@ -141,6 +144,7 @@ cdef extern from *:
     vec gather "bk_gather" (const vec *at, const Py_ssize_t *index) noexcept nogil
     vec convolution "bk_convolution" (const vec *a, const vec *b, Py_ssize_t n) noexcept nogil
     int exponent "bk_exponent" (double x) noexcept nogil
+    double scale "bk_scale" (double x, int exponent) noexcept nogil
     vec *aligned "bk_aligned" (void *start) noexcept nogil
 
 

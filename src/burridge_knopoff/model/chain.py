@@ -84,7 +84,7 @@ class Chain:
         strengths[:springs] = self.coupling
         return np.roll(strengths, 1)
 
-    @property
+    @cached_property
     def after(self) -> np.ndarray:
         """Strength of the spring to the block after each one, shape (blocks,); 0 at an open end."""
         return np.roll(self.before, -1)
