@@ -8,6 +8,7 @@ from mpmath import mp
 from scipy.integrate import quad
 
 from burridge_knopoff.kernel.distance import _gauss_legendre
+from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.simulation import simulate
 
 
@@ -80,6 +81,22 @@ class TestAgainstTheTrajectory:
         assert pull[stuck].min() - 1e-3 < run.least_spring_force <= pull[stuck].min() + 1e-12
         inside = stuck & (run.trajectory_time >= 10.0)[:, None]
         assert pull[inside].min() - 1e-3 < run.window_least_spring_force <= pull[inside].min() + 1e-12
+
+
+@pytest.mark.parametrize("blocks", [2, 4, 7, 8, 16])
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_section_of_other_chains(law, blocks):
+    """W is looked for in a lane behind those of the blocks, which may be the first of a vector of its own."""
+    position = tuple(-0.9 + 0.1 * np.sin(1.0 + 2.0 * np.arange(blocks)))
+    state = InitialState("wave", position, (0.1,) * blocks)
+    run = dense(law, 0.2, state, "series", 60.0)
+    w = (run.position - run.model.sliding_offset).sum(axis=1)[run.trajectory_time >= 10.0]
+    time = run.trajectory_time[run.trajectory_time >= 10.0]
+    change = np.nonzero(np.sign(w[1:]) * np.sign(w[:-1]) < 0)[0]
+    assert len(change) == len(run.crossing_time) > 5
+    # By the secant, whose error is a second derivative times the interval squared over the slope.
+    secant = time[change] - w[change] * 1e-3 / (w[change + 1] - w[change])
+    assert np.abs(run.crossing_time - secant).max() < 1e-5
 
 
 def test_mean_distance_to_rounding():

@@ -5,29 +5,25 @@ cdef int NEWTON_ITERATIONS
 cdef double NEGLIGIBLE
 cdef double RESOLUTION
 cdef int LOW_DEGREE
-cdef int GUESSES
-cdef double LINE
-cdef double UNCERTAIN
 
 cdef class SearchedPolynomial(Polynomial):
     cdef double[:, ::1] bernstein
-    cdef double[:, ::1] inverse_binomial
+    cdef double[:, :, ::1] weight
     cdef double[::1] left
     cdef double[::1] right
     cdef double[::1] power
+    cdef double[::1] term
     cdef double length
-    cdef double slope_there
-    cdef bint alone
     cdef readonly double lowest
     cdef readonly double highest
 
     cdef double first_root(self, double length) noexcept nogil
-    cdef double only_root(self, double length, int side, double margin) noexcept nogil
     cdef double maximum(self, double length, double floor) noexcept nogil
+    cdef void _measure(self, double length) noexcept nogil
     cdef Py_ssize_t _scale(self, double length) noexcept nogil
+    cdef bint _concave(self, Py_ssize_t degree) noexcept nogil
     cdef void _bound(self, Py_ssize_t degree) noexcept nogil
     cdef void _convert(self, Py_ssize_t row, Py_ssize_t degree) noexcept nogil
     cdef void _split(self, Py_ssize_t top, Py_ssize_t degree) noexcept nogil
     cdef double _root_between(self, Py_ssize_t top, Py_ssize_t degree) noexcept nogil
-    cdef double _evaluate(self, double t, Py_ssize_t degree) noexcept nogil
     cdef double _peak_between(self, double low, double high) noexcept nogil

@@ -36,45 +36,36 @@ NEGLIGIBLE = 1e-19
 # A root is found when Newton's method moves it by no more than half an ulp.
 RESOLUTION = 1.2e-16
 
-# Degree of the first, cheap test of an interval, and number of Newton steps with that degree.
+# Degree of the first, cheap test of an interval.
 LOW_DEGREE = 8
-GUESSES = 3
-
-# Over an interval a function leaves the line between its ends by at most an eighth of its largest second derivative
-# times the interval squared; a little more than that, for rounding.
-LINE = 0.126
-
-# What `only_root` answers if its bounds do not tell.
-UNCERTAIN = -2.0
 
 
 @cache
-def inverse_binomials(capacity: int) -> np.ndarray:
-    """Return one over the binomial coefficients (n over k), row n, up to n = capacity; one array for all."""
-    inverse = np.zeros((capacity + 1, capacity + 1))
+def _conversions(capacity: int) -> np.ndarray:
+    """Return the weights of terms in Bernstein coefficients, [degree, term k, coefficient j]: (j over k)/(n over k)."""
+    weight = np.zeros((capacity + 1, capacity + 1, (capacity // 8 + 1) * 8))
     for n in range(capacity + 1):
         for k in range(n + 1):
-            inverse[n, k] = 1.0 / math.comb(n, k)
-    return inverse
+            for j in range(k, n + 1):
+                weight[n, k, j] = math.comb(j, k) / math.comb(n, k)
+    return weight
 
 
 class SearchedPolynomial(Polynomial):
     """A polynomial with the work space to find its first root and its maximum over [0, length].
 
-    After a search `lowest` and `highest` are bounds of the polynomial over that interval, and `alone` tells whether a
-    root that was found is known to be the only one there; if it is, `slope_there` is the derivative at it.
+    After a search `lowest` and `highest` are bounds of the polynomial over that interval.
     """
 
     def __init__(self, capacity: int) -> None:
         super().__init__(capacity)
-        self.bernstein = np.zeros((MAXIMUM_DEPTH + 2, capacity + 1))
+        self.bernstein = np.zeros((MAXIMUM_DEPTH + 2, len(self.coefficient)))
         self.left = np.zeros(MAXIMUM_DEPTH + 2)
         self.right = np.zeros(MAXIMUM_DEPTH + 2)
-        self.inverse_binomial = inverse_binomials(capacity)
-        self.power = np.zeros(capacity + 1)
+        self.weight = _conversions(capacity)
+        self.power = np.zeros(len(self.coefficient))
+        self.term = np.zeros(len(self.coefficient))
         self.length = -1.0
-        self.slope_there = 0.0
-        self.alone = False
         self.lowest = 0.0
         self.highest = 0.0
 
@@ -89,7 +80,6 @@ class SearchedPolynomial(Polynomial):
         changes: cython.Py_ssize_t
         sign: cython.int
         first: cython.int
-        self.alone = False
         n = self._scale(length)
         if self.lowest > 0.0:
             return -1.0
@@ -119,7 +109,6 @@ class SearchedPolynomial(Polynomial):
             if changes == 0:
                 top -= 1
             elif changes == 1 and self.bernstein[top, 0] > 0.0 and self.bernstein[top, n] < 0.0:
-                self.alone = self.right[top] - self.left[top] == length
                 return self._root_between(top, n)
             elif top >= MAXIMUM_DEPTH or self.right[top] - self.left[top] <= 4e-15 * self.right[top]:
                 if sign < 0:
@@ -129,44 +118,6 @@ class SearchedPolynomial(Polynomial):
                 self._split(top, n)
                 top += 1
         return -1.0
-
-    def only_root(self, length, side, margin):
-        """Return the root of a polynomial that falls through 0 once in [0, length], or −1.0 if it stays positive.
-
-        UNCERTAIN if simple bounds show neither; the search is of side times the polynomial, which is negated if that is
-        −1. Its derivative at the root goes to `slope_there`.
-        """
-        k: cython.Py_ssize_t
-        factor: cython.double
-        term: cython.double
-        power: cython.double = 1.0
-        start: cython.double = side * self.coefficient[0]
-        end: cython.double = self.coefficient[0]
-        slope: cython.double = 0.0
-        curvature: cython.double = 0.0
-        third: cython.double = 0.0
-        for k in range(1, self.degree + 1):
-            factor = k
-            power *= length
-            term = self.coefficient[k] * power
-            end += term
-            slope += factor * term
-            term = (factor * (factor - 1.0)) * abs(term)
-            curvature += term
-            third += (factor - 2.0) * term
-        end *= side
-        if end > margin and min(start, end) > LINE * curvature:
-            return -1.0
-        slope = max(side * (self.coefficient[1] * length), side * slope)
-        if not (start > 0.0 and end < -margin and slope < -LINE * third):
-            return UNCERTAIN
-        if side < 0:
-            self.negate()
-        self.left[0] = 0.0
-        self.right[0] = length
-        self.bernstein[0, 0] = start
-        self.bernstein[0, self.degree] = end
-        return self._root_between(0, self.degree)
 
     def maximum(self, length, floor):
         """Return the larger of floor and the maximum over [0, length]."""
@@ -181,6 +132,8 @@ class SearchedPolynomial(Polynomial):
         n = self._scale(length)
         if self.highest <= floor:
             return floor
+        if self._concave(n):
+            return max(floor, self._peak_between(0.0, length))
         if n > LOW_DEGREE:
             self._bound(n)
             if self.highest <= floor:
@@ -219,6 +172,23 @@ class SearchedPolynomial(Polynomial):
                 top += 1
         return floor
 
+    def _measure(self, length):
+        """Take the powers of an interval's length: even and odd ones apart, as each waits for the last."""
+        k: cython.Py_ssize_t
+        square: cython.double = length * length
+        even: cython.double = 1.0
+        odd: cython.double = length
+        if length == self.length:
+            return
+        self.length = length
+        for k in range(0, self.capacity, 2):
+            self.power[k] = even
+            self.power[k + 1] = odd
+            even *= square
+            odd *= square
+        if self.capacity % 2 == 0:
+            self.power[self.capacity] = even
+
     def _scale(self, length):
         """Put the terms at t = length into the first Bernstein row; return the degree that matters there.
 
@@ -230,12 +200,7 @@ class SearchedPolynomial(Polynomial):
         scaled: cython.double
         negative: cython.double = 0.0
         positive: cython.double = 0.0
-        if length != self.length:
-            self.length = length
-            scaled = 1.0
-            for k in range(self.capacity + 1):
-                self.power[k] = scaled
-                scaled *= length
+        self._measure(length)
         self.bernstein[0, 0] = self.coefficient[0]
         for k in range(1, n + 1):
             scaled = self.coefficient[k] * self.power[k]
@@ -248,6 +213,14 @@ class SearchedPolynomial(Polynomial):
         while n > 0 and abs(self.bernstein[0, n]) <= scaled:
             n -= 1
         return n
+
+    def _concave(self, degree):
+        """Tell whether the polynomial that was scaled is known to bend downward everywhere in the interval."""
+        k: cython.Py_ssize_t
+        bend: cython.double = 2.0 * self.bernstein[0, 2]
+        for k in range(3, degree + 1):
+            bend += max(0.0, k * (k - 1.0) * self.bernstein[0, k])
+        return degree >= 2 and bend < 0.0
 
     def _bound(self, degree):
         """Tighten `lowest` and `highest` by the Bernstein coefficients of the first terms and the sum of the others.
@@ -272,19 +245,23 @@ class SearchedPolynomial(Polynomial):
         self.highest = min(self.highest, largest + rest)
 
     def _convert(self, row, degree):
-        """Turn the scaled terms in a row into Bernstein coefficients."""
-        k: cython.Py_ssize_t
+        """Turn the scaled terms in a row into Bernstein coefficients, eight at a time."""
+        first: cython.Py_ssize_t
         j: cython.Py_ssize_t
-        before: cython.double
-        here: cython.double
-        for k in range(1, degree + 1):
-            self.bernstein[row, k] *= self.inverse_binomial[degree, k]
-        for j in range(1, degree + 1):
-            before = self.bernstein[row, j - 1]
-            for k in range(j, degree + 1):
-                here = self.bernstein[row, k]
-                self.bernstein[row, k] = here + before
-                before = here
+        k: cython.Py_ssize_t
+        term: cython.double
+        total = cython.declare(cython.double[8])
+        for k in range(degree + 1):
+            self.term[k] = self.bernstein[row, k]
+        for first in range(0, degree + 1, 8):
+            for j in range(8):
+                total[j] = self.term[0]
+            for k in range(1, min(degree, first + 7) + 1):
+                term = self.term[k]
+                for j in range(8):
+                    total[j] += self.weight[degree, k, first + j] * term
+            for j in range(8):
+                self.bernstein[row, first + j] = total[j]
 
     def _split(self, top, degree):
         """Halve the interval in row top: its right half stays there, its left half goes to row top + 1."""
@@ -300,29 +277,23 @@ class SearchedPolynomial(Polynomial):
                 self.bernstein[top, k] = 0.5 * (self.bernstein[top, k] + self.bernstein[top, k + 1])
 
     def _root_between(self, top, degree):
-        """Return the only root in the interval of row top, where the sign falls: Newton kept in a bracket."""
+        """Return the only root in the interval of row top, where the sign falls: Halley's method kept in a bracket."""
         _iteration: cython.int
         t: cython.double
         change: cython.double
         value: cython.double
         slope: cython.double
+        step: cython.double
         low: cython.double = self.left[top]
         high: cython.double = self.right[top]
         at_low: cython.double = self.bernstein[top, 0]
         at_high: cython.double = self.bernstein[top, degree]
         t = low + (high - low) * at_low / (at_low - at_high)
-        if degree > LOW_DEGREE:
-            # A first guess from the first terms, at a third of the cost of a step with all.
-            change = t
-            for _iteration in range(GUESSES):
-                value = self._evaluate(change, LOW_DEGREE)
-                if self.slope_there < 0.0:
-                    change -= value / self.slope_there
-            if low < change < high:
-                t = change
+        self.derive(0)
+        self.derive(1)
         for _iteration in range(NEWTON_ITERATIONS):
-            value = self._evaluate(t, degree)
-            slope = self.slope_there
+            value = self.at(0, t)
+            slope = self.at(1, t)
             if value == 0.0:
                 return t
             if value > 0.0:
@@ -333,38 +304,30 @@ class SearchedPolynomial(Polynomial):
             if slope < 0.0:
                 if abs(value) <= -RESOLUTION * slope * t:
                     return t
-                if low < t - value / slope < high:
-                    change = -value / slope
+                step = -(value * slope) / (slope * slope - 0.5 * value * self.at(2, t))
+                if low < t + step < high:
+                    change = step
             t += change
             if abs(change) <= RESOLUTION * t:
                 return t
         return t
 
-    def _evaluate(self, t, degree):
-        """Return the value at t of the terms up to this degree; their derivative goes to `slope_there`."""
-        k: cython.Py_ssize_t
-        value: cython.double = self.coefficient[degree]
-        slope: cython.double = 0.0
-        for k in range(degree - 1, -1, -1):
-            slope = slope * t + value
-            value = value * t + self.coefficient[k]
-        self.slope_there = slope
-        return value
-
     def _peak_between(self, low, high):
-        """Return the maximum in [low, high], where the derivative changes its sign once, from + to -."""
+        """Return the maximum in [low, high], where the derivative changes its sign from + to − at most once."""
         _iteration: cython.int
-        k: cython.Py_ssize_t
         t: cython.double = 0.5 * (low + high)
         slope: cython.double
         curvature: cython.double
         change: cython.double
+        self.derive(0)
+        self.derive(1)
+        if self.at(1, low) <= 0.0:
+            return self.value(low)
+        if self.at(1, high) >= 0.0:
+            return self.value(high)
         for _iteration in range(NEWTON_ITERATIONS):
-            slope = 0.0
-            curvature = 0.0
-            for k in range(self.degree, 0, -1):
-                curvature = curvature * t + slope
-                slope = slope * t + k * self.coefficient[k]
+            slope = self.at(1, t)
+            curvature = self.at(2, t)
             if slope > 0.0:
                 low = t
             else:

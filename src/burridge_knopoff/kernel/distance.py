@@ -12,7 +12,8 @@ from functools import cache
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, root, splat, vec
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER
+from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, root, splat, sum_of_eight, vec
 from cython.cimports.libc.math import sqrt
 
 NODES = 16
@@ -90,11 +91,20 @@ class Distance:
     def value(self, t):
         """Return J at time t of the piece."""
         k: cython.Py_ssize_t
-        d: cython.double = self.position[self.degree]
-        rate: cython.double = self.velocity[self.degree]
-        for k in range(self.degree - 1, -1, -1):
-            d = d * t + self.position[k]
-            rate = rate * t + self.velocity[k]
+        n: cython.Py_ssize_t = self.degree // 2
+        square: cython.double = t * t
+        d: cython.double = self.position[2 * n]
+        rate: cython.double = self.velocity[2 * n]
+        odd_d: cython.double = self.position[2 * n + 1]
+        odd_rate: cython.double = self.velocity[2 * n + 1]
+        # Even and odd powers apart, since each sum waits for the last.
+        for k in range(n - 1, -1, -1):
+            d = d * square + self.position[2 * k]
+            rate = rate * square + self.velocity[2 * k]
+            odd_d = odd_d * square + self.position[2 * k + 1]
+            odd_rate = odd_rate * square + self.velocity[2 * k + 1]
+        d += t * odd_d
+        rate += t * odd_rate
         return sqrt(d * d + rate * rate)
 
     def integral(self, start, stop):
@@ -117,20 +127,22 @@ class Distance:
         n: cython.Py_ssize_t
         middle: cython.double = 0.5 * (start + stop)
         half: cython.double = 0.5 * (stop - start)
-        mean: cython.double = 0.0
-        last: cython.double = 0.0
-        previous: cython.double = 0.0
+        mean: cython.double
+        last: cython.double
+        previous: cython.double
         error: cython.double
+        means = cython.declare(cython.double[8])
+        lasts = cython.declare(cython.double[8])
+        previouses = cython.declare(cython.double[8])
         t: vec
         square: vec
         position: vec
         velocity: vec
         odd_position: vec
         odd_velocity: vec
-        n = self.degree // 2
+        n = ORDER // 2
         for j in range(NODES // LANES):
             t = middle + half * self.nodes.at[j]
-            # Even and odd powers apart, since each sum waits for the last.
             square = t * t
             position = splat(self.position[2 * n])
             velocity = splat(self.velocity[2 * n])
@@ -144,10 +156,13 @@ class Distance:
             position = position + t * odd_position
             velocity = velocity + t * odd_velocity
             self.value_at_node.at[j] = root(position * position + velocity * velocity)
-        for j in range(NODES):
-            mean += self.weight[j] * self.values[j]
-            last += self.last[j] * self.values[j]
-            previous += self.previous[j] * self.values[j]
+        for j in range(8):
+            means[j] = self.weight[j] * self.values[j] + self.weight[j + 8] * self.values[j + 8]
+            lasts[j] = self.last[j] * self.values[j] + self.last[j + 8] * self.values[j + 8]
+            previouses[j] = self.previous[j] * self.values[j] + self.previous[j + 8] * self.values[j + 8]
+        mean = sum_of_eight(means)
+        last = sum_of_eight(lasts)
+        previous = sum_of_eight(previouses)
         error = last * last + previous * previous
         if error <= (RELATIVE_ERROR * mean + ABSOLUTE_ERROR) * mean or depth >= MAXIMUM_DEPTH:
             return 2.0 * half * mean

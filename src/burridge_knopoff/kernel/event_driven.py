@@ -17,7 +17,7 @@ from cython.cimports.burridge_knopoff.kernel.events import (
     STEPS_PER_CALL,
 )
 from cython.cimports.burridge_knopoff.kernel.modes import Modes
-from cython.cimports.burridge_knopoff.kernel.piece import Piece
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER, Piece
 from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
 from cython.cimports.burridge_knopoff.kernel.search import EventSearch
 from cython.cimports.burridge_knopoff.kernel.series import Series
@@ -33,7 +33,7 @@ class EventDriven:
     exponents : the perturbations that are propagated beside the run; Exponents with no vectors for none
     """
 
-    def __init__(self, state, log, observer, exponents, order: int, closed_form: bool, step_limit: int) -> None:
+    def __init__(self, state, log, observer, exponents, closed_form: bool, step_limit: int) -> None:
         self.state = state
         self.log = log
         self.observer = observer
@@ -44,9 +44,9 @@ class EventDriven:
         self.halting_block = -1
         self.end = observer.end
         log.carry(exponents.tangent)
-        self.series = Series(state.springs.columns, order)
-        self.piece = Piece(state.blocks, order)
-        self.search = EventSearch(state.blocks, order)
+        self.series = Series(state.springs.columns)
+        self.piece = Piece(state.blocks, ORDER)
+        self.search = EventSearch(state.blocks)
         self.modes = Modes(state.blocks)
         self.closed_form = closed_form
         self.step_limit = step_limit
@@ -101,13 +101,14 @@ class EventDriven:
             if not reach > 0.0 or not self._fastest() < ABSURD_SPEED:
                 return DIVERGED
             # The end of the run has no part in the search: it must not move an event by a bit.
-            block = self.search.first(self.state, self.piece, reach)
+            block = self.search.first(self.state, self.piece, reach, self.observer.side if self.observing else 0)
             length = self.search.time
             if length > remaining:
                 block = -1
                 length = remaining
             due = block >= 0 or length >= remaining
             if self.observing:
+                self.piece.crossing = self.search.crossing(length)
                 self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
             if self.tangent.vectors > 0:
                 self.exponents.begin_within(self.state, self.clock, length)

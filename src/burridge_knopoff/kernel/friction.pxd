@@ -1,6 +1,6 @@
 """The recurrences of a law's operations, inline because a row of the series is short; the class is in `friction.py`."""
 
-from burridge_knopoff.kernel.vector cimport Vectors, each_exp, each_log, each_power, splat, vec
+from burridge_knopoff.kernel.vector cimport Vectors, convolution, each_exp, each_log, each_power, splat, vec
 
 cdef double ROUNDING
 
@@ -35,27 +35,17 @@ cdef class Friction:
     cdef void extend(self, Py_ssize_t column, Py_ssize_t n, int first, int last) noexcept nogil
     cdef void complete(self, Py_ssize_t column, Py_ssize_t count) noexcept nogil
 
-cdef inline vec convolution(const vec *p, const vec *q, Py_ssize_t n) noexcept nogil:
-    """Return the sum of p_k q_(n-k) over k = 0 ... n - 1; what was computed last comes last."""
-    cdef Py_ssize_t k = n - 1
-    # Four sums, which a processor forms at the same time.
-    cdef vec first = splat(0.0)
-    cdef vec second = first
-    cdef vec third = first
-    cdef vec fourth = first
-    while k >= 4:
-        first += p[k] * q[n - k]
-        second += p[k - 1] * q[n - k + 1]
-        third += p[k - 2] * q[n - k + 2]
-        fourth += p[k - 3] * q[n - k + 3]
-        k -= 4
-    while k >= 1:
-        first += p[k] * q[n - k]
-        k -= 1
-    first = (second + fourth) + (first + third)
-    if n > 0:
-        first = first + p[0] * q[n]
-    return first
+cdef inline vec product(const vec *p, const vec *q, Py_ssize_t n) noexcept nogil:
+    """Return the sum of p_k q_(n-k) over k = 0 ... n."""
+    if n == 0:
+        return p[0] * q[0]
+    return (convolution(p, q, n) + p[0] * q[n]) + p[n] * q[0]
+
+cdef inline vec inner(const vec *p, const vec *q, Py_ssize_t n) noexcept nogil:
+    """Return the sum of p_k q_(n-k) over k = 1 ... n - 1; what was computed last comes last."""
+    if n < 3:
+        return p[1] * q[1] if n == 2 else splat(0.0)
+    return (convolution(p + 1, q + 1, n - 2) + p[n - 1] * q[1]) + p[1] * q[n - 1]
 
 cdef inline vec square(const vec *p, Py_ssize_t n) noexcept nogil:
     """Return the sum of p_k p_(n-k) over k = 0 ... n."""
@@ -135,7 +125,7 @@ cdef inline void fill(Friction law, Py_ssize_t column, Py_ssize_t n, int first, 
             continue
         if code == MULTIPLY:
             q = row(law, law.operation[r, 2], column)
-            out[n] = square(p, n) if p == q else convolution(p, q, n) + p[n] * q[0]
+            out[n] = square(p, n) if p == q else product(p, q, n)
             continue
         inverse = law.inverse.at + (r * law.columns + column)
         if n == 0:
@@ -150,7 +140,7 @@ cdef inline void fill(Friction law, Py_ssize_t column, Py_ssize_t n, int first, 
             if code != EXP:
                 inverse[0] = splat(1.0) / p[0]
         elif code == RECIPROCAL:
-            made = -((convolution(p + 1, out, n - 1) + p[n] * out[0]) * out[0])
+            made = -((inner(p, out, n) + p[n] * out[0]) * out[0])
         elif code == POWER:
             # n p_0 y_n is the sum of ((alpha + 1) k - n) p_k y_(n-k) over k = 1 ... n.
             made = weighted(p + 1, out, n - 1, alpha + 1.0, alpha + 1.0 - n) * law.reciprocal[n] * inverse[0]

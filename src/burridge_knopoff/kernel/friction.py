@@ -95,6 +95,19 @@ class Friction:
     def start(self, column, speed):
         """Fill coefficient 0 of all registers from a speed, and their derivatives by it."""
         r: cython.int
+        line: vec
+        inverse: vec
+        if self.hyperbolic:
+            line = self.constant[0, 0] * speed + self.constant[0, 2]
+            inverse = splat(1.0) / line
+            row(self, 1, column)[0] = line
+            row(self, 2, column)[0] = inverse
+            slopes(self, column)[1] = splat(self.constant[0, 0])
+            slopes(self, column)[2] = -((self.constant[0, 0] * inverse) * inverse)
+            if self.value == 3:
+                row(self, 3, column)[0] = self.constant[2, 0] * inverse + self.constant[2, 2]
+                slopes(self, column)[3] = self.constant[2, 0] * slopes(self, column)[2]
+            return
         row(self, 0, column)[0] = speed
         self.extend(column, 0, 0, self.value)
         # In a series whose speed is linear in time, with slope 1, coefficients of first order are the derivatives.

@@ -9,7 +9,6 @@ cdef int WINDOW
 cdef int UPWARD
 cdef int DOWNWARD
 cdef double NOTHING
-cdef double SEAM
 
 cdef class Observer:
     cdef readonly double transient
@@ -39,6 +38,5 @@ cdef class Observer:
     cdef void _average(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _sample(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _cross(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
-    cdef bint _keeps_its_side(self, State state, Piece piece, double length) noexcept nogil
-    cdef void _keep(self, double time, double rate) noexcept nogil
+    cdef void _turn(self, State state, Piece piece, double t, double time) noexcept nogil
     cdef void _extreme(self, State state, Piece piece, int stage, double start, double stop) noexcept nogil

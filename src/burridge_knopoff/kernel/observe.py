@@ -2,19 +2,18 @@
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.bernstein import UNCERTAIN, SearchedPolynomial
+from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
 from cython.cimports.burridge_knopoff.kernel.distance import Distance
+from cython.cimports.burridge_knopoff.kernel.piece import UNCERTAIN
 from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
 from cython.cimports.burridge_knopoff.kernel.record import Record
+from cython.cimports.burridge_knopoff.kernel.search import SEAM
 
 TRANSIENT = 0
 WINDOW = 1
 UPWARD = 1
 DOWNWARD = -1
 NOTHING = -1e300
-
-# W at the end of one piece and at the start of the next differ by rounding, less than this.
-SEAM = 1e-14
 
 
 class Observer:
@@ -121,7 +120,9 @@ class Observer:
         start: cython.double = 0.0
         window: cython.double = (self.transient - clock) - clock_rest
         value: cython.double
-        if self.side != 0 and self._keeps_its_side(state, piece, length):
+        if self.side != 0 and piece.crossing != UNCERTAIN:
+            if piece.crossing >= 0.0:
+                self._turn(state, piece, piece.crossing, clock + (clock_rest + piece.crossing))
             return
         self.polynomial.degree = piece.degree
         for k in range(piece.degree + 1):
@@ -134,13 +135,6 @@ class Observer:
             if window > 0.0:
                 self.polynomial.shift(window)
                 start = window
-        else:
-            t = self.polynomial.only_root(length, self.side, SEAM)
-            if t != UNCERTAIN:
-                if t >= 0.0:
-                    self.side = -self.side
-                    self._keep(clock + (clock_rest + t), -self.side * self.polynomial.slope_there)
-                return
         value = self.side * self.polynomial.coefficient[0]
         if -SEAM < value < 0.0 and self.side * self.polynomial.coefficient[1] > 0.0:
             self.polynomial.coefficient[0] = 0.0
@@ -154,10 +148,6 @@ class Observer:
             if t < 0.0:
                 return
             start += t
-            if self.polynomial.alone:
-                self.side = -self.side
-                self._keep(clock + (clock_rest + start), -self.side * self.polynomial.slope_there)
-                return
             # The root is divided out, and with it what rounding leaves of W there. If the sign after it is the one
             # before it, W has touched 0 within rounding and not crossed.
             self.polynomial.shift(t)
@@ -165,33 +155,14 @@ class Observer:
             self.polynomial.deflate()
             if self.side * self.polynomial.coefficient[0] >= 0.0:
                 continue
-            self.side = -self.side
-            total = 0.0
-            for i in range(piece.blocks):
-                total += evaluate(piece.velocity, i, piece.degree, start) - state.v
-            self._keep(clock + (clock_rest + start), total)
+            self._turn(state, piece, start, clock + (clock_rest + start))
 
-    def _keep(self, time, rate):
-        """Keep a crossing to what is now the side, with W'."""
+    def _turn(self, state, piece, t, time):
+        """Change the side and keep the crossing to it: when, W' there, and the side."""
         row: cython.Py_ssize_t = self.crossings.append(time)
-        self.crossings.value[row, 0] = rate
+        self.side = -self.side
+        self.crossings.value[row, 0] = piece.sliding_rate(state.v, t)
         self.crossings.value[row, 1] = self.side
-
-    def _keeps_its_side(self, state, piece, length):
-        """Tell whether W cannot come to 0, by the bounds on the speeds of its blocks."""
-        i: cython.Py_ssize_t
-        total: cython.double = 0.0
-        rising: cython.double = -state.v * piece.blocks
-        falling: cython.double = rising
-        for i in range(piece.blocks):
-            total += piece.position[0, i]
-            if state.slip[i] > 0:
-                rising += piece.highest[i]
-            elif state.slip[i] < 0:
-                falling -= piece.highest[i]
-        if self.side > 0:
-            return total + falling * length > SEAM
-        return total + rising * length < -SEAM
 
     def _extreme(self, state, piece, stage, start, stop):
         """Follow the highest slip speed and the lowest spring force on a stuck block, in transient or window."""

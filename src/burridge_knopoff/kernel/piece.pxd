@@ -3,7 +3,12 @@ from burridge_knopoff.kernel.polynomial cimport Polynomial
 from burridge_knopoff.kernel.state cimport State
 from burridge_knopoff.kernel.vector cimport Vectors
 
+# Order of the Taylor series, even: a compiler unrolls what it knows the length of.
+cdef enum:
+    ORDER = 22
+
 cdef double UNKNOWN
+cdef double UNCERTAIN
 
 cdef class Piece:
     cdef readonly Py_ssize_t blocks
@@ -13,7 +18,6 @@ cdef class Piece:
     cdef Vectors positions
     cdef Vectors velocities
     cdef Vectors forces
-    cdef Vectors moved
     cdef Vectors direction
     cdef Vectors stuck
     cdef double[::1] direction_table
@@ -23,8 +27,10 @@ cdef class Piece:
     cdef double[:, ::1] force
 
     cdef double[::1] highest
+    cdef double crossing
 
     cdef void fill_force(self, Springs springs, Py_ssize_t n) noexcept nogil
     cdef void move(self, State state, double t) noexcept nogil
+    cdef double sliding_rate(self, double v, double t) noexcept nogil
     cdef void load_speed(self, State state, Py_ssize_t i, Polynomial polynomial) noexcept nogil
     cdef void load_gap(self, State state, Py_ssize_t i, int side, Polynomial polynomial) noexcept nogil

@@ -5,9 +5,11 @@ Whatever a solver does, it hands its motion on in this form; events and observab
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, lane_of, value_at
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER
+from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, lane_of, splat, value_at, vec
 
 UNKNOWN = 1e300
+UNCERTAIN = -2.0
 
 
 class Piece:
@@ -16,7 +18,8 @@ class Piece:
     The same memory is read block by block, as tables, and in lanes, as `columns` vectors a row.
 
     `direction` (0 where a block sticks) and `stuck` (1 there, and in lanes without a block) hold for the whole piece.
-    `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used.
+    `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used;
+    `crossing` when W = Σ x_i changes its sign in that time, −1.0 if it does not, UNCERTAIN if that is to be looked for.
     """
 
     def __init__(self, blocks: int, order: int) -> None:
@@ -35,8 +38,8 @@ class Piece:
         self.stuck = Vectors(self.columns)
         self.stuck.set(np.ones(self.columns * LANES))
         self.stuck_table = self.stuck.table(1)[0]
-        self.moved = Vectors(2)
         self.highest = np.full(blocks, UNKNOWN)
+        self.crossing = UNCERTAIN
 
     def fill_force(self, springs, n):
         """Fill row n of the spring forces from row n of the positions."""
@@ -48,15 +51,22 @@ class Piece:
                 self.force[0, i] += springs.sliding_force[i]
 
     def move(self, state, t):
-        """Set positions and velocities of the state to those at time t."""
+        """Set positions and velocities of the state to those at time t of a series."""
         c: cython.Py_ssize_t
-        i: cython.Py_ssize_t
         for c in range(self.columns):
-            self.moved.at[0] = value_at(self.positions.at + c, self.columns, self.degree, t)
-            self.moved.at[1] = value_at(self.velocities.at + c, self.columns, self.degree, t)
-            for i in range(c * LANES, min(self.blocks, (c + 1) * LANES)):
-                state.position[i] = lane_of(self.moved.at[0], i - c * LANES)
-                state.velocity[i] = lane_of(self.moved.at[1], i - c * LANES)
+            state.positions.at[c] = value_at(self.positions.at + c, self.columns, ORDER, t)
+            state.velocities.at[c] = value_at(self.velocities.at + c, self.columns, ORDER, t)
+
+    def sliding_rate(self, v, t):
+        """Return the rate Σ (U_i' − v) of W at time t."""
+        i: cython.Py_ssize_t
+        speed: vec = splat(0.0)
+        total: cython.double = 0.0
+        for i in range(self.blocks):
+            if i % LANES == 0:
+                speed = value_at(self.velocities.at + i // LANES, self.columns, self.degree, t)
+            total += lane_of(speed, i % LANES) - v
+        return total
 
     def load_speed(self, state, i, polynomial):
         """Load the speed |U_i'| of a slipping block: the block stops where it becomes negative."""

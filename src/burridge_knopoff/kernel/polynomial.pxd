@@ -4,8 +4,11 @@ cdef double evaluate_slope(double[:, ::1] coefficient, Py_ssize_t column, Py_ssi
 cdef class Polynomial:
     cdef readonly Py_ssize_t capacity
     cdef public Py_ssize_t degree
+    cdef double[:, ::1] table
     cdef double[::1] coefficient
 
+    cdef void derive(self, Py_ssize_t row) noexcept nogil
+    cdef double at(self, Py_ssize_t row, double t) noexcept nogil
     cdef double value(self, double t) noexcept nogil
     cdef double slope(self, double t) noexcept nogil
     cdef Py_ssize_t deflate(self) noexcept nogil

@@ -5,6 +5,9 @@ how far its spring force is from its threshold while it sticks. A root t* is gue
 then it is proved that no g has one before: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*) q(t), is
 bounded from below by the Bernstein coefficients of its first terms and the sum of the others. Where the proof fails the
 exhaustive search of `bernstein` decides. So an event can be found late only by what rounding hides.
+
+Where the sum of all positions W changes its sign is found on the way, in a lane behind those of the blocks: it moves no
+event, and costs next to nothing.
 """
 
 import math
@@ -12,7 +15,7 @@ import math
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
-from cython.cimports.burridge_knopoff.kernel.piece import UNKNOWN
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER, UNCERTAIN, UNKNOWN
 from cython.cimports.burridge_knopoff.kernel.search import LOW
 from cython.cimports.burridge_knopoff.kernel.springs import thresholds
 from cython.cimports.burridge_knopoff.kernel.vector import (
@@ -20,6 +23,8 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     Vectors,
     at_most,
     bits,
+    equal,
+    from_bits,
     largest,
     least,
     less,
@@ -30,7 +35,8 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     vec,
 )
 
-# Halley steps before a root is left to the exhaustive search.
+# Halley steps with the first terms, and with all before a root is left to the exhaustive search.
+GUESSES = 1
 ITERATIONS = 6
 
 # A root has converged when the next step would be smaller than this share of the piece.
@@ -39,39 +45,50 @@ CONVERGED = 1e-17
 # Values down to minus this at the event count as events of the same instant; see `state.COINCIDENCE`.
 COMMON = 1e-14
 
+# W at the end of one piece and at the start of the next differ by rounding, less than this.
+SEAM = 1e-14
+
 # Value at the event of another block below which the quotient serves better.
 NEAR = 1e-3
 
 
 class EventSearch:
-    """Finds events of chains of `blocks` blocks on pieces of the given order; `time` is that of the last one found."""
+    """Finds events of chains of `blocks` blocks on pieces of a series; `time` is that of the last one found."""
 
-    def __init__(self, blocks: int, order: int) -> None:
-        columns = (blocks + LANES - 1) // LANES
+    def __init__(self, blocks: int) -> None:
+        columns = (blocks + LANES) // LANES
         self.time = 0.0
-        self.order = order
         self.columns = columns
-        self.polynomial = SearchedPolynomial(order)
-        self.gap = Vectors((order + 1) * columns)
-        self.gap_table = self.gap.table(order + 1)
-        self.scaled = Vectors(order + 1)
-        self.quotient = Vectors(order + 1)
+        self.polynomial = SearchedPolynomial(ORDER)
+        self.gap = Vectors((ORDER + 1) * columns)
+        self.gap_table = self.gap.table(ORDER + 1)
+        self.scaled = Vectors(ORDER + 1)
+        self.quotient = Vectors(ORDER + 1)
         self.corner = Vectors(LOW + 1)
         self.lowest = Vectors(columns)
         self.highest = Vectors(columns)
         self.root = Vectors(columns)
+        self.fall = Vectors(1)
         self.lowest_table = self.lowest.table(1)[0]
         self.highest_table = self.highest.table(1)[0]
         self.root_table = self.root.table(1)[0]
-        self.power = np.zeros(order + 2)
+        self.fall_table = self.fall.table(1)[0]
+        self.power = np.zeros(ORDER + 4)
         self.inverse_binomial = np.array([1.0 / math.comb(LOW, k) for k in range(LOW + 1)])
         self.zeros = np.zeros(blocks, dtype=np.intp)
+        # The lane of W, and those of blocks, as bits, in each column.
+        self.section = blocks
+        self.least_section = 0.0
+        self.blocks_in = np.array([(1 << min(LANES, blocks - c * LANES)) - 1 for c in range(columns)], dtype=np.intc)
 
-    def first(self, state, piece, reach):
-        """Return the block that stops or starts first within the reach, −1 if none does; its time is in `time`."""
+    def first(self, state, piece, reach, side):
+        """Return the block that stops or starts first within the reach, −1 if none does; its time is in `time`.
+
+        side : the sign of W, if its crossings are looked for as well, else 0
+        """
         i: cython.Py_ssize_t
         block: cython.Py_ssize_t = -1
-        self._load(state, piece)
+        self._load(state, piece, side)
         if self._whole(state, piece, reach):
             self.time = reach
             return -1
@@ -86,41 +103,83 @@ class EventSearch:
             if self.root_table[i] <= reach and (block < 0 or self.root_table[i] < self.time):
                 self.time = self.root_table[i]
                 block = i
-        if block >= 0 and self._proved(self.time):
+        if block >= 0 and self._proved(piece, self.time):
             return block
         return self._exhaustive(state, piece, reach)
 
-    def _load(self, state, piece):
+    def crossing(self, length):
+        """Return when W changes its sign in the first `length` of the reach, −1.0 if it does not; else UNCERTAIN."""
+        root: cython.double = self.root_table[self.section]
+        fall: cython.double = self.fall_table[self.section % LANES]
+        if self.least_section > SEAM:
+            return -1.0
+        if self.gap_table[0, self.section] > 0.0 and root < UNKNOWN and fall * abs(length - root) > SEAM:
+            return root if root < length else -1.0
+        return UNCERTAIN
+
+    def _load(self, state, piece, side):
         """Take g of every block, its known zeros at the start divided out: a block that has just started has U' = 0."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        zeros: cython.Py_ssize_t
-        touching: cython.bint
+        total: cython.double
+        direction: vec
+        stuck: vec
         columns: cython.Py_ssize_t = self.columns
+        last: cython.Py_ssize_t = columns - 1
         g: cython.pointer[vec] = self.gap.at
-        for c in range(columns):
-            for k in range(self.order + 1):
+        section: mask = from_bits(1 << self.section % LANES)
+        for c in range(piece.columns):
+            direction = piece.direction.at[c]
+            stuck = piece.stuck.at[c]
+            for k in range(ORDER + 1):
                 g[k * columns + c] = (
-                    piece.direction.at[c] * piece.velocities.at[k * columns + c]
-                    - piece.stuck.at[c] * piece.forces.at[k * columns + c]
+                    direction * piece.velocities.at[k * piece.columns + c]
+                    - stuck * piece.forces.at[k * piece.columns + c]
                 )
-            g[c] = g[c] + piece.stuck.at[c] * thresholds(state.springs, c)
+            g[c] = g[c] + stuck * thresholds(state.springs, c)
+        if columns > piece.columns:
+            for k in range(ORDER + 1):
+                g[k * columns + last] = splat(1.0 if k == 0 else 0.0)
+        if side != 0:
+            for k in range(ORDER + 1):
+                total = 0.0
+                for i in range(piece.blocks):
+                    total += piece.position[k, i]
+                g[k * columns + last] = select(section, splat(side * total), g[k * columns + last])
         for i in range(state.blocks):
             self.zeros[i] = 0
             # At its threshold by construction: what rounding leaves there must not start the block a second time.
-            touching = state.slip[i] == 0 and state.touching[i]
-            if touching and abs(self.gap_table[0, i]) < 0.5 * state.springs.threshold[i]:
+            if (
+                state.touching[i]
+                and state.slip[i] == 0
+                and abs(self.gap_table[0, i]) < 0.5 * state.springs.threshold[i]
+            ):
                 self.gap_table[0, i] = 0.0
-            if self.gap_table[0, i] == 0.0:
-                zeros = 1
-                while zeros < self.order and self.gap_table[zeros, i] == 0.0:
-                    zeros += 1
-                self.zeros[i] = zeros
-                for k in range(self.order + 1 - zeros):
-                    self.gap_table[k, i] = self.gap_table[k + zeros, i]
-                for k in range(self.order + 1 - zeros, self.order + 1):
-                    self.gap_table[k, i] = 0.0
+        for c in range(piece.columns):
+            if bits(equal(g[c], splat(0.0))) & self.blocks_in[c]:
+                self._divide(c)
+
+    def _divide(self, column):
+        """Divide the zeros at the start out of the polynomials of one column."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        _times: cython.Py_ssize_t
+        found: cython.int
+        where: mask
+        zero: vec = splat(0.0)
+        columns: cython.Py_ssize_t = self.columns
+        g: cython.pointer[vec] = self.gap.at + column
+        for _times in range(ORDER):
+            found = bits(equal(g[0], zero)) & self.blocks_in[column]
+            if not found:
+                return
+            where = from_bits(found)
+            for k in range(ORDER):
+                g[k * columns] = select(where, g[(k + 1) * columns], g[k * columns])
+            g[ORDER * columns] = select(where, zero, g[ORDER * columns])
+            for i in range(column * LANES, min(len(self.zeros), (column + 1) * LANES)):
+                self.zeros[i] += found >> (i - column * LANES) & 1
 
     def _whole(self, state, piece, reach):
         """Tell whether bounds show that nothing happens in the reach; else leave a root of each block, or UNKNOWN."""
@@ -132,63 +191,86 @@ class EventSearch:
         self._measure(reach)
         for c in range(self.columns):
             self._scale(c)
-            self._bound(self.scaled.at, c)
+            self._bound(c, from_bits(0))
             wanted = at_most(self.lowest.at[c], splat(0.0))
             self.root.at[c] = never
             if bits(wanted):
-                nothing = False
                 self.root.at[c] = self._refine(c, self._guess(reach), reach, wanted)
+                if c == self.section // LANES:
+                    self._steepness(reach)
+                nothing = nothing and not bits(wanted) & self.blocks_in[c]
         for i in range(state.blocks):
-            piece.highest[i] = UNKNOWN if self.zeros[i] > 0 else self.highest_table[i]
+            piece.highest[i] = max(0.0, self.highest_table[i]) * self.power[self.zeros[i]]
             if state.symmetric and state.slip[i] == 0:
                 nothing = nothing and self.zeros[i] == 0 and self.highest_table[i] < 2.0 * state.springs.threshold[i]
+        self.least_section = self.lowest_table[self.section]
         return nothing
 
+    def _steepness(self, length):
+        """Bound from below how fast the polynomials that were bounded last fall everywhere in the interval."""
+        k: cython.Py_ssize_t
+        per_time: cython.double = 1.0 / length
+        corner: cython.pointer[vec] = self.corner.at
+        steepest: vec = corner[1] - corner[0]
+        rest: vec = splat(0.0)
+        for k in range(1, LOW):
+            steepest = largest(steepest, corner[k + 1] - corner[k])
+        for k in range(LOW + 1, ORDER + 1):
+            rest = rest + cython.cast(cython.double, k) * magnitude(self.scaled.at[k])
+        self.fall.at[0] = -(cython.cast(cython.double, LOW) * steepest + rest) * per_time
+
     def _measure(self, length):
-        """Take the powers of an interval's length."""
+        """Take the powers of an interval's length: four chains of products, as each waits for the last."""
+        j: cython.Py_ssize_t
         k: cython.Py_ssize_t
         square: cython.double = length * length
-        even: cython.double = 1.0
-        odd: cython.double = length
-        for k in range(0, self.order + 1, 2):
-            self.power[k] = even
-            self.power[k + 1] = odd
-            even *= square
-            odd *= square
+        power = cython.declare(cython.double[4])
+        power[0] = 1.0
+        power[1] = length
+        power[2] = square
+        power[3] = square * length
+        square = square * square
+        for k in range(0, ORDER + 1, 4):
+            for j in range(4):
+                self.power[k + j] = power[j]
+                power[j] *= square
 
     def _scale(self, column):
         """Take the terms of one column at the end of the interval that was measured."""
         k: cython.Py_ssize_t
-        for k in range(self.order + 1):
+        for k in range(ORDER + 1):
             self.scaled.at[k] = self.gap.at[k * self.columns + column] * self.power[k]
 
-    def _bound(self, terms, column):
-        """Bound the polynomials with these terms over [0, 1]; their first Bernstein coefficients go to `corner`."""
+    def _bound(self, column, near):
+        """Bound q where a block is near its event, else g; their first Bernstein coefficients go to `corner`."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
         corner = cython.declare(vec[9])
+        scaled: cython.pointer[vec] = self.scaled.at
+        quotient: cython.pointer[vec] = self.quotient.at
         rest: vec = splat(0.0)
         other: vec = rest
         low: vec
         high: vec
         for k in range(LOW + 1):
-            corner[k] = terms[k] * self.inverse_binomial[k]
-        for k in range(LOW + 1, self.order, 2):
-            rest = rest + magnitude(terms[k])
-            other = other + magnitude(terms[k + 1])
+            corner[k] = select(near, quotient[k], scaled[k]) * self.inverse_binomial[k]
+        for k in range(LOW + 1, ORDER, 2):
+            rest = rest + magnitude(select(near, quotient[k], scaled[k]))
+            other = other + magnitude(select(near, quotient[k + 1], scaled[k + 1]))
         for j in range(1, LOW + 1):
             for k in range(LOW, j - 1, -1):
                 corner[k] = corner[k] + corner[k - 1]
         rest = rest + other
-        low = corner[0]
-        high = low
-        for k in range(1, LOW + 1):
+        # The other terms are at most their sum times t⁸, which is the last Bernstein polynomial.
+        low = corner[LOW] - rest
+        high = corner[LOW] + rest
+        for k in range(LOW):
             low = least(low, corner[k])
             high = largest(high, corner[k])
         for k in range(LOW + 1):
             self.corner.at[k] = corner[k]
-        self.lowest.at[column] = low - rest
-        self.highest.at[column] = high + rest
+        self.lowest.at[column] = low
+        self.highest.at[column] = high
 
     def _guess(self, length):
         """Return where the control polygons of the last bounds first fall through 0; UNKNOWN where they do not."""
@@ -207,6 +289,7 @@ class EventSearch:
     def _refine(self, column, t, reach, wanted):
         """Return the roots near guesses, by Halley's method; UNKNOWN where it does not converge within the reach."""
         k: cython.Py_ssize_t
+        top: cython.Py_ssize_t
         _iteration: cython.int
         g: cython.pointer[vec] = self.gap.at + column
         columns: cython.Py_ssize_t = self.columns
@@ -226,18 +309,20 @@ class EventSearch:
         open_lanes: mask = wanted & at_most(t, end)
         done: mask = open_lanes & ~open_lanes
         good: mask
-        for _iteration in range(ITERATIONS):
+        for _iteration in range(GUESSES + ITERATIONS):
             if not bits(open_lanes):
                 break
             # Even and odd powers apart, in z = t², since each sum waits for the last: g = e + t o.
             square = t * t
-            even = g[self.order * columns]
-            odd = g[(self.order - 1) * columns]
+            # The first terms show the way at a third of the cost.
+            top = LOW if _iteration < GUESSES else ORDER
+            even = g[top * columns]
+            odd = g[(top - 1) * columns]
             even_slope = zero
             odd_slope = zero
             even_curvature = zero
             odd_curvature = zero
-            for k in range(self.order - 2, -1, -2):
+            for k in range(top - 2, -1, -2):
                 even_curvature = even_curvature * square + even_slope
                 even_slope = even_slope * square + even
                 even = even * square + g[k * columns]
@@ -256,35 +341,43 @@ class EventSearch:
             curvature = curvature * step
             step = magnitude(step)
             curvature = step * (curvature * curvature)
-            wanted = good & less(step, 1e-5 * end) & at_most(curvature, (CONVERGED * reach) * (slope * slope))
+            wanted = (
+                good
+                & less(step, (1e-5 if top == ORDER else 0.0) * end)
+                & at_most(curvature, (CONVERGED * reach) * (slope * slope))
+            )
             done = done | wanted
             open_lanes = good & ~wanted
         return select(done, t, splat(UNKNOWN))
 
-    def _proved(self, t):
+    def _proved(self, piece, t):
         """Tell whether no block has an event before t, by bounds over [0, t]."""
         c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         zero: vec = splat(0.0)
         total: vec
+        term: vec
         near: mask
         self._measure(t)
-        for c in range(self.columns):
-            self._scale(c)
+        for c in range(piece.columns):
             # Coefficients of q: minus the sums of the higher terms of g.
             total = zero
-            for k in range(self.order, -1, -1):
+            for k in range(ORDER, -1, -1):
+                term = self.gap.at[k * self.columns + c] * self.power[k]
+                self.scaled.at[k] = term
                 self.quotient.at[k] = -total
-                total = total + self.scaled.at[k]
-            # A block that is near its own event is proved by q, the others as they are.
-            near = at_most(total, splat(NEAR))
-            if bits(near & less(total, splat(-COMMON))):
+                total = total + term
+            # A block that has come near to its own event is proved by q, the others as they are.
+            near = at_most(total, splat(NEAR)) & less(total, self.scaled.at[0])
+            if bits(near & less(total, splat(-COMMON))) & self.blocks_in[c]:
                 return False
-            for k in range(self.order + 1):
-                self.quotient.at[k] = select(near, self.quotient.at[k], self.scaled.at[k])
-            self._bound(self.quotient.at, c)
-            if bits(less(zero, self.lowest.at[c])) != (1 << LANES) - 1:
+            self._bound(c, near)
+            if ~bits(less(zero, self.lowest.at[c])) & self.blocks_in[c]:
                 return False
+            for i in range(c * LANES, min(piece.blocks, (c + 1) * LANES)):
+                if not bits(near) >> (i - c * LANES) & 1:
+                    piece.highest[i] = min(piece.highest[i], self.highest_table[i] * self.power[self.zeros[i]])
         return True
 
     def _exhaustive(self, state, piece, reach):

@@ -10,6 +10,7 @@ cdef class Series:
     cdef Vectors moving
     cdef Vectors signed
     cdef Vectors damping
+    cdef Vectors pressed
     cdef double[::1] last_root
     cdef double[::1] previous_root
 

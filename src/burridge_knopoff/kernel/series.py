@@ -12,10 +12,23 @@ methods", Exp. Math. 14 (2005) 99-117.
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.friction import convolution, prepare, row, settle, slopes
-from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, pulls, thresholds
+from cython.cimports.burridge_knopoff.kernel.friction import inner, prepare, row, settle, slopes
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER
+from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, SLIDING, pulls, thresholds
 from cython.cimports.burridge_knopoff.kernel.state import YOUNG
-from cython.cimports.burridge_knopoff.kernel.vector import Vectors, exponent, index, scale, shuffle, splat, vec
+from cython.cimports.burridge_knopoff.kernel.vector import (
+    Vectors,
+    convolution,
+    exponent,
+    index,
+    scale,
+    shuffle,
+    splat,
+    vec,
+)
+
+#: Order of the series: enough for a piece of about one time unit, the usual gap between two events.
+SERIES_ORDER = ORDER
 
 # Binary digits below 1 at which terms are left out.
 TRUNCATION = 53
@@ -25,17 +38,19 @@ LONGEST = 1e9
 
 
 class Series:
-    """The recursion for `columns` vectors of blocks at the given order."""
+    """The recursion for `columns` vectors of blocks."""
 
-    def __init__(self, columns: int, order: int) -> None:
-        self.reciprocal = 1.0 / np.maximum(np.arange(order + 2, dtype=float), 1.0)
+    def __init__(self, columns: int) -> None:
+        self.reciprocal = 1.0 / np.maximum(np.arange(ORDER + 2, dtype=float), 1.0)
         # Slipping or not, threshold signed by the direction of slip, and friction per speed.
         self.moving = Vectors(columns)
         self.signed = Vectors(columns)
         self.damping = Vectors(columns)
+        # The same threshold times what friction is per sum of its recurrence, if it is a multiple of a reciprocal.
+        self.pressed = Vectors(columns)
         # Roots of 2, cut to 30 bits: C libraries differ in the last one.
-        self.last_root = np.floor(2.0 ** (30.0 + np.arange(order) / order)) / 2.0**30
-        self.previous_root = np.floor(2.0 ** (30.0 + np.arange(order - 1) / (order - 1))) / 2.0**30
+        self.last_root = np.floor(2.0 ** (30.0 + np.arange(ORDER) / ORDER)) / 2.0**30
+        self.previous_root = np.floor(2.0 ** (30.0 + np.arange(ORDER - 1) / (ORDER - 1))) / 2.0**30
 
     def expand(self, state, piece):
         """Fill the piece with the motion that starts from the state; return the time for which it is valid."""
@@ -53,17 +68,18 @@ class Series:
         friction: vec
         slope: vec
         for i in range(state.blocks):
-            piece.position[0, i] = state.position[i]
-            piece.velocity[0, i] = state.velocity[i]
-            piece.force[0, i] = state.springs.sliding_force[i]
-            piece.stuck_table[i] = state.slip[i] == 0
-            piece.direction_table[i] = state.slip[i]
+            # Only where it has changed: reading a vector must wait for what was written to its lanes.
+            if piece.direction_table[i] != state.slip[i] or piece.stuck_table[i] != (state.slip[i] == 0):
+                piece.stuck_table[i] = state.slip[i] == 0
+                piece.direction_table[i] = state.slip[i]
             if state.slip[i] != 0 and (state.touching[i] or state.age[i] < YOUNG):
                 young = True
         for c in range(columns):
+            x[c] = state.positions.at[c]
+            u[c] = state.velocities.at[c]
             x[columns + c] = u[c] - state.v
         for c in range(columns):
-            s[c] = s[c] + pulls(state.springs, x, c)
+            s[c] = state.springs.lanes.at[SLIDING * columns + c] + pulls(state.springs, x, c)
             self.moving.at[c] = splat(1.0) - piece.stuck.at[c]
             # Signed by the direction of slip, as friction is.
             self.signed.at[c] = piece.direction.at[c] * thresholds(state.springs, c)
@@ -76,6 +92,8 @@ class Series:
                 friction = row(state.friction, value, c)[0]
                 slope = slopes(state.friction, c)[value]
             self.damping.at[c] = self.signed.at[c] * (slope * piece.direction.at[c])
+            if state.friction.hyperbolic:
+                self.pressed.at[c] = -(self.signed.at[c] * (state.friction.scale * row(state.friction, 2, c)[0]))
             u[columns + c] = self.moving.at[c] * (s[c] - self.signed.at[c] * friction)
             s[columns + c] = pulls(state.springs, x + columns, c)
         if young:
@@ -101,28 +119,36 @@ class Series:
         x: cython.pointer[vec] = piece.positions.at
         u: cython.pointer[vec] = piece.velocities.at
         s: cython.pointer[vec] = piece.forces.at
+        line: cython.pointer[vec]
+        inverse: cython.pointer[vec]
         factor: cython.double
         force: vec
-        for n in range(1, piece.order):
+        speed: vec
+        total: vec
+        for n in range(1, ORDER):
             factor = self.reciprocal[n + 1]
             for c in range(columns):
-                force = s[n * columns + c]
-                if not state.friction.linear:
-                    row(state.friction, 0, c)[n] = splat(0.0)
-                    state.friction.extend(c, n, 0, value)
-                    force = force - self.signed.at[c] * row(state.friction, value, c)[n]
-                    settle(state.friction, c, n, piece.direction.at[c] * u[n * columns + c])
-                u[(n + 1) * columns + c] = (self.moving.at[c] * factor) * (
-                    force - self.damping.at[c] * u[n * columns + c]
-                )
-                x[(n + 1) * columns + c] = u[n * columns + c] * factor
+                speed = u[n * columns + c]
+                force = (self.moving.at[c] * factor) * s[n * columns + c]
+                if state.friction.hyperbolic:
+                    line = row(state.friction, 1, c)
+                    inverse = row(state.friction, 2, c)
+                    total = inner(line, inverse, n)
+                    force = force - (self.pressed.at[c] * factor) * total
+                    line[n] = (slopes(state.friction, c)[1] * piece.direction.at[c]) * speed
+                    inverse[n] = (slopes(state.friction, c)[2] * piece.direction.at[c]) * speed - inverse[0] * total
+                elif not state.friction.linear:
+                    prepare(state.friction, c, n)
+                    force = force - (self.signed.at[c] * factor) * row(state.friction, value, c)[n]
+                    settle(state.friction, c, n, piece.direction.at[c] * speed)
+                u[(n + 1) * columns + c] = force - (self.damping.at[c] * factor) * speed
+                x[(n + 1) * columns + c] = speed * factor
             for c in range(columns):
                 s[(n + 1) * columns + c] = pulls(state.springs, x + (n + 1) * columns, c)
 
     def _extend_one(self, state, piece):
         """Do the same for blocks that lie in one vector, which need not wait for memory."""
         n: cython.Py_ssize_t
-        order: cython.Py_ssize_t = piece.order
         value: cython.int = state.friction.value
         linear: cython.bint = state.friction.linear
         x: cython.pointer[vec] = piece.positions.at
@@ -147,28 +173,42 @@ class Series:
         inverse: cython.pointer[vec] = row(state.friction, 2, 0)
         line_slope: vec = splat(0.0)
         inverse_slope: vec = line_slope
-        made: vec
-        first: vec = line_slope
-        plain: cython.bint = state.friction.scale == 1.0
-        multiple: cython.double = state.friction.scale
+        total: vec = line_slope
+        first_line: vec = line_slope
+        first_inverse: vec = line_slope
+        last_line: vec = line_slope
+        last_inverse: vec = line_slope
+        start: vec = line_slope
+        pressed: vec = self.pressed.at[0]
         if hyperbolic:
             line_slope = slopes(state.friction, 0)[1] * direction
             inverse_slope = slopes(state.friction, 0)[2] * direction
-            first = -inverse[0]
-        for n in range(1, order):
+            start = inverse[0]
+        for n in range(1, ORDER):
             factor = self.reciprocal[n + 1]
             shift = speed * factor
+            force = (moving * factor) * force
             if hyperbolic:
-                # What `prepare` and `settle` do, without their tables.
-                made = convolution(line + 1, inverse, n - 1) * first
-                force = force - signed * (made if plain else multiple * made)
-                line[n] = line_slope * speed
-                inverse[n] = made + inverse_slope * speed
+                # As `inner` sums.
+                if n == 2:
+                    total = first_line * last_inverse
+                elif n > 2:
+                    total = (convolution(line + 1, inverse + 1, n - 2) + last_line * first_inverse) + (
+                        first_line * last_inverse
+                    )
+                force = force - (pressed * factor) * total
+                last_line = line_slope * speed
+                last_inverse = inverse_slope * speed - start * total
+                if n == 1:
+                    first_line = last_line
+                    first_inverse = last_inverse
+                line[n] = last_line
+                inverse[n] = last_inverse
             elif not linear:
                 prepare(state.friction, 0, n)
-                force = force - signed * row(state.friction, value, 0)[n]
+                force = force - (signed * factor) * row(state.friction, value, 0)[n]
                 settle(state.friction, 0, n, direction * speed)
-            speed = (moving * factor) * (force - damping * speed)
+            speed = force - (damping * factor) * speed
             force = (
                 before * shuffle(shift, shift, previous) + after * shuffle(shift, shift, following)
             ) - diagonal * shift
@@ -182,13 +222,11 @@ class Series:
         last: cython.double = 0.0
         previous: cython.double = 0.0
         for i in range(piece.blocks):
-            last = max(last, abs(piece.velocity[piece.order, i]))
-            previous = max(previous, abs(piece.velocity[piece.order - 1, i]))
+            last = max(last, abs(piece.velocity[ORDER, i]))
+            previous = max(previous, abs(piece.velocity[ORDER - 1, i]))
         if not (last + previous < 1e300):
             return 0.0
-        return min(
-            _length(last, self.last_root, piece.order), _length(previous, self.previous_root, piece.order - 1), LONGEST
-        )
+        return min(_length(last, self.last_root, ORDER), _length(previous, self.previous_root, ORDER - 1), LONGEST)
 
 
 def _length(coefficient, root, power):

@@ -6,6 +6,7 @@ cdef enum:
     BEFORE = 1
     AFTER = 2
     THRESHOLD = 3
+    SLIDING = 4
 
 cdef class Springs:
     cdef readonly Py_ssize_t blocks

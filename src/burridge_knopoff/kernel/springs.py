@@ -9,7 +9,7 @@ A ring has a spring between the last block and the first.
 """
 
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.springs import THRESHOLD
+from cython.cimports.burridge_knopoff.kernel.springs import SLIDING, THRESHOLD
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors
 
 
@@ -37,10 +37,12 @@ class Springs:
         self.stiffest = float((np.asarray(diagonal) + before + after).max())
         columns = (n + LANES - 1) // LANES
         self.columns = columns
-        self.lanes = Vectors(4 * columns)
-        table = np.zeros((4, columns * LANES))
+        self.lanes = Vectors(5 * columns)
+        table = np.zeros((5, columns * LANES))
         table[THRESHOLD] = 1.0
-        table[:, :n] = diagonal, before, after, threshold
+        table[:THRESHOLD, :n] = diagonal, before, after
+        table[THRESHOLD, :n] = threshold
+        table[SLIDING, :n] = sliding_force
         self.lanes.set(table.ravel())
         # Where a lane finds its neighbour: in the vector of the column before, or after, or in its own.
         previous = np.tile(np.arange(LANES) + LANES - 1, (columns, 1))

@@ -1,5 +1,6 @@
 from burridge_knopoff.kernel.friction cimport Friction
 from burridge_knopoff.kernel.springs cimport Springs
+from burridge_knopoff.kernel.vector cimport Vectors
 
 cdef double COINCIDENCE
 cdef double YOUNG
@@ -13,6 +14,8 @@ cdef class State:
     cdef readonly int symmetric
     cdef readonly bint drops
     cdef readonly double v
+    cdef Vectors positions
+    cdef Vectors velocities
     cdef double[::1] position
     cdef double[::1] velocity
     cdef double[::1] acceleration

@@ -11,6 +11,7 @@ on it passes threshold_i.
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.vector import Vectors
 
 # Times closer than this are one instant: velocities and spring forces carry rounding of about this size, so that the
 # order of two such events cannot be told.
@@ -28,6 +29,8 @@ AT_THRESHOLD = 1e-13
 class State:
     """Positions x_i, velocities U_i' and slip directions (0 stuck, 1 forward, −1 backward) of N blocks.
 
+    Positions and velocities also lie in the lanes of vectors, as in `Springs`.
+
     `touching` marks a block whose spring force is at its threshold exactly, because it has started (or started and
     stopped again) at this very instant. `age` is the time since the start of the present slip.
     """
@@ -40,8 +43,10 @@ class State:
         self.v = v
         self.symmetric = symmetric
         self.drops = friction.at_rest < 1.0
-        self.position = np.zeros(n)
-        self.velocity = np.zeros(n)
+        self.positions = Vectors(springs.columns)
+        self.velocities = Vectors(springs.columns)
+        self.position = self.positions.table(1)[0]
+        self.velocity = self.velocities.table(1)[0]
         self.acceleration = np.zeros(n)
         self.age = np.full(n, LONG)
         self.slip = np.zeros(n, dtype=np.intc)
@@ -68,7 +73,7 @@ class State:
 
     def values(self) -> tuple:
         """Return copies of positions x_i, velocities U_i' and slip directions, each of shape (blocks,)."""
-        return np.array(self.position), np.array(self.velocity), np.array(self.slip)
+        return np.array(self.position[: self.blocks]), np.array(self.velocity[: self.blocks]), np.array(self.slip)
 
     def spring_force(self, i):
         """Return s_i."""

@@ -97,8 +97,8 @@ cdef extern from *:
         BK_EACH a[lane] = at[index[lane]][lane];
         return a;
     }
-    /* The sum of a[k] b[n - k] over k = 1 ... n - 1; the newest coefficient of b, which is waited for, comes last. */
-    BK_INLINE bk_vec bk_convolution(const bk_vec *a, const bk_vec *b, Py_ssize_t n) {
+    /* The sum of a[k] b[n - k] over k = 1 ... n - 1. */
+    BK_INLINE bk_vec bk_terms(const bk_vec *a, const bk_vec *b, Py_ssize_t n) {
         bk_vec first = bk_splat(0.0), second = first, third = first, fourth = first;
         Py_ssize_t k = n - 1;
         for (; k >= 4; k -= 4) {
@@ -109,6 +109,16 @@ cdef extern from *:
         }
         for (; k >= 1; k--) first += a[k] * b[n - k];
         return (second + fourth) + (third + first);
+    }
+    /* The same with a case for each length of a series: a processor need not guess where a loop ends. */
+    #define BK_CASE(m) case m: return bk_terms(a, b, m);
+    BK_INLINE bk_vec bk_convolution(const bk_vec *a, const bk_vec *b, Py_ssize_t n) {
+        switch (n) {
+            BK_CASE(1) BK_CASE(2) BK_CASE(3) BK_CASE(4) BK_CASE(5) BK_CASE(6) BK_CASE(7) BK_CASE(8) BK_CASE(9)
+            BK_CASE(10) BK_CASE(11) BK_CASE(12) BK_CASE(13) BK_CASE(14) BK_CASE(15) BK_CASE(16) BK_CASE(17) BK_CASE(18)
+            BK_CASE(19) BK_CASE(20) BK_CASE(21) BK_CASE(22)
+        }
+        return bk_terms(a, b, n);
     }
     /* The exponent of a double as it is stored: 0 to 2047, x in [2^(e - 1023), 2^(e - 1022)). */
     BK_INLINE int bk_exponent(double x) { int64_t bits; memcpy(&bits, &x, 8); return (int)(bits >> 52 & 2047); }
@@ -152,6 +162,9 @@ cdef class Vectors:
     cdef readonly Py_ssize_t count
     cdef double[::1] storage
     cdef vec *at
+
+cdef inline double sum_of_eight(const double *part) noexcept nogil:
+    return ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]))
 
 cdef inline vec value_at(const vec *term, Py_ssize_t stride, Py_ssize_t degree, double t) noexcept nogil:
     """Return the sum of term[k stride] t^k over k = 0 ... degree: even and odd powers apart, as each sum waits."""

@@ -115,14 +115,19 @@ class Law:
         """Whether Φ is a straight line, so that the motion between events has a closed form."""
         return self.tape.is_linear
 
+    @cached_property
+    def steepest(self) -> float:
+        """The largest modulus of the slope at speeds that may occur."""
+        return float(np.abs(self.slope(np.linspace(0.0, FASTEST, 4 * SAMPLES + 1))).max())
+
     def least(self, fastest: float) -> float:
         """Return the least friction at speeds from 0 to the fastest."""
         speed = np.linspace(0.0, fastest, SAMPLES + 1)
         # A run without bound may reach speeds at which the law is not defined.
         with np.errstate(invalid="ignore"):
-            friction, slope = self(speed), self.slope(speed)
-        lowest = int(np.nanargmin(friction))
-        around = slope[max(lowest - 1, 0) : lowest + 2]
+            friction = self(speed)
+            lowest = int(np.nanargmin(friction))
+            around = self.slope(speed[max(lowest - 1, 0) : lowest + 2])
         # Where friction is constant to rounding there is no sign to change.
         if not (len(around) == 3 and around[0] < 0.0 < around[2]):
             return float(friction[lowest])

@@ -9,27 +9,21 @@ from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.kernel.exponents import Exponents
 from burridge_knopoff.kernel.friction import Friction
 from burridge_knopoff.kernel.observe import Observer
+from burridge_knopoff.kernel.series import SERIES_ORDER
 from burridge_knopoff.kernel.springs import Springs
 from burridge_knopoff.kernel.state import State
 from burridge_knopoff.kernel.time_stepping import TimeStepping
 from burridge_knopoff.kernel.vector import WIDTH
-from burridge_knopoff.laws import Law
-from burridge_knopoff.laws.law import FASTEST
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.status import Status
 
 NEVER = 1e300
 
-# Terms of the Taylor series: enough for a piece of about one time unit, the usual gap between two events.
-SERIES_ORDER = 22
 RK4_ORDER = 3
 
 # Real sequences stay far below: a block needs at least about a time unit for a slip.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
 STEP_LIMIT = 10**10
-
-# Speeds at which the slope of a law is looked at.
-SAMPLES = 1000
 
 
 class Runner:
@@ -77,7 +71,7 @@ class Runner:
             self.kernel = TimeStepping(_state(model, order), self.log, self.observer, step)
         else:
             self.kernel = EventDriven(
-                _state(model, order), self.log, self.observer, exponents, order, solver == "map", STEP_LIMIT
+                _state(model, order), self.log, self.observer, exponents, solver == "map", STEP_LIMIT
             )
             self.kernel.observing = observer is not None
         if perturbations is not None:
@@ -142,15 +136,10 @@ def new_observer(
     return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time)
 
 
-def _steepest(law: Law) -> float:
-    """Return the largest modulus of a law's slope at the speeds that may occur."""
-    return float(np.abs(law.slope(np.linspace(0.0, FASTEST, SAMPLES + 1))).max())
-
-
 def new_friction(model: Model, order: int) -> Friction:
     """Return the friction on the blocks of a model, for Taylor series of an order."""
     law, thresholds = model.law, model.chain.thresholds
-    slopes = -float(law.slope(0.0)), float(thresholds.max()) * _steepest(law)
+    slopes = -float(law.slope(0.0)), float(thresholds.max()) * law.steepest
     columns = -(-model.blocks // WIDTH)
     return Friction(*law.tape.table, law.tape.value, law.tape.slope, law.is_linear, *slopes, columns, order)
 
