@@ -3,20 +3,18 @@
 What decides about an event is a polynomial g for each block, positive until the event: its speed while it slips, or
 how far its spring force is from its threshold while it sticks. A root t* is guessed and refined by Halley's method, and
 then it is proved that no g has one before: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*) q(t), is
-bounded from below by the Bernstein coefficients of its first terms and the sum of the others. Where the proof fails the
-exhaustive search of `bernstein` decides. So an event can be found late only by what rounding hides.
+bounded from below (see `bounds`). Where the proof fails the exhaustive search of `bernstein` decides. So an event can
+be found late only by what rounding hides.
 
 Where the sum of all positions W changes its sign is found on the way, in a lane behind those of the blocks: it moves no
 event, and costs next to nothing.
 """
 
-import math
-
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
+from cython.cimports.burridge_knopoff.kernel.bounds import LOW, Bounds
 from cython.cimports.burridge_knopoff.kernel.piece import ORDER, UNCERTAIN, UNKNOWN
-from cython.cimports.burridge_knopoff.kernel.search import LOW
 from cython.cimports.burridge_knopoff.kernel.springs import thresholds
 from cython.cimports.burridge_knopoff.kernel.vector import (
     LANES,
@@ -25,8 +23,6 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     bits,
     equal,
     from_bits,
-    largest,
-    least,
     less,
     magnitude,
     mask,
@@ -60,21 +56,11 @@ class EventSearch:
         self.time = 0.0
         self.columns = columns
         self.polynomial = SearchedPolynomial(ORDER)
+        self.bounds = Bounds(columns)
         self.gap = Vectors((ORDER + 1) * columns)
         self.gap_table = self.gap.table(ORDER + 1)
-        self.scaled = Vectors(ORDER + 1)
-        self.quotient = Vectors(ORDER + 1)
-        self.corner = Vectors(LOW + 1)
-        self.lowest = Vectors(columns)
-        self.highest = Vectors(columns)
         self.root = Vectors(columns)
-        self.fall = Vectors(1)
-        self.lowest_table = self.lowest.table(1)[0]
-        self.highest_table = self.highest.table(1)[0]
         self.root_table = self.root.table(1)[0]
-        self.fall_table = self.fall.table(1)[0]
-        self.power = np.zeros(ORDER + 4)
-        self.inverse_binomial = np.array([1.0 / math.comb(LOW, k) for k in range(LOW + 1)])
         self.zeros = np.zeros(blocks, dtype=np.intp)
         # The lane of W, and those of blocks, as bits, in each column.
         self.section = blocks
@@ -95,7 +81,7 @@ class EventSearch:
         if state.symmetric:
             for i in range(state.blocks):
                 if state.slip[i] == 0 and (
-                    self.zeros[i] > 0 or self.highest_table[i] >= 2.0 * state.springs.threshold[i]
+                    self.zeros[i] > 0 or self.bounds.highest_table[i] >= 2.0 * state.springs.threshold[i]
                 ):
                     return self._exhaustive(state, piece, reach)
         self.time = reach
@@ -110,7 +96,7 @@ class EventSearch:
     def crossing(self, length):
         """Return when W changes its sign in the first `length` of the reach, −1.0 if it does not; else UNCERTAIN."""
         root: cython.double = self.root_table[self.section]
-        fall: cython.double = self.fall_table[self.section % LANES]
+        fall: cython.double = self.bounds.fall_table[self.section % LANES]
         if self.least_section > SEAM:
             return -1.0
         if self.gap_table[0, self.section] > 0.0 and root < UNKNOWN and fall * abs(length - root) > SEAM:
@@ -188,103 +174,25 @@ class EventSearch:
         wanted: mask
         nothing: cython.bint = True
         never: vec = splat(UNKNOWN)
-        self._measure(reach)
+        self.bounds.measure(reach)
         for c in range(self.columns):
-            self._scale(c)
-            self._bound(c, from_bits(0))
-            wanted = at_most(self.lowest.at[c], splat(0.0))
+            self.bounds.scale(self.gap.at + c, self.columns)
+            self.bounds.bound(c, from_bits(0))
+            wanted = at_most(self.bounds.lowest.at[c], splat(0.0))
             self.root.at[c] = never
             if bits(wanted):
-                self.root.at[c] = self._refine(c, self._guess(reach), reach, wanted)
+                self.root.at[c] = self._refine(c, self.bounds.guess(reach), reach, wanted)
                 if c == self.section // LANES:
-                    self._steepness(reach)
+                    self.bounds.steepness(reach)
                 nothing = nothing and not bits(wanted) & self.blocks_in[c]
         for i in range(state.blocks):
-            piece.highest[i] = max(0.0, self.highest_table[i]) * self.power[self.zeros[i]]
+            piece.highest[i] = max(0.0, self.bounds.highest_table[i]) * self.bounds.power[self.zeros[i]]
             if state.symmetric and state.slip[i] == 0:
-                nothing = nothing and self.zeros[i] == 0 and self.highest_table[i] < 2.0 * state.springs.threshold[i]
-        self.least_section = self.lowest_table[self.section]
+                nothing = (
+                    nothing and self.zeros[i] == 0 and self.bounds.highest_table[i] < 2.0 * state.springs.threshold[i]
+                )
+        self.least_section = self.bounds.lowest_table[self.section]
         return nothing
-
-    def _steepness(self, length):
-        """Bound from below how fast the polynomials that were bounded last fall everywhere in the interval."""
-        k: cython.Py_ssize_t
-        per_time: cython.double = 1.0 / length
-        corner: cython.pointer[vec] = self.corner.at
-        steepest: vec = corner[1] - corner[0]
-        rest: vec = splat(0.0)
-        for k in range(1, LOW):
-            steepest = largest(steepest, corner[k + 1] - corner[k])
-        for k in range(LOW + 1, ORDER + 1):
-            rest = rest + cython.cast(cython.double, k) * magnitude(self.scaled.at[k])
-        self.fall.at[0] = -(cython.cast(cython.double, LOW) * steepest + rest) * per_time
-
-    def _measure(self, length):
-        """Take the powers of an interval's length: four chains of products, as each waits for the last."""
-        j: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        square: cython.double = length * length
-        power = cython.declare(cython.double[4])
-        power[0] = 1.0
-        power[1] = length
-        power[2] = square
-        power[3] = square * length
-        square = square * square
-        for k in range(0, ORDER + 1, 4):
-            for j in range(4):
-                self.power[k + j] = power[j]
-                power[j] *= square
-
-    def _scale(self, column):
-        """Take the terms of one column at the end of the interval that was measured."""
-        k: cython.Py_ssize_t
-        for k in range(ORDER + 1):
-            self.scaled.at[k] = self.gap.at[k * self.columns + column] * self.power[k]
-
-    def _bound(self, column, near):
-        """Bound q where a block is near its event, else g; their first Bernstein coefficients go to `corner`."""
-        k: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        corner = cython.declare(vec[9])
-        scaled: cython.pointer[vec] = self.scaled.at
-        quotient: cython.pointer[vec] = self.quotient.at
-        rest: vec = splat(0.0)
-        other: vec = rest
-        low: vec
-        high: vec
-        for k in range(LOW + 1):
-            corner[k] = select(near, quotient[k], scaled[k]) * self.inverse_binomial[k]
-        for k in range(LOW + 1, ORDER, 2):
-            rest = rest + magnitude(select(near, quotient[k], scaled[k]))
-            other = other + magnitude(select(near, quotient[k + 1], scaled[k + 1]))
-        for j in range(1, LOW + 1):
-            for k in range(LOW, j - 1, -1):
-                corner[k] = corner[k] + corner[k - 1]
-        rest = rest + other
-        # The other terms are at most their sum times t⁸, which is the last Bernstein polynomial.
-        low = corner[LOW] - rest
-        high = corner[LOW] + rest
-        for k in range(LOW):
-            low = least(low, corner[k])
-            high = largest(high, corner[k])
-        for k in range(LOW + 1):
-            self.corner.at[k] = corner[k]
-        self.lowest.at[column] = low
-        self.highest.at[column] = high
-
-    def _guess(self, length):
-        """Return where the control polygons of the last bounds first fall through 0; UNKNOWN where they do not."""
-        k: cython.Py_ssize_t
-        corner: cython.pointer[vec] = self.corner.at
-        guess: vec = splat(UNKNOWN)
-        zero: vec = splat(0.0)
-        for k in range(LOW - 1, -1, -1):
-            guess = select(
-                less(zero, corner[k]) & at_most(corner[k + 1], zero),
-                (length / LOW) * (cython.cast(cython.double, k) + corner[k] / (corner[k] - corner[k + 1])),
-                guess,
-            )
-        return guess
 
     def _refine(self, column, t, reach, wanted):
         """Return the roots near guesses, by Halley's method; UNKNOWN where it does not converge within the reach."""
@@ -359,25 +267,27 @@ class EventSearch:
         total: vec
         term: vec
         near: mask
-        self._measure(t)
+        self.bounds.measure(t)
         for c in range(piece.columns):
             # Coefficients of q: minus the sums of the higher terms of g.
             total = zero
             for k in range(ORDER, -1, -1):
-                term = self.gap.at[k * self.columns + c] * self.power[k]
-                self.scaled.at[k] = term
-                self.quotient.at[k] = -total
+                term = self.gap.at[k * self.columns + c] * self.bounds.power[k]
+                self.bounds.scaled.at[k] = term
+                self.bounds.quotient.at[k] = -total
                 total = total + term
             # A block that has come near to its own event is proved by q, the others as they are.
-            near = at_most(total, splat(NEAR)) & less(total, self.scaled.at[0])
+            near = at_most(total, splat(NEAR)) & less(total, self.bounds.scaled.at[0])
             if bits(near & less(total, splat(-COMMON))) & self.blocks_in[c]:
                 return False
-            self._bound(c, near)
-            if ~bits(less(zero, self.lowest.at[c])) & self.blocks_in[c]:
+            self.bounds.bound(c, near)
+            if ~bits(less(zero, self.bounds.lowest.at[c])) & self.blocks_in[c]:
                 return False
             for i in range(c * LANES, min(piece.blocks, (c + 1) * LANES)):
                 if not bits(near) >> (i - c * LANES) & 1:
-                    piece.highest[i] = min(piece.highest[i], self.highest_table[i] * self.power[self.zeros[i]])
+                    piece.highest[i] = min(
+                        piece.highest[i], self.bounds.highest_table[i] * self.bounds.power[self.zeros[i]]
+                    )
         return True
 
     def _exhaustive(self, state, piece, reach):
