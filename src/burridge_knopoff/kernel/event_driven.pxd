@@ -33,6 +33,6 @@ cdef class EventDriven:
 
     cdef void restart(self) noexcept nogil
     cdef int _run(self) noexcept nogil
-    cdef void _follow(self, double length, double reach, bint due) noexcept nogil
+    cdef void _follow(self, double length, bint due) noexcept nogil
     cdef double _fastest(self) noexcept nogil
     cdef void _advance(self, double t) noexcept nogil

@@ -113,7 +113,7 @@ class EventDriven:
             if self.tangent.vectors > 0:
                 self.exponents.begin_within(self.state, self.clock, length)
                 if self.exponents.running:
-                    self._follow(length, reach, due)
+                    self._follow(length, due)
             self.since_event += length
             self._advance(length)
             if self.closed_form:
@@ -138,7 +138,7 @@ class EventDriven:
                 return HALTED
         return RUNNING
 
-    def _follow(self, length, reach, due):
+    def _follow(self, length, due):
         """Carry the perturbations along a piece, in strides after which they can be kept apart.
 
         The closed form spans several pieces: there they wait for an event or LONGEST_FOLLOW.
@@ -151,12 +151,12 @@ class EventDriven:
             # However long a slow driver takes, nothing changes.
             return
         if not self.closed_form:
-            parts = self.tangent.load_rates(self.state, self.piece, length, reach)
+            parts = self.tangent.load_rates(self.state, self.piece, length)
             t = length / parts
             for k in range(1, parts + 1):
-                self.tangent.follow_series(self.state, self.piece, t, reach)
+                self.tangent.follow_series(self.state.springs, t)
                 if k < parts:
-                    self.tangent.move_rates(t)
+                    self.tangent.move_rates()
                     self.exponents.follow(self.state, self.clock + k * t, False)
             return
         self.since_tangent += length

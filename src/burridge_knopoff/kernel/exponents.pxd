@@ -17,6 +17,7 @@ cdef class Exponents:
     cdef Py_ssize_t batches
     cdef double batch_begin
     cdef double[::1] whole
+    cdef double[::1] product
     cdef double[:, ::1] growth
     cdef double[::1] duration
 
@@ -24,6 +25,7 @@ cdef class Exponents:
     cdef void follow(self, State state, double clock, bint completed) noexcept nogil
     cdef Py_ssize_t stuck(self, State state) noexcept nogil
     cdef void _seed(self, State state, Py_ssize_t first) noexcept nogil
-    cdef double _length(self, Py_ssize_t c) noexcept nogil
+    cdef double _square(self, Py_ssize_t c) noexcept nogil
     cdef void _orthonormalise(self, bint kept, bint counted) noexcept nogil
+    cdef void _collect(self, Py_ssize_t c) noexcept nogil
     cdef void _renew(self, State state, double clock, bint completed) noexcept nogil

@@ -42,6 +42,8 @@ class Exponents:
         self.batches = len(edge) - 1
         self.batch_begin = 0.0
         self.whole = np.zeros(vectors)
+        # Lengths multiplied up, whose logarithm is taken at the end of a batch, or before it could overflow.
+        self.product = np.ones(vectors)
         self.growth = np.zeros((self.batches, vectors))
         self.duration = np.zeros(self.batches)
 
@@ -94,53 +96,65 @@ class Exponents:
                 self.tangent.velocity[c, i] = cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip[i] != 0)
         self._orthonormalise(False, False)
 
-    def _length(self, c):
-        """Return the length of vector c."""
+    def _square(self, c):
+        """Return the square of the length of vector c."""
         i: cython.Py_ssize_t
-        total: cython.double = 0.0
+        moved: cython.double = 0.0
+        sped: cython.double = 0.0
         for i in range(self.tangent.blocks):
-            total += self.tangent.position[c, i] * self.tangent.position[c, i]
-            total += self.tangent.velocity[c, i] * self.tangent.velocity[c, i]
-        return sqrt(total)
+            moved += self.tangent.position[c, i] * self.tangent.position[c, i]
+            sped += self.tangent.velocity[c, i] * self.tangent.velocity[c, i]
+        return moved + sped
 
     def _orthonormalise(self, kept, counted):
         """Make the vectors orthonormal (modified Gram-Schmidt).
 
         kept : vectors that were orthonormal before are dropped from the first one on that is lost; else they are seeds
-        counted : the logarithms of the lengths are collected
+        counted : the lengths are collected
         """
         i: cython.Py_ssize_t
         c: cython.Py_ssize_t
         d: cython.Py_ssize_t
-        product: cython.double
+        factor: cython.double
+        length: cython.double
+        moved: cython.double
+        sped: cython.double
         n: cython.Py_ssize_t = self.tangent.blocks
         for c in range(self.alive):
-            self.whole[c] = self._length(c)
+            self.whole[c] = self._square(c)
         for c in range(self.tangent.vectors):
-            product = 0.0
+            factor = 0.0
             if c < self.alive:
-                product = self._length(c)
-                if kept and product <= LOST * self.whole[c]:
+                length = self.whole[0] if c == 0 else self._square(c)
+                if kept and length <= LOST * LOST * self.whole[c]:
                     self.alive = c
-                    product = 0.0
-            if c < self.alive:
-                if counted:
-                    self.growth[self.batch, c] += log(product)
-                product = 1.0 / product
+                else:
+                    length = sqrt(length)
+                    factor = 1.0 / length
+                    if counted:
+                        self.product[c] *= length
+                        if not 1e-100 < self.product[c] < 1e100:
+                            self._collect(c)
             for i in range(n):
-                self.tangent.position[c, i] *= product
-                self.tangent.velocity[c, i] *= product
+                self.tangent.position[c, i] *= factor
+                self.tangent.velocity[c, i] *= factor
             for d in range(c + 1, self.alive):
-                product = 0.0
+                moved = sped = 0.0
                 for i in range(n):
-                    product += self.tangent.position[c, i] * self.tangent.position[d, i]
-                    product += self.tangent.velocity[c, i] * self.tangent.velocity[d, i]
+                    moved += self.tangent.position[c, i] * self.tangent.position[d, i]
+                    sped += self.tangent.velocity[c, i] * self.tangent.velocity[d, i]
                 for i in range(n):
-                    self.tangent.position[d, i] -= product * self.tangent.position[c, i]
-                    self.tangent.velocity[d, i] -= product * self.tangent.velocity[c, i]
+                    self.tangent.position[d, i] -= (moved + sped) * self.tangent.position[c, i]
+                    self.tangent.velocity[d, i] -= (moved + sped) * self.tangent.velocity[c, i]
+
+    def _collect(self, c):
+        """Add the growth of vector c since the last call to its batch."""
+        self.growth[self.batch, c] += log(self.product[c])
+        self.product[c] = 1.0
 
     def _renew(self, state, clock, completed):
         """Orthonormalise, and go on to the batch in which the time now lies."""
+        c: cython.Py_ssize_t
         self._orthonormalise(True, self.batch >= 0 and self.batch < self.batches)
         self.due = clock + INTERVAL
         while self.batch < self.batches and (
@@ -148,6 +162,8 @@ class Exponents:
         ):
             if self.batch >= 0:
                 self.duration[self.batch] = clock - self.batch_begin
+                for c in range(self.alive):
+                    self._collect(c)
             else:
                 # What was stuck in the transient only costs no exponent of the window.
                 self._seed(state, self.alive)

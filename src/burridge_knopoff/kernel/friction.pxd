@@ -33,7 +33,7 @@ cdef class Friction:
     cdef double at(self, double speed) noexcept nogil
     cdef void start(self, Py_ssize_t column, vec speed) noexcept nogil
     cdef void extend(self, Py_ssize_t column, Py_ssize_t n, int first, int last) noexcept nogil
-    cdef void complete(self, Py_ssize_t column, Py_ssize_t count) noexcept nogil
+    cdef void complete(self, Py_ssize_t column, Py_ssize_t first, Py_ssize_t count) noexcept nogil
 
 cdef inline vec product(const vec *p, const vec *q, Py_ssize_t n) noexcept nogil:
     """Return the sum of p_k q_(n-k) over k = 0 ... n."""
@@ -63,30 +63,25 @@ cdef inline vec square(const vec *p, Py_ssize_t n) noexcept nogil:
         even = even + p[half] * p[half]
     return even
 
-cdef inline void squares(const vec *p, vec *out, Py_ssize_t count) noexcept nogil:
-    """Fill the first coefficients of p², each as `square` does, two at a time."""
+cdef inline void squares(const vec *p, vec *out, Py_ssize_t first, Py_ssize_t count) noexcept nogil:
+    """Fill coefficients first ... count - 1 of p², two at a time, which read the same coefficients of p."""
     cdef Py_ssize_t k
     cdef Py_ssize_t m
     cdef vec even
     cdef vec odd
-    cdef vec next_even
-    cdef vec next_odd
-    for m in range((count + 1) // 2):
-        even = odd = next_even = next_odd = splat(0.0)
-        for k in range(0, m - 1, 2):
-            even += p[k] * p[2 * m - k]
-            odd += p[k + 1] * p[2 * m - k - 1]
-            next_even += p[k] * p[2 * m + 1 - k]
-            next_odd += p[k + 1] * p[2 * m - k]
-        if m % 2:
-            even += p[m - 1] * p[m + 1]
-            next_even += p[m - 1] * p[m + 2]
-            next_odd += p[m] * p[m + 1]
-        else:
-            next_even += p[m] * p[m + 1]
-        out[2 * m] = 2.0 * (even + odd) + p[m] * p[m]
+    cdef vec factor
+    cdef vec next_factor
+    for m in range(first // 2, (count + 1) // 2):
+        even = odd = splat(0.0)
+        next_factor = p[2 * m + 1]
+        for k in range(m):
+            factor = p[2 * m - k]
+            even += p[k] * factor
+            odd += p[k] * next_factor
+            next_factor = factor
+        out[2 * m] = 2.0 * even + p[m] * p[m]
         if 2 * m + 1 < count:
-            out[2 * m + 1] = 2.0 * (next_even + next_odd)
+            out[2 * m + 1] = 2.0 * (odd + p[m] * p[m + 1])
 
 cdef inline vec weighted(const vec *p, const vec *q, Py_ssize_t n, double weight, double shift) noexcept nogil:
     """Return the sum of (weight k + shift) p_k q_(n-k) over k = 0 ... n."""

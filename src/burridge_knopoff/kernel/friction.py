@@ -120,8 +120,8 @@ class Friction:
         """Do the work of `fill` where it need not be inline."""
         fill(self, column, n, first, last)
 
-    def complete(self, column, count):
-        """Fill coefficients 0 … count − 1 of the registers of the slope, when those of Φ are complete."""
+    def complete(self, column, first, count):
+        """Fill coefficients first … count − 1 of the registers of the slope, when those of Φ are complete."""
         r: cython.int
         n: cython.Py_ssize_t
         alpha: cython.double
@@ -132,13 +132,14 @@ class Friction:
             p = row(self, self.operation[r, 1], column)
             out = row(self, r + 1, column)
             if self.operation[r, 0] == MULTIPLY and self.operation[r, 1] == self.operation[r, 2]:
-                squares(p, out, count)
+                squares(p, out, first, count)
             elif self.operation[r, 0] == LINEAR and self.operation[r, 2] < 0:
-                for n in range(count):
+                for n in range(first, count):
                     out[n] = alpha * p[n]
-                out[0] = out[0] + self.constant[r, 2]
+                if first == 0:
+                    out[0] = out[0] + self.constant[r, 2]
             else:
-                for n in range(count):
+                for n in range(first, count):
                     fill(self, column, n, r, r + 1)
 
     def series(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,7 @@ cdef class Springs:
     cdef double[::1] sliding_force
     cdef Py_ssize_t[::1] previous
     cdef Py_ssize_t[::1] next
-    cdef readonly double stiffest
+    cdef readonly double fastest
     cdef Vectors lanes
     cdef Vectors from_previous
     cdef Vectors from_next
@@ -36,6 +36,18 @@ cdef inline vec pulls(Springs springs, const vec *displacement, Py_ssize_t colum
         lanes[BEFORE * columns] * shuffle(displacement[before], own, (<const index *>springs.from_previous.at)[column])
         + lanes[AFTER * columns] * shuffle(own, displacement[behind], (<const index *>springs.from_next.at)[column])
     ) - lanes[DIAGONAL * columns] * own
+
+cdef inline vec neighbours(
+    Springs springs, const vec *before, const vec *after, const vec *displacement, Py_ssize_t column
+) noexcept nogil:
+    """Return the force of the neighbours on the blocks in the lanes of one column, by springs of other strengths."""
+    cdef Py_ssize_t previous = column - 1 if column > 0 else springs.columns - 1
+    cdef Py_ssize_t behind = column + 1 if column < springs.columns - 1 else 0
+    cdef vec own = displacement[column]
+    return (
+        before[column] * shuffle(displacement[previous], own, (<const index *>springs.from_previous.at)[column])
+        + after[column] * shuffle(own, displacement[behind], (<const index *>springs.from_next.at)[column])
+    )
 
 cdef inline vec thresholds(Springs springs, Py_ssize_t column) noexcept nogil:
     """Return the static friction of the blocks in the lanes of one column."""

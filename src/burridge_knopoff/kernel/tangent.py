@@ -19,61 +19,89 @@ from math import factorial
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.friction import row
-from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, pulls, thresholds
-from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, index, shuffle, splat, vec
+from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, neighbours, thresholds
+from cython.cimports.burridge_knopoff.kernel.tangent import follow_together, spread
+from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, bits, largest, less, magnitude, splat, vec
 from cython.cimports.libc.math import cos, exp, sin, sqrt
 
-# Terms of the series below this share of a perturbation are left out.
-NEGLIGIBLE = 1e-17
+# What may be left out of a perturbation over one piece of the motion, as a share of it. Rates and perturbations each
+# leave out that much by the bounds below, 1e-12 at worst together; against longer series it is 1e-13 as a rule.
+NEGLIGIBLE = 5e-13
 
-# Over x/(ω + a), ω² the bound of Gershgorin on the eigenvalues of K, the terms of the series fall at least like x^n/n!:
-# with this x the first neglected one is rounding (2e-16 of the perturbation). The pieces of the motion may be longer:
-# they are made for terms that are small beside 1, however small the motion itself is.
+# Over x/(ω + a), ω² a bound on the eigenvalues of K, the terms of the series fall at least like x^n/n! if the rates are
+# constant: with this x the first neglected one is rounding. The pieces of the motion may be longer: they are made for
+# terms that are small beside 1, however small the motion itself is.
 STRIDE = 2.4
+
+# Rates fall like the terms of the motion, which come down to 2^-53 in about 22 steps at the end of a piece: each to this
+# share of the one before, as a rule.
+FALL = 0.19
+
+# Slower than x^n/n!, rates that vary make the terms of a perturbation fall like FALL^n in the end. For them x is taken
+# larger by this factor.
+SLOWER = 1.25
 
 
 @cache
-def enough(order: int) -> np.ndarray:
-    """Return for each n up to the order the x with x^n/n! = NEGLIGIBLE, to fewer digits than C libraries agree on."""
-    return np.array([0.0, *(round((NEGLIGIBLE * factorial(n)) ** (1.0 / n), 9) for n in range(1, order + 1))])
+def enough(longest: int) -> np.ndarray:
+    """Return for each degree n up to the longest the x with x^(n+1)/(n+1)! = NEGLIGIBLE.
+
+    They are rounded to fewer digits than C libraries agree on.
+    """
+    return np.array([round((NEGLIGIBLE * factorial(n + 1)) ** (1.0 / (n + 1)), 9) for n in range(longest + 1)])
 
 
 class Tangent:
-    """`vectors` perturbations of a chain, blocks in lanes; as tables δx and δU' have shape (vectors, lanes).
+    """`vectors` perturbations of a chain, blocks in lanes; as tables δx and δU' have one row each.
 
+    Of a short chain as many perturbations lie side by side in a vector as there is room for.
     `lost` and `deceleration` keep what a stop takes away, for a block that turns round at the same instant.
     """
 
     def __init__(self, blocks, vectors, order) -> None:
         columns = (blocks + LANES - 1) // LANES
+        side = max(LANES // blocks, 1)
+        packs = (vectors + side - 1) // side
         self.blocks = blocks
         self.vectors = vectors
         self.columns = columns
-        self.length = order + 1
-        self.positions = Vectors(vectors * columns)
-        self.velocities = Vectors(vectors * columns)
-        rows = max(vectors, 1)
-        self.position = self.positions.table(rows) if vectors else np.zeros((1, columns * LANES))
-        self.velocity = self.velocities.table(rows) if vectors else np.zeros((1, columns * LANES))
-        self.lost = np.zeros((rows, blocks))
+        self.packs = packs
+        # Degrees are odd, as coefficients are found two at a time.
+        self.longest = order | 1
+        self.length = self.longest + 1
+        self.positions = Vectors(max(packs, 1) * columns)
+        self.velocities = Vectors(max(packs, 1) * columns)
+        self.position = self.positions.table(max(packs, 1) * side)
+        self.velocity = self.velocities.table(max(packs, 1) * side)
+        self.lost = np.zeros((vectors, blocks))
         self.deceleration = np.zeros(blocks)
-        # Series of δU', one column or perturbation after the other, and the present row of δx.
+        # Series of δU', one column after the other or three vectors side by side, and the present row of δx.
         self.series = Vectors(max(columns, 3) * self.length)
         self.row = Vectors(columns)
+        # Which blocks slip, and the springs to them times the length of a part: rows as in `springs.lanes`.
+        self.moving = Vectors(columns)
+        self.weights = Vectors(3 * columns)
         self.rates = Vectors(columns * self.length)
         self.rate_terms = 0
-        self.pace = 0.0
-        self.reciprocal = 1.0 / np.maximum(np.arange(order + 2, dtype=float), 1.0)
-        self.enough = enough(order)
-        self.moved = np.zeros((rows, blocks))
-        self.sped = np.zeros((rows, blocks))
+        self.degree = 0
+        self.reciprocal = 1.0 / np.maximum(np.arange(self.length, dtype=float), 1.0)
+        self.enough = enough(self.longest)
+        self.moved = np.zeros((vectors, blocks))
+        self.sped = np.zeros((vectors, blocks))
+        # Where a lane finds the block that it stands for, and the neighbours of that block beside it.
+        width = LANES // side
+        lane = np.arange(LANES)
+        own = lane % width
+        neighbours = own, (own - 1) % blocks + (lane - own), (own + 1) % blocks + (lane - own)
+        self.lookup = Vectors(3)
+        self.lookup.set(np.concatenate(neighbours).astype(np.int64).view(float))
 
     def load(self, matrix) -> None:
         """Set the perturbations to the columns of a matrix (2 blocks, vectors): rows δx_1 …, then δU_1' …"""
         n = self.blocks
         if self.vectors:
-            np.asarray(self.position)[:, :n] = matrix[:n].T
-            np.asarray(self.velocity)[:, :n] = matrix[n:].T
+            np.asarray(self.position)[: self.vectors, :n] = matrix[:n].T
+            np.asarray(self.velocity)[: self.vectors, :n] = matrix[n:].T
         self.forget_stops()
 
     def matrix(self) -> np.ndarray:
@@ -168,31 +196,79 @@ class Tangent:
                 self.position[c, i] += self.moved[c, i]
                 self.velocity[c, i] += self.sped[c, i]
 
-    def load_rates(self, state, piece, length, reach):
+    def load_rates(self, state, piece, length):
         """Expand −threshold dΦ/dU' along a piece of the motion; return into how many parts to divide its length.
 
-        reach : time for which the series of the motion was made to hold
+        Coefficient k is multiplied by t^(k+1), with t the length of a part, and is 0 where a block sticks.
         """
         c: cython.Py_ssize_t
-        n: cython.Py_ssize_t
-        slope: cython.int = state.friction.slope
-        parts: cython.Py_ssize_t
-        self.pace = sqrt(state.springs.stiffest) + state.friction.steepest
-        parts = 1 + cython.cast(cython.Py_ssize_t, self.pace * length / STRIDE)
+        k: cython.Py_ssize_t
+        first: cython.Py_ssize_t = 0
+        pace: cython.double = state.springs.fastest + state.friction.steepest
+        parts: cython.Py_ssize_t = 1 + cython.cast(cython.Py_ssize_t, pace * length / STRIDE)
+        t: cython.double = length / parts if parts > 1 else length
+        x: cython.double = pace * t if state.friction.linear else SLOWER * pace * t
+        slips: vec
         self.rate_terms = 1
-        if state.friction.linear:
-            for c in range(self.columns):
-                self.rates.at[c * self.length] = thresholds(state.springs, c) * state.friction.rate
-            return parts
-        self.rate_terms = piece.order if parts > 1 else self._degree(piece.order, length, reach)
+        self.degree = self.longest
+        while self.degree > 3 and x <= self.enough[self.degree - 2]:
+            self.degree -= 2
         for c in range(self.columns):
-            state.friction.complete(c, self.rate_terms)
-            for n in range(self.rate_terms):
-                self.rates.at[c * self.length + n] = -(thresholds(state.springs, c) * row(state.friction, slope, c)[n])
-        return parts
+            slips = splat(1.0) - spread(self, piece.stuck.at[c])
+            self.moving.at[c] = slips
+            for k in range(3):
+                self.weights.at[k * self.columns + c] = (t * slips) * spread(
+                    self, state.springs.lanes.at[k * self.columns + c]
+                )
+            if state.friction.linear:
+                self.rates.at[c * self.length] = (t * slips) * (
+                    spread(self, thresholds(state.springs, c)) * state.friction.rate
+                )
+        if state.friction.linear:
+            return parts
+        # A rate that is left out does no harm but its own, while in a term of a perturbation all rates add up: fewer do.
+        self.rate_terms = self.degree - self.degree // 5
+        if parts > 1:
+            self.degree = self.longest
+            self.rate_terms = piece.order
+        while True:
+            for c in range(self.columns):
+                self._expand_rates(state, c, first, t)
+            if self.rate_terms == piece.order or self._is_enough():
+                return parts
+            first = self.rate_terms
+            self.rate_terms = min(first + 2, piece.order)
+            self.degree = min(self.degree + 2, self.longest)
 
-    def move_rates(self, t):
-        """Take the rates as series about the time t later (Horner's scheme, repeated)."""
+    def _expand_rates(self, state, c, first, t):
+        """Fill the rates in one column; of the series of the slope, coefficients below `first` are there."""
+        n: cython.Py_ssize_t
+        square: cython.double = t * t
+        factor: vec = -t * (spread(self, thresholds(state.springs, c)) * self.moving.at[c])
+        slope: cython.pointer[vec] = row(state.friction, state.friction.slope, c)
+        rate: cython.pointer[vec] = self.rates.at + c * self.length
+        state.friction.complete(c, first, self.rate_terms)
+        # Two at a time, as each power waits for the last.
+        for n in range(0, self.rate_terms, 2):
+            rate[n] = factor * spread(self, slope[n])
+            rate[n + 1] = (factor * t) * spread(self, slope[n + 1])
+            factor = factor * square
+        for n in range(self.rate_terms, self.degree):
+            rate[n] = splat(0.0)
+
+    def _is_enough(self):
+        """Tell whether the rates that are left out are negligible, by the last two that are there."""
+        c: cython.Py_ssize_t
+        last: cython.pointer[vec]
+        limit: vec = splat(NEGLIGIBLE * (self.rate_terms + 1))
+        for c in range(self.columns):
+            last = self.rates.at + c * self.length + self.rate_terms - 2
+            if bits(less(limit, FALL * largest(magnitude(last[1]), FALL * magnitude(last[0])))) != 0:
+                return False
+        return True
+
+    def move_rates(self):
+        """Take the rates as series about the end of a part (Horner's scheme, repeated)."""
         c: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t
@@ -201,147 +277,60 @@ class Tangent:
             rate = self.rates.at + c * self.length
             for n in range(self.rate_terms - 1):
                 for j in range(self.rate_terms - 2, n - 1, -1):
-                    rate[j] = rate[j] + t * rate[j + 1]
+                    rate[j] = rate[j] + rate[j + 1]
 
-    def follow_series(self, state, piece, t, reach):
-        """Propagate over a time t as a Taylor series, with the rates that are loaded."""
+    def follow_series(self, springs, t):
+        """Propagate over one part of a piece, of length t, with what `load_rates` has made ready for it.
+
+        With all coefficients multiplied by the power of t that they belong to,
+
+            u_(n+1) = (pulls(x_n) + sum of rate_k u_(n-k))/(n + 1),      x_(n+1) = t u_n/(n + 1).
+        """
         v: cython.Py_ssize_t = 0
-        degree: cython.Py_ssize_t = self._degree(piece.order, t, reach)
-        if self.columns == 1:
-            while v + 2 < self.vectors:
-                self._follow_three(state.springs, piece.stuck.at[0], v, degree, t)
-                v += 3
-        while v < self.vectors:
-            self._follow(state.springs, piece, v, degree, t)
-            v += 1
+        if self.columns > 1:
+            for v in range(self.vectors):
+                self._follow(springs, v, t)
+            return
+        while v < self.packs:
+            # Numbers that a compiler knows: what each of them needs is then kept in registers.
+            if self.packs - v >= 3:
+                follow_together(self, v, t, 3)
+            elif self.packs - v == 2:
+                follow_together(self, v, t, 2)
+            else:
+                follow_together(self, v, t, 1)
+            v += 3
 
-    def _follow(self, springs, piece, v, degree, t):
-        """Propagate one perturbation."""
+    def _follow(self, springs, v, t):
+        """Propagate one perturbation of a chain of several columns, to the bit as `follow_together` would."""
         n: cython.Py_ssize_t
-        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
         c: cython.Py_ssize_t
         columns: cython.Py_ssize_t = self.columns
-        power: cython.double = 1.0
+        diagonal: cython.pointer[vec] = self.weights.at + DIAGONAL * columns
+        before: cython.pointer[vec] = self.weights.at + BEFORE * columns
+        after: cython.pointer[vec] = self.weights.at + AFTER * columns
         x: cython.pointer[vec] = self.row.at
+        position: cython.pointer[vec] = self.positions.at + v * columns
+        velocity: cython.pointer[vec] = self.velocities.at + v * columns
         u: cython.pointer[vec]
         rate: cython.pointer[vec]
-        moving: vec
         change: vec
-        odd: vec
         for c in range(columns):
-            x[c] = self.positions.at[v * columns + c]
-            self.series.at[c * self.length] = self.velocities.at[v * columns + c]
-        for n in range(degree):
-            power = power * t
+            self.series.at[c * self.length] = velocity[c] * self.moving.at[c]
+            x[c] = position[c]
+        for n in range(self.degree):
             for c in range(columns):
                 u = self.series.at + c * self.length
                 rate = self.rates.at + c * self.length
-                moving = (splat(1.0) - piece.stuck.at[c]) * self.reciprocal[n + 1]
-                # As in `_follow_three`, to the bit.
-                change = odd = splat(0.0)
-                k = min(n, self.rate_terms - 1)
-                while k >= 2:
-                    change += rate[k] * u[n - k]
-                    odd += rate[k - 1] * u[n - k + 1]
-                    k -= 2
-                if k == 1:
-                    change += rate[1] * u[n - 1]
-                change = (change + odd) + rate[0] * u[n]
-                u[n + 1] = moving * (change + pulls(springs, x, c))
-                self.velocities.at[v * columns + c] = self.velocities.at[v * columns + c] + power * u[n + 1]
+                change = splat(0.0)
+                if self.rate_terms > 1:
+                    for j in range(n):
+                        change = change + rate[n - j] * u[j]
+                change = change - diagonal[c] * x[c]
+                change = change + neighbours(springs, before, after, x, c)
+                u[n + 1] = (change + rate[0] * u[n]) * self.reciprocal[n + 1]
+                velocity[c] = velocity[c] + u[n + 1]
             for c in range(columns):
-                moving = (splat(1.0) - piece.stuck.at[c]) * self.reciprocal[n + 1]
-                x[c] = moving * self.series.at[c * self.length + n]
-                self.positions.at[v * columns + c] = self.positions.at[v * columns + c] + power * x[c]
-
-    def _follow_three(self, springs, stuck, v, degree, t):
-        """Propagate three perturbations of blocks that lie in one vector, which need not wait for memory."""
-        n: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        power: cython.double = 1.0
-        rate: cython.pointer[vec] = self.rates.at
-        u: cython.pointer[vec] = self.series.at
-        u_b: cython.pointer[vec] = u + self.length
-        u_c: cython.pointer[vec] = u_b + self.length
-        diagonal: vec = springs.lanes.at[DIAGONAL]
-        before: vec = springs.lanes.at[BEFORE]
-        after: vec = springs.lanes.at[AFTER]
-        previous: index = cython.cast(cython.pointer[index], springs.from_previous.at)[0]
-        following: index = cython.cast(cython.pointer[index], springs.from_next.at)[0]
-        moving: vec
-        change: vec
-        change_b: vec
-        change_c: vec
-        odd: vec
-        odd_b: vec
-        odd_c: vec
-        x: vec = self.positions.at[v]
-        x_b: vec = self.positions.at[v + 1]
-        x_c: vec = self.positions.at[v + 2]
-        speed: vec = self.velocities.at[v]
-        speed_b: vec = self.velocities.at[v + 1]
-        speed_c: vec = self.velocities.at[v + 2]
-        position: vec = x
-        position_b: vec = x_b
-        position_c: vec = x_c
-        velocity: vec = speed
-        velocity_b: vec = speed_b
-        velocity_c: vec = speed_c
-        for n in range(degree):
-            power = power * t
-            u[n] = speed
-            u_b[n] = speed_b
-            u_c[n] = speed_c
-            moving = (splat(1.0) - stuck) * self.reciprocal[n + 1]
-            # Two sums each, which a processor forms at the same time.
-            change = change_b = change_c = splat(0.0)
-            odd = odd_b = odd_c = change
-            k = min(n, self.rate_terms - 1)
-            while k >= 2:
-                change += rate[k] * u[n - k]
-                change_b += rate[k] * u_b[n - k]
-                change_c += rate[k] * u_c[n - k]
-                odd += rate[k - 1] * u[n - k + 1]
-                odd_b += rate[k - 1] * u_b[n - k + 1]
-                odd_c += rate[k - 1] * u_c[n - k + 1]
-                k -= 2
-            if k == 1:
-                change += rate[1] * u[n - 1]
-                change_b += rate[1] * u_b[n - 1]
-                change_c += rate[1] * u_c[n - 1]
-            change = (change + odd) + rate[0] * speed
-            change_b = (change_b + odd_b) + rate[0] * speed_b
-            change_c = (change_c + odd_c) + rate[0] * speed_c
-            change += (before * shuffle(x, x, previous) + after * shuffle(x, x, following)) - diagonal * x
-            change_b += (before * shuffle(x_b, x_b, previous) + after * shuffle(x_b, x_b, following)) - diagonal * x_b
-            change_c += (before * shuffle(x_c, x_c, previous) + after * shuffle(x_c, x_c, following)) - diagonal * x_c
-            x = moving * speed
-            x_b = moving * speed_b
-            x_c = moving * speed_c
-            speed = moving * change
-            speed_b = moving * change_b
-            speed_c = moving * change_c
-            position += power * x
-            position_b += power * x_b
-            position_c += power * x_c
-            velocity += power * speed
-            velocity_b += power * speed_b
-            velocity_c += power * speed_c
-        self.positions.at[v] = position
-        self.positions.at[v + 1] = position_b
-        self.positions.at[v + 2] = position_c
-        self.velocities.at[v] = velocity
-        self.velocities.at[v + 1] = velocity_b
-        self.velocities.at[v + 2] = velocity_c
-
-    def _degree(self, order, t, reach):
-        """Return how many terms a time t needs, at most `order`.
-
-        They fall like x^n/n!. Those of the motion, and with them the rates, have x about 1.75 over its reach: so fall
-        `order` terms of an exponential function to what the reach was made for. For the perturbations see STRIDE.
-        """
-        n: cython.Py_ssize_t = 1
-        x: cython.double = max(1.75 * t / reach, self.pace * t)
-        while n < order and x > self.enough[n]:
-            n += 1
-        return n
+                x[c] = self.series.at[c * self.length + n] * (t * self.reciprocal[n + 1])
+                position[c] = position[c] + x[c]
