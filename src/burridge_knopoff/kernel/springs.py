@@ -37,7 +37,7 @@ class Springs:
         self.sliding_force = np.array(sliding_force, dtype=float)
         self.previous = np.roll(np.arange(n), 1).astype(np.intp)
         self.next = np.roll(np.arange(n), -1).astype(np.intp)
-        # Bound of Collatz and Wielandt on the largest eigenvalue of K, whose root is kept: any positive vector gives one.
+        # Root of the bound of Collatz and Wielandt on the largest eigenvalue of K: any positive vector gives one.
         vector = np.ones(n)
         for _ in range(WIELANDT):
             product = diagonal * vector + before * vector[self.previous] + after * vector[self.next]

@@ -25,7 +25,7 @@ from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, bits,
 from cython.cimports.libc.math import cos, exp, sin, sqrt
 
 # What may be left out of a perturbation over one piece of the motion, as a share of it. Rates and perturbations each
-# leave out that much by the bounds below, 1e-12 at worst together; against longer series it is 1e-13 as a rule.
+# leave out that much by the bounds below, about 1e-12 at worst together; as a rule it is less than 1e-13.
 NEGLIGIBLE = 5e-13
 
 # Over x/(ω + a), ω² a bound on the eigenvalues of K, the terms of the series fall at least like x^n/n! if the rates are
@@ -33,7 +33,7 @@ NEGLIGIBLE = 5e-13
 # terms that are small beside 1, however small the motion itself is.
 STRIDE = 2.4
 
-# Rates fall like the terms of the motion, which come down to 2^-53 in about 22 steps at the end of a piece: each to this
+# Rates fall like the terms of the motion, which come down to 2^-53 in 22 steps at the end of a piece: each to this
 # share of the one before, as a rule.
 FALL = 0.19
 
@@ -226,7 +226,7 @@ class Tangent:
                 )
         if state.friction.linear:
             return parts
-        # A rate that is left out does no harm but its own, while in a term of a perturbation all rates add up: fewer do.
+        # Fewer rates than terms: one that is left out does harm by itself only, but in a term all rates add up.
         self.rate_terms = self.degree - self.degree // 5
         if parts > 1:
             self.degree = self.longest
