@@ -29,7 +29,7 @@ RATIO_LIMIT = 1.5
 TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
 POINT_RULE = "workflow/rules/simulate.smk"
 POINT_COMMAND = '"{params.command} --out {output} 2> {log}"'
-FINISHED = re.compile(r"(\d+) of \1 steps \(100%\) done")
+PLANNED = re.compile(r"^(\d+) jobs: ", re.MULTILINE)
 
 
 def make_baseline(folder: Path, made: Path) -> Path:
@@ -69,10 +69,10 @@ def run_study(snakefile: Path, folder: Path, cores: int, environment: dict[str, 
     )
     wall = time.perf_counter() - begin
     cpu += children_cpu()
-    finished = FINISHED.search(result.stderr)
-    if result.returncode or finished is None:
+    planned = PLANNED.search(result.stderr)
+    if result.returncode or planned is None:
         sys.exit(f"{' '.join(command)} failed:\n{result.stderr[-4000:]}")
-    return wall, cpu, int(finished[1])
+    return wall, cpu, int(planned[1])
 
 
 def main() -> None:

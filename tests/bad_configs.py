@@ -136,6 +136,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "formula_lines": (f'{GOOD}laws: {{m: {{formula: "1 - a*(u\\n)"}}}}\n', ["laws.m: ", "not a formula"]),
     "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "at u = 0 it is 1.1"]),
     "formula_none": (f"{GOOD}laws: {{m: {{formula: a*u}}}}\n", ["laws.m: ", "at u = 0 it is 0"]),
+    "formula_pole_for_two_blocks": (
+        f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\n",
+        ["chains.two_blocks.a: 0.335 is not allowed", "laws.m: ", "at a = 0.335", "not analytic"],
+    ),
     "formula_pole": (f"{GOOD}laws: {{m: {{formula: 1/(1 - a*u)}}}}\n", ["laws.m: ", "at a = 0.1", "not analytic"]),
     "formula_at_one_a": (
         f"study: x\na: [0.05, 0.1, 0.2]\n{STATES}laws: {{m: {{formula: log(3 - 2*a*u)/log(3)}}}}\n",

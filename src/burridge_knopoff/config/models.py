@@ -40,6 +40,21 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int, 
                 raise ConfigError(f"{file}: {error}") from error
 
 
+def check_chain_laws(config: Mapping[str, Any], file: str) -> None:
+    """Check each law at the values of a of longer chains and of two blocks, which have lists of their own."""
+    chains, laws = config["chains"], config["laws"]
+    for key, values, names in (
+        ("chains.a", chains["a"], chains["laws"]),
+        ("chains.two_blocks.a", chains["two_blocks"]["a"], laws),
+    ):
+        for name in names:
+            for a in values:
+                try:
+                    law_of(name, a, laws[name])
+                except ValueError as error:
+                    raise ConfigError(f"{file}: {key}: {a:g} is not allowed: laws.{error}") from error
+
+
 def _place(name: str, description: Mapping[str, Any], message: str) -> str:
     """Return the message of a law with the key in front that it is about."""
     if message.startswith("law: "):

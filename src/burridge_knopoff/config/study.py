@@ -22,7 +22,7 @@ from burridge_knopoff.config.checks import (
 from burridge_knopoff.config.grid import grid_of
 from burridge_knopoff.config.message import ConfigError, explain, shown
 from burridge_knopoff.config.model import MODEL_KEYS, model_of
-from burridge_knopoff.config.models import check_models, fill_laws, fill_solver
+from burridge_knopoff.config.models import check_chain_laws, check_models, fill_laws, fill_solver
 from burridge_knopoff.config.size import check_size
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
@@ -150,6 +150,7 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     fill_laws(filled, file)
     study = Study(filled, grid)
     check_models(filled, values, study.blocks, file)
+    check_chain_laws(filled, file)
     check_beginnings(filled, study.model(study.laws[0], next(iter(grid.values()))), file)
     fill_solver(filled, values, study.blocks, file)
     check_runs(filled, file)
