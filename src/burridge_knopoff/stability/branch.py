@@ -26,7 +26,7 @@ from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import ALL, SYMMETRIC, Orbit, OrbitError, after, find_orbit, solve
-from burridge_knopoff.stability.transition import RELATIVE, apart
+from burridge_knopoff.stability.transition import TOLERANCE, apart
 
 # Rounding of positions, which g carries divided by the asymmetry.
 ROUNDING = 1e-16
@@ -64,7 +64,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
 
     noise = ROUNDING / abs(asymmetry)
     second = critical + (asymmetry / family.model.v) ** 2 * critical
-    found = root_scalar(reduced, x0=critical, x1=second, method="secant", xtol=noise, rtol=RELATIVE)
+    found = root_scalar(reduced, x0=critical, x1=second, method="secant", xtol=noise, rtol=TOLERANCE)
     if not math.isfinite(found.root) or abs(reduced(found.root)) > SOLVED + 100.0 * noise:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {critical!r}")
     a = float(found.root)

@@ -19,8 +19,10 @@ from burridge_knopoff.stability.orbit import Orbit, OrbitError, after, multiplie
 #: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
 SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))
 
-# The least relative tolerance that brentq takes: four units in the last place.
-RELATIVE = 4 * np.finfo(float).eps
+# To this a change of the orbit is found, the rounding of what changes its sign there. In such steps of rounding brentq
+# halves and halves: its hundred iterations may not do.
+TOLERANCE = 1e-15
+ITERATIONS = 1000
 
 # Asymmetry d for finite differences, in units of v: rounding of the quotient and the d⁴ that extrapolation leaves are
 # about 1e-12 both.
@@ -67,7 +69,11 @@ def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
             continue
         if last is not None and (here[1] > 0.0) != (last[1] > 0.0):
             try:
-                return float(brentq(lambda a: value(family.at(a)), last[0], a, xtol=1e-17, rtol=RELATIVE))
+                return float(
+                    brentq(
+                        lambda a: value(family.at(a)), last[0], a, xtol=TOLERANCE, rtol=TOLERANCE, maxiter=ITERATIONS
+                    )
+                )
             except OrbitError:
                 pass
         last = here
