@@ -35,8 +35,8 @@ class Springs:
         self.after = np.array(after, dtype=float)
         self.threshold = np.array(threshold, dtype=float)
         self.sliding_force = np.array(sliding_force, dtype=float)
-        self.previous = np.roll(np.arange(n), 1).astype(np.intp)
-        self.next = np.roll(np.arange(n), -1).astype(np.intp)
+        self.previous = (np.arange(n, dtype=np.intp) - 1) % n
+        self.next = (np.arange(n, dtype=np.intp) + 1) % n
         # Root of the bound of Collatz and Wielandt on the largest eigenvalue of K: any positive vector gives one.
         vector = np.ones(n)
         for _ in range(WIELANDT):

@@ -25,6 +25,7 @@ ROUNDING = 1e-12
 
 # Speeds at which the least friction is first looked for.
 SAMPLES = 256
+_SHARES = np.linspace(0.0, 1.0, SAMPLES + 1)
 
 
 class Law:
@@ -122,11 +123,11 @@ class Law:
 
     def least(self, fastest: float) -> float:
         """Return the least friction at speeds from 0 to the fastest."""
-        speed = np.linspace(0.0, fastest, SAMPLES + 1)
+        speed = fastest * _SHARES
         # A run without bound may reach speeds at which the law is not defined.
         with np.errstate(invalid="ignore"):
             friction = self(speed)
-            lowest = int(np.nanargmin(friction))
+            lowest = int(np.where(np.isnan(friction), np.inf, friction).argmin())
             around = self.slope(speed[max(lowest - 1, 0) : lowest + 2])
         # Where friction is constant to rounding there is no sign to change.
         if not (len(around) == 3 and around[0] < 0.0 < around[2]):

@@ -134,7 +134,8 @@ class Chain:
 
     def force(self, position: np.ndarray) -> np.ndarray:
         """Return the spring forces −(K U) at τ = 0 for positions U, shape (…, blocks)."""
-        pull = self.before * np.roll(position, 1, axis=-1) + self.after * np.roll(position, -1, axis=-1)
+        block = np.arange(self.blocks)
+        pull = self.before * position[..., block - 1] + self.after * position[..., (block + 1) % self.blocks]
         return pull - self.diagonal * position
 
     def sliding_offset(self, friction: float) -> np.ndarray:
