@@ -6,7 +6,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd) \
-	$(addprefix src/burridge_knopoff/,compilation.py kernel_build.py sources.py)
+	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .PHONY: study setup kernel test benchmark faults fuzz size docs lock clean

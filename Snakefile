@@ -11,7 +11,7 @@ from snakemake.utils import min_version, update_config
 
 min_version("9.0")
 
-from burridge_knopoff.kernel_build import KernelError, check_kernel
+from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
 
 # Before anything imports the kernel. What is to run can be seen without one.
 try:
@@ -20,8 +20,8 @@ except KernelError as error:
     sys.exit(f"{error}")
 
 from burridge_knopoff.claims.ledger import read_claims
-from burridge_knopoff.closing import closing_lines
-from burridge_knopoff.config import (
+from snakemake_logger_plugin_study.closing import closing_lines
+from burridge_knopoff.study import (
     ConfigError,
     all_points,
     load_study,
@@ -29,15 +29,15 @@ from burridge_knopoff.config import (
     read_schema,
     read_yaml,
 )
-from burridge_knopoff.files import (
+from burridge_knopoff.provenance.files import (
     check_folder,
     check_folders,
     display_path,
     nearest_folder,
 )
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.sources import source_fingerprint
-from burridge_knopoff.study_record import write_study_record
+from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.record import write_study_record
 from snakemake_logger_plugin_study.command_line import SEVERAL_FILES
 from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plan import announce
@@ -160,7 +160,11 @@ onstart:
     try:
         check_folders(RESULTS)
         write_study_record(
-            RESULTS, STUDY, workflow.configfiles[0], shlex.join(ARGUMENTS)
+            RESULTS,
+            STUDY,
+            workflow.configfiles[0],
+            read_yaml(workflow.configfiles[0]),
+            shlex.join(ARGUMENTS),
         )
     except OSError as error:
         sys.exit(f"{error}")

@@ -11,8 +11,8 @@ from setuptools.command.build_ext import build_ext
 
 sys.path.insert(0, "src")
 
-from burridge_knopoff.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
-from burridge_knopoff.kernel_build import RECORD, kernel_sources, write_record
+from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
+from burridge_knopoff.provenance.kernel_build import RECORD, kernel_sources, write_record
 
 KERNEL = Path("src/burridge_knopoff/kernel")
 #: What Cython puts beside every module, compiled once for all of them: half of the time.

@@ -10,7 +10,7 @@ from pathlib import Path
 from PIL import Image
 
 from burridge_knopoff.claims.ledger import as_json, as_markdown
-from burridge_knopoff.files import write_text
+from burridge_knopoff.provenance.files import write_text
 
 DOCS = Path(__file__).parent
 PAGE = DOCS / "claims.md"

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.points import Grid
 
 #: What decides the models of a study that says nothing of them.

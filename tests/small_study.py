@@ -10,13 +10,13 @@ from typing import Any
 
 import xarray
 
-from burridge_knopoff.config import Study, load_study, read_schema
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.study import Study, load_study, read_schema
 from burridge_knopoff.summaries import (
     agreement,
     attractors,

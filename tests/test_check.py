@@ -10,12 +10,12 @@ import xarray as xr
 from burridge_knopoff import check as module
 from burridge_knopoff.check import check_study
 from burridge_knopoff.cli import main
-from burridge_knopoff.config import load_study, read_schema
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study_record import write_study_record
+from burridge_knopoff.study import load_study, read_schema, read_yaml
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import mean_distance
 from burridge_knopoff.summaries.points import Grid
 
@@ -52,7 +52,7 @@ def whole(tmp_path_factory, repository):
             state, settings = study.state(initial), study.settings(law, solver)
             write_point(run(study.model(law, grid.a[a]), state, settings), path)
     write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
-    write_study_record(results, study, config_file, "--configfile small.yaml")
+    write_study_record(results, study, config_file, read_yaml(config_file), "--configfile small.yaml")
     return results
 
 
@@ -131,7 +131,7 @@ def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys, monkeypat
 
 
 def model_state_and_settings(results):
-    from burridge_knopoff.config import Study
+    from burridge_knopoff.study import Study
 
     record = json.loads((results / "study.json").read_text())
     study = Study(record["config"], record["grid"])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from burridge_knopoff.config import load_study, read_config, read_schema
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.study import load_study, read_config, read_schema
 
 
 def events(stiffness, driving, threshold, friction, v, position, end):

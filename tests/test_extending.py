@@ -62,7 +62,7 @@ def extended(tmp_path_factory):
     for name in ("Snakefile", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(REPOSITORY / name, folder / name)
     assert len(apply(PAGE, folder)) == 12
-    flags = folder / "src" / "burridge_knopoff" / "compilation.py"
+    flags = folder / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
     optimised = flags.read_text()
     flags.write_text(optimised.replace('"-O3"', '"-O0"'))
     run(folder, sys.executable, "setup.py", "-q", "build_ext", "--inplace")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff.config import read_config
+from burridge_knopoff.study import read_config
 from tests.fuzzing import configs, runs
 from tests.fuzzing.points import Points
 

@@ -23,7 +23,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from burridge_knopoff.basins import basin_map
     from burridge_knopoff.laws import FormulaLaw, Law, law_of
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import InitialState
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from burridge_knopoff.stability.basins import label_states
     from burridge_knopoff.stability.chains import transverse_exponent
     from burridge_knopoff.stability.family import synchronized_orbit
+    from burridge_knopoff.summaries.basin_map import basin_map
 
 _HOME = {
     "Chain": "model.chain",
@@ -44,7 +44,7 @@ _HOME = {
     "Model": "model.model",
     "Settings": "running.settings",
     "Trajectory": "running.trajectory",
-    "basin_map": "basins",
+    "basin_map": "summaries.basin_map",
     "find_attractors": "stability.attractors",
     "label_states": "stability.basins",
     "law_of": "laws",

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import netCDF4
 
-from burridge_knopoff.config import ConfigError, Study, all_points
-from burridge_knopoff.config.yaml_file import read_yaml
 from burridge_knopoff.dataset.point import point_identity
-from burridge_knopoff.dataset.seal import BadFile, read_seal
-from burridge_knopoff.job_log import last_words
-from burridge_knopoff.sources import source_fingerprint
-from burridge_knopoff.study_record import NAME, read_study_record, remake_command
+from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
+from burridge_knopoff.provenance.seal import BadFile, read_seal
+from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study import ConfigError, Study, all_points
+from burridge_knopoff.study.job_log import last_words
+from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries.points import check_run
 
 MISSING, CORRUPT, STALE, FAILED = KINDS = ("missing", "corrupt", "stale", "failed")

@@ -260,12 +260,12 @@ def simulated_law(options: argparse.Namespace) -> Law:
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    from burridge_knopoff.command import CHAIN_OPTIONS
     from burridge_knopoff.dataset.point import write_point
-    from burridge_knopoff.files import check_target
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import initial_state
     from burridge_knopoff.model.model import Model
+    from burridge_knopoff.provenance.command import CHAIN_OPTIONS
+    from burridge_knopoff.provenance.files import check_target
     from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.simulation import run
 

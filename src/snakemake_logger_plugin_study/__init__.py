@@ -15,8 +15,8 @@ from typing import Any
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from burridge_knopoff.config import ConfigError
-from burridge_knopoff.job_log import failure
+from burridge_knopoff.study import ConfigError
+from burridge_knopoff.study.job_log import failure
 from snakemake_logger_plugin_study.command_line import check_command_line
 from snakemake_logger_plugin_study.refusal import one_line
 from snakemake_logger_plugin_study.tally import Tally

@@ -10,8 +10,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from burridge_knopoff.config import ConfigError, read_config
-from burridge_knopoff.files import display_path
+from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.study import ConfigError, read_config
 
 SEVERAL_FILES = (
     "--configfile: several files are not allowed: one file is one study (a target stands before --configfile)"

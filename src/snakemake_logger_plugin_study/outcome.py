@@ -12,7 +12,7 @@ def say_outcome(workflow: Any, lines: Callable[..., list[str]], **given: Any) ->
     """Log the lines that `lines(made=…, wanted=…, failed=…, missed=…, **given)` returns.
 
     workflow : of Snakemake, as in `onsuccess` and `onerror`
-    lines : see burridge_knopoff.closing.closing_lines
+    lines : see snakemake_logger_plugin_study.closing.closing_lines
 
     Raises nothing: a run is not worse for what cannot be said about it.
     """

@@ -21,7 +21,7 @@ from burridge_knopoff.claims.verdict import (
     content_digest,
     with_error,
 )
-from burridge_knopoff.config import ConfigError
+from burridge_knopoff.study import ConfigError
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 
 ROOT = Path(__file__).parents[2]

@@ -7,8 +7,8 @@ import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.paper import PAPER_LAWS as LAWS
 from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED
+from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
 from tests.grids import PAPER_MODELS
 from tests.sections import MOTION
 

@@ -13,8 +13,8 @@ from burridge_knopoff.figures.style import write_figure
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import equilibrium
 from burridge_knopoff.summaries.orbits import summarize
 

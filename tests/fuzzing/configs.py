@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.cli import build_parser, simulated_law
-from burridge_knopoff.config import ConfigError, Study, load_study, read_config, read_schema
+from burridge_knopoff.study import ConfigError, Study, load_study, read_config, read_schema
 from tests.bad_configs import BAD_FILES
 from tests.fuzzing.source import Source
 

@@ -44,7 +44,7 @@ def copy(folder: Path, optimisation: str) -> Path:
     shutil.copytree(REPOSITORY / "src", target / "src", ignore=shutil.ignore_patterns("*.so", "*.egg-info"))
     for name in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(REPOSITORY / name, target / name)
-    flags = target / "src" / "burridge_knopoff" / "compilation.py"
+    flags = target / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
     assert '"-O3"' in flags.read_text()
     flags.write_text(flags.read_text().replace('"-O3"', f'"{optimisation}"'))
     return target

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from burridge_knopoff.compilation import vector_flags
 from burridge_knopoff.laws import FormulaLaw, law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.provenance.compilation import vector_flags
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.together import new_ensemble
 from tests.kernel.test_events import GRAZES

@@ -11,8 +11,8 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from burridge_knopoff.claims.ledger import as_json
-from burridge_knopoff.dataset.seal import BadFile
 from burridge_knopoff.figures.branches import COLORS
+from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.report.basin_maps import basin_maps
 from burridge_knopoff.report.numbers import embedded_json, exact, rounded, text, with_error
 from burridge_knopoff.report.pictures import THUMBNAIL_WIDTH, read_picture

@@ -7,8 +7,8 @@ import pytest
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.family import Family
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 
 @pytest.fixture(scope="package")

@@ -7,10 +7,10 @@ import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.model.model import Instant
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.family import Family, synchronized_orbit
 from burridge_knopoff.stability.orbit import OrbitError, find_orbit, flow, multipliers, transverse_multiplier
 from burridge_knopoff.stability.transition import finite_difference_multiplier
+from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 VALUES = (1e-4, 0.0025, 0.02, 0.0355, 0.036, 0.05, 0.0869, 0.1, 0.2, 0.3)

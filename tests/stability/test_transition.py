@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import InitialState, simulate
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import OrbitError, flow, multipliers, transverse_multiplier
@@ -20,6 +19,7 @@ from burridge_knopoff.stability.transition import (
     least_center_speed,
     symmetric_flip_a,
 )
+from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.dataset.seal import BadFile
 from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.running.simulation import run, simulate
 from burridge_knopoff.summaries import agreement, lyapunov, mean_distance
 from tests.grids import grid_of

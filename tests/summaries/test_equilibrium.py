@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
-from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.equilibrium import eigenvalues, simulate_sliding, sliding_position, summarize
 
 MODELS = [Model(Chain(3), law_of(law, 0.0)) for law in PAPER_LAWS]

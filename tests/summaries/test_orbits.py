@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import multipliers, transverse_multiplier
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.orbits import COMPARISON, effective_a, summarize
 
 

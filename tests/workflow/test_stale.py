@@ -77,7 +77,7 @@ NOTHING = (
     ("stability/attractors.py", DOCSTRING),
     ("figures/style.py", COMMENT),
     ("cli.py", CODE),
-    ("files.py", CODE),
+    ("provenance/files.py", CODE),
     ("../../workflow/scripts/attractors_of_law.py", COMMENT),
     ("../../workflow/rules/simulate.smk", COMMENT),
 )
@@ -272,7 +272,7 @@ def test_neither_words_nor_order_nor_notation_of_a_config_count(finished, tmp_pa
 
 def test_results_know_their_sources(finished):
     from burridge_knopoff.dataset.summary import open_summary
-    from burridge_knopoff.sources import source_fingerprint
+    from burridge_knopoff.provenance.sources import source_fingerprint
 
     summaries = sorted((finished.folder / "results/tiny/summary").glob("*.nc"))
     assert len(summaries) == 11

@@ -1,5 +1,5 @@
 # What rules of several stages use.
-from burridge_knopoff.config.model import MODEL_KEYS
+from burridge_knopoff.study.model import MODEL_KEYS
 
 
 def script_sources(name):

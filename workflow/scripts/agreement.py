@@ -6,7 +6,7 @@ from pathlib import Path
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.files import write_text
+from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.summaries.agreement import digest, summarize, table
 from burridge_knopoff.summaries.points import Grid
 

@@ -5,7 +5,7 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.files import write_text
+from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.summaries.attractors import digest, merge
 
 dataset = merge([open_summary(path) for path in snakemake.input])

@@ -4,10 +4,10 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
-from burridge_knopoff.config.model import model_of
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.basins import pairs
 
 params = snakemake.params

@@ -4,11 +4,11 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
-from burridge_knopoff.config.model import model_of
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.files import write_text
 from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.stability.settings import BasinSettings
+from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.basins import digest, merge
 
 params = snakemake.params

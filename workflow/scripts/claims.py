@@ -8,7 +8,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.files import write_text
+from burridge_knopoff.provenance.files import write_text
 
 summaries = {Path(path).stem: open_summary(path) for path in snakemake.input.summaries}
 # Not as input: moved results would be judged again. What it says is among the params.

@@ -5,8 +5,8 @@ from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
-from burridge_knopoff.config import Study
 from burridge_knopoff.report.page import Sources, write_report
+from burridge_knopoff.study import Study
 
 params = snakemake.params
 paths = [Path(path) for path in (*snakemake.input.summaries, *snakemake.input.figures, *params.optional)]

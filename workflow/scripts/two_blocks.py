@@ -4,10 +4,10 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
-from burridge_knopoff.config.model import model_of
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.stability.chains import Sample
 from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.two_blocks import BLOCKS, run_settings, summarize
 
 params = snakemake.params

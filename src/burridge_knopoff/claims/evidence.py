@@ -12,8 +12,8 @@ from burridge_knopoff.claims.verdict import NotTestableError, Range
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.paper import PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.study.paper import PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
 
 if TYPE_CHECKING:
     import xarray

@@ -10,7 +10,7 @@ import numpy as np
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import Measured, NotTestableError, Range, Verdict, at_values
-from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray

@@ -21,7 +21,6 @@ from burridge_knopoff.claims.verdict import (
     by_share,
     worst,
 )
-from burridge_knopoff.paper import PAPER_LAWS
 from burridge_knopoff.stability.motion import (
     CHAOTIC,
     KINDS,
@@ -32,6 +31,7 @@ from burridge_knopoff.stability.motion import (
     zero_exponents,
 )
 from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray

@@ -17,13 +17,13 @@ import numpy as np
 from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
-from burridge_knopoff.config.message import ConfigError
-from burridge_knopoff.config.study import check_names, check_schema
-from burridge_knopoff.config.yaml_file import read_schema, read_yaml
-from burridge_knopoff.files import display_path
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.paper import PAPER_LAWS
-from burridge_knopoff.provenance import provenance
+from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.study.message import ConfigError
+from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.study import check_names, check_schema
+from burridge_knopoff.study.yaml_file import read_schema, read_yaml
 
 TOPICS = {
     "synchronization": synchronization,

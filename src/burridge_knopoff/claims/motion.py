@@ -24,7 +24,7 @@ from burridge_knopoff.claims.verdict import (
     with_error,
     worst,
 )
-from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.command import CHAIN_OPTIONS, simulate_command
-from burridge_knopoff.dataset.seal import identity, seal
 from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, fill, flag
-from burridge_knopoff.files import write_whole
-from burridge_knopoff.provenance import SOFTWARE, provenance
+from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
+from burridge_knopoff.provenance.files import write_whole
+from burridge_knopoff.provenance.seal import identity, seal
+from burridge_knopoff.provenance.software import SOFTWARE, provenance
+from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.sources import source_fingerprint
 
 if TYPE_CHECKING:
     import xarray

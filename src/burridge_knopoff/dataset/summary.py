@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.seal import BadFile, identity, read_seal, seal
 from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
-from burridge_knopoff.files import write_whole
-from burridge_knopoff.provenance import provenance
-from burridge_knopoff.sources import source_fingerprint
+from burridge_knopoff.provenance.files import write_whole
+from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, seal
+from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.provenance.sources import source_fingerprint
 
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),

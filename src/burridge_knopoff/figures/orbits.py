@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, say_nothing, styled
-from burridge_knopoff.paper import PAPER_LAWS
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 # What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
 NEAR = 0.93

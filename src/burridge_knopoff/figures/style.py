@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.files import write_whole
+from burridge_knopoff.provenance.files import write_whole
 
 Arguments = ParamSpec("Arguments")
 

@@ -1,5 +1,5 @@
 """The compiled core: Cython in pure Python mode."""
 
-from burridge_knopoff.kernel_build import check_kernel
+from burridge_knopoff.provenance.kernel_build import check_kernel
 
 check_kernel(compiled=True)

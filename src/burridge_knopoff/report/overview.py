@@ -10,12 +10,12 @@ from typing import Any
 import xarray
 import yaml
 
-from burridge_knopoff.config import Study, all_points
 from burridge_knopoff.figures.friction_laws import law_text
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance import git_commit, provenance
+from burridge_knopoff.provenance.software import git_commit, provenance
 from burridge_knopoff.report.numbers import text
+from burridge_knopoff.study import Study, all_points
 
 #: Distributions whose versions the report states.
 LIBRARIES = (
@@ -102,13 +102,9 @@ def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
     ]
 
 
-#: The module whose sources decide the point files.
-POINT_MODULE = "burridge_knopoff.dataset.point"
-
-
 def software() -> list[tuple[str, str]]:
     """Return the provenance of this report and the versions of the libraries."""
-    found = provenance(POINT_MODULE)
+    found = provenance("burridge_knopoff.dataset.point")
     rows = [
         ("Software", found["software"]),
         ("Source fingerprint of the runs", found["source_fingerprint"]),

@@ -11,9 +11,8 @@ import jinja2
 import xarray
 from markupsafe import Markup
 
-from burridge_knopoff.config import Study
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.files import write_text
+from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.report import curves, overview, tables
 from burridge_knopoff.report.basin_maps import basin_maps
 from burridge_knopoff.report.numbers import embedded_json, text, with_error
@@ -23,6 +22,7 @@ from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.section_points import section_counts
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
+from burridge_knopoff.study import Study
 from burridge_knopoff.summaries.agreement import digest
 
 FOLDER = Path(__file__).parent

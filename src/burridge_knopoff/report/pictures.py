@@ -10,7 +10,7 @@ from typing import Any
 
 from PIL import Image
 
-from burridge_knopoff.dataset.seal import BadFile
+from burridge_knopoff.provenance.seal import BadFile
 
 THUMBNAIL_WIDTH = 400
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.config import Study
 from burridge_knopoff.report.numbers import exact
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
+from burridge_knopoff.study import Study
 
 #: How runs end, in words, in the order of the numbers in files.
 STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, content_digest, one_reason
-from burridge_knopoff.dataset.seal import BadFile
+from burridge_knopoff.provenance.seal import BadFile
 
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
 SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", FAILS: "✗", NOT_TESTABLE: "–"}

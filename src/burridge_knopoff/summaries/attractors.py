@@ -13,7 +13,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
-from burridge_knopoff.provenance import provenance
+from burridge_knopoff.provenance.software import provenance
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
 from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
 from burridge_knopoff.stability.motion import KINDS

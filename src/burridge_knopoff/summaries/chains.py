@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from burridge_knopoff.dataset.summary import STATE, axes, open_summary, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance import provenance
+from burridge_knopoff.provenance.software import provenance
 from burridge_knopoff.stability.chains import (
     NOT_SYNCHRONIZED,
     OUTCOMES,

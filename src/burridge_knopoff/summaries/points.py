@@ -11,14 +11,14 @@ import netCDF4
 import numpy as np
 import xarray
 
-from burridge_knopoff.command import difference, simulate_command
-from burridge_knopoff.config.model import MODEL_KEYS, model_of
 from burridge_knopoff.dataset.point import point_identity
-from burridge_knopoff.dataset.seal import BadFile, Seal, read_seal
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance import SOFTWARE
+from burridge_knopoff.provenance.command import difference, simulate_command
+from burridge_knopoff.provenance.seal import BadFile, Seal, read_seal
+from burridge_knopoff.provenance.software import SOFTWARE
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.study.model import MODEL_KEYS, model_of
 
 _EVENT = ("time", "block", "kind")
 

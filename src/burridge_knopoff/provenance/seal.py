@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from burridge_knopoff.study_record import remake_command
+from burridge_knopoff.provenance.record import remake_command
 
 _SEAL = re.compile(rb"\n#seal ([0-9a-f]{16}) ([a-z_]+) ([0-9a-f]{64})\n\Z")
 _LONGEST = 200

@@ -6,30 +6,30 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from burridge_knopoff.files import display_path, write_text
-from burridge_knopoff.provenance import SOFTWARE, git_commit
+from burridge_knopoff.provenance.files import display_path, write_text
+from burridge_knopoff.provenance.software import SOFTWARE, git_commit
 
 if TYPE_CHECKING:
-    from burridge_knopoff.config import Study
+    from burridge_knopoff.study import Study
 
 NAME = "study.json"
 
 _KEYS = ("software", "git_commit", "arguments", "config_file", "given", "config", "grid")
 
 
-def write_study_record(results: str | Path, study: Study, config_file: str | Path, arguments: str) -> None:
+def write_study_record(
+    results: str | Path, study: Study, config_file: str | Path, given: dict[str, Any], arguments: str
+) -> None:
     """Record a study in its folder of results; a record that says the same already stays untouched.
 
-    config_file : its config as it was given
+    config_file, given : its config as it was given, and what that file holds
     arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
     Raises OSError, one line, if the folder cannot be written to.
     """
-    from burridge_knopoff.config.yaml_file import read_yaml
-
     path = Path(results, NAME)
     values = (
         *(SOFTWARE, git_commit(), arguments, display_path(config_file)),
-        *(read_yaml(config_file), study.config, study.grid),
+        *(given, study.config, study.grid),
     )
     text = json.dumps(dict(zip(_KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):

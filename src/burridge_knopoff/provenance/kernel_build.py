@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from burridge_knopoff.sources import PACKAGE, code_digest
+from burridge_knopoff.provenance.sources import COMPILATION, PACKAGE, code_digest
 
 KERNEL = PACKAGE / "kernel"
 #: Beside the compiled modules: {name of a source: SHA-256 of its code} of what they were compiled from.
@@ -21,7 +21,7 @@ class KernelError(ImportError):
 
 def kernel_sources() -> dict[str, str]:
     """Return {name: SHA-256 of its code} of all sources of the kernel, as they are on disk."""
-    paths = [PACKAGE / "compilation.py", *(path for path in KERNEL.glob("*.p*") if path.suffix in (".py", ".pxd"))]
+    paths = [COMPILATION, *(path for path in KERNEL.glob("*.p*") if path.suffix in (".py", ".pxd"))]
     return {path.relative_to(PACKAGE).as_posix(): code_digest(path) for path in sorted(paths)}
 
 

@@ -80,7 +80,7 @@ def basin_map(
     pairs = basin_summary.pairs(attractors, model, plane, *options)
     basins = basin_summary.merge([(model, [tile], pairs)], [model.law.name], plane, settings.time_limit, start)
     for dataset in (attractors, basins):
-        dataset.attrs["history"] = "burridge_knopoff.basins.basin_map"
+        dataset.attrs["history"] = "burridge_knopoff.basin_map"
     return basins, attractors
 
 

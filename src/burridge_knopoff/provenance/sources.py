@@ -17,16 +17,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 
 #: Moves bytes, reads arguments and names sources: it decides no number, so that a change of it remakes nothing.
-PLUMBING = (
-    *("__init__.py", "cli.py", "files.py", "kernel/__init__.py", "kernel_build.py"),
-    *("dataset/seal.py", "provenance.py", "sources.py", "study_record.py"),
-)
-
-#: (module, what it imports only for users at a prompt): not followed.
-CONVENIENCES = (("trajectory.py", "burridge_knopoff.dataset.point"),)
+PLUMBING = ("__init__.py", "cli.py", "kernel/__init__.py", "provenance/")
+#: How the kernel is compiled decides its numbers.
+COMPILATION = PACKAGE / "provenance/compilation.py"
 
 #: What a module of a folder reads there besides Python.
 ASSETS = (".css", ".jinja", ".js")
@@ -63,15 +59,19 @@ def source_fingerprint(*entries: str | Path) -> str:
 def sources_of(*entries: str | Path) -> tuple[Path, ...]:
     """Return the files that these modules or scripts depend on, themselves included, sorted."""
     waiting = [path for entry in entries for path in ([entry] if isinstance(entry, Path) else files_of(entry))]
-    plumbing = {PACKAGE / name for name in PLUMBING}
     found: set[Path] = set()
     while waiting:
         path = waiting.pop()
-        if path not in found and path not in plumbing:
+        if path not in found and not _is_plumbing(path):
             found.add(path)
-            imported = [module for module in _facts(path)["imports"] if (path.name, module) not in CONVENIENCES]
-            waiting += [file for module in imported for file in files_of(module)]
+            waiting += [file for module in _facts(path)["imports"] for file in files_of(module)]
     return tuple(sorted(found))
+
+
+def _is_plumbing(path: Path) -> bool:
+    if path == COMPILATION or not path.is_relative_to(PACKAGE):
+        return False
+    return path.relative_to(PACKAGE).as_posix().startswith(PLUMBING)
 
 
 @cache
@@ -84,7 +84,7 @@ def files_of(module: str) -> list[Path]:
     if not files:
         return []
     if path.parent == PACKAGE / "kernel":
-        files.append(PACKAGE / "compilation.py")
+        files.append(COMPILATION)
     elif path.parent != PACKAGE:
         files += [asset for asset in sorted(path.parent.rglob("*")) if asset.suffix in ASSETS]
     return files

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
-from burridge_knopoff.basins import basin_map
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings
+from burridge_knopoff.summaries.basin_map import basin_map
 
 
 def test_settings_are_the_schema_defaults(repository):
-    from burridge_knopoff.config import read_schema
+    from burridge_knopoff.study import read_schema
 
     schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
     motion = {**schema["motion"]["properties"], "synchronization_threshold": schema["synchronization_threshold"]}

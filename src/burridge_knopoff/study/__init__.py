@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 __all__ = ["ConfigError", "Study", "all_points", "load_study", "read_config", "read_schema", "read_yaml"]
 
 if TYPE_CHECKING:
-    from burridge_knopoff.config.message import ConfigError
-    from burridge_knopoff.config.study import Study, all_points, load_study
-    from burridge_knopoff.config.yaml_file import read_config, read_schema, read_yaml
+    from burridge_knopoff.study.message import ConfigError
+    from burridge_knopoff.study.study import Study, all_points, load_study
+    from burridge_knopoff.study.yaml_file import read_config, read_schema, read_yaml
 
 
 def __getattr__(name: str) -> object:
@@ -18,7 +18,7 @@ def __getattr__(name: str) -> object:
         from importlib import import_module
 
         for home in ("message", "study", "yaml_file"):
-            module = import_module(f"burridge_knopoff.config.{home}")
+            module = import_module(f"burridge_knopoff.study.{home}")
             if name in vars(module):
                 value = globals()[name] = getattr(module, name)
                 return value

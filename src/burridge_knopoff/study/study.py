@@ -8,8 +8,11 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Any
 
-from burridge_knopoff.command import simulate_command
-from burridge_knopoff.config.checks import (
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.provenance.command import simulate_command
+from burridge_knopoff.running.settings import SOLVERS, Settings
+from burridge_knopoff.study.checks import (
     check_beginnings,
     check_boxes,
     check_chains,
@@ -19,14 +22,11 @@ from burridge_knopoff.config.checks import (
     fill_compared,
     run_settings,
 )
-from burridge_knopoff.config.grid import grid_of
-from burridge_knopoff.config.message import ConfigError, explain, shown
-from burridge_knopoff.config.model import MODEL_KEYS, model_of
-from burridge_knopoff.config.models import check_chain_laws, check_models, fill_laws, fill_solver
-from burridge_knopoff.config.size import check_size
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.settings import SOLVERS, Settings
+from burridge_knopoff.study.grid import grid_of
+from burridge_knopoff.study.message import ConfigError, explain, shown
+from burridge_knopoff.study.model import MODEL_KEYS, model_of
+from burridge_knopoff.study.models import check_chain_laws, check_models, fill_laws, fill_solver
+from burridge_knopoff.study.size import check_size
 
 LARGEST = 1e300
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from burridge_knopoff.config.grid import MAXIMUM_POINTS
-from burridge_knopoff.config.message import ConfigError
+from burridge_knopoff.study.grid import MAXIMUM_POINTS
+from burridge_knopoff.study.message import ConfigError
 
 #: Numbers that a job holds of one kind, at most: 800 MB.
 MOST_NUMBERS = 100_000_000

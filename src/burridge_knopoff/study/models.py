@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from burridge_knopoff.config.message import ConfigError, shown
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.study.message import ConfigError, shown
 
 
 def fill_laws(config: Mapping[str, Any], file: str) -> None:

@@ -9,9 +9,9 @@ from functools import cache
 from pathlib import Path
 
 from burridge_knopoff import __version__
-from burridge_knopoff.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import source_fingerprint
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 SOFTWARE = f"burridge-knopoff {__version__}"
 
 

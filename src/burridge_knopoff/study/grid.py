@@ -7,7 +7,7 @@ from decimal import Decimal, InvalidOperation
 from itertools import pairwise
 from typing import Any
 
-from burridge_knopoff.config.message import ConfigError
+from burridge_knopoff.study.message import ConfigError
 
 #: Values of a list, and points of a study: Snakemake takes minutes to plan so many jobs.
 MAXIMUM_POINTS = 100_000

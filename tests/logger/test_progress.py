@@ -9,7 +9,7 @@ import pytest
 from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from burridge_knopoff.job_log import SILENT
+from burridge_knopoff.study.job_log import SILENT
 from snakemake_logger_plugin_study import LogHandler
 from snakemake_logger_plugin_study.outcome import say_outcome
 from snakemake_logger_plugin_study.plain import Pace

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.closing import closing_lines, elapsed
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
-from burridge_knopoff.job_log import SILENT
 from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.study.job_log import SILENT
+from snakemake_logger_plugin_study.closing import closing_lines, elapsed
 
 STATUSES = dict(enumerate(STATUS_FLAG["flag_meanings"].split()))
 
@@ -104,7 +104,7 @@ def test_a_damaged_summary_gives_a_line_and_no_error(results, content):
 def test_a_run_that_failed(results, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("logs").mkdir()
-    error = "Traceback (most recent call last):\n  raise\nburridge_knopoff.dataset.seal.BadFile: x.nc: is empty\n\n"
+    error = "Traceback (most recent call last):\n  raise\nburridge_knopoff.provenance.seal.BadFile: x.nc: is empty\n\n"
     Path("logs/mean_distance.log").write_text(error)
     failed = [
         ("mean_distance", ["logs/mean_distance.log"]),

@@ -6,7 +6,7 @@ import signal
 
 import pytest
 
-from burridge_knopoff.files import (
+from burridge_knopoff.provenance.files import (
     check_folder,
     check_folders,
     check_target,

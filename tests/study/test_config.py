@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.command import difference
-from burridge_knopoff.config import ConfigError, all_points, load_study, read_config, read_schema
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.provenance.command import difference
+from burridge_knopoff.study import ConfigError, all_points, load_study, read_config, read_schema
 from tests.bad_configs import BAD_FILES
 
 NAN = float("nan")
@@ -395,7 +395,7 @@ def test_ranges_are_exact_decimals(first, count, step):
     """Every grid value is the double nearest to its decimal, so that a0.0800 is 0.08 and not 0.08000000000000002."""
     from decimal import Decimal
 
-    from burridge_knopoff.config.grid import _range
+    from burridge_knopoff.study.grid import _range
 
     start = Decimal(first) * Decimal(step)
     stop = start + count * Decimal(step)

@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from burridge_knopoff import provenance
+from burridge_knopoff.provenance import software
 
 
 def git(folder, *command):
@@ -18,16 +18,16 @@ def checkout(tmp_path, monkeypatch):
     """A repository with one commit; its package folder stands in for the real one."""
 
     def look(folder):
-        monkeypatch.setattr(provenance, "PACKAGE", folder / "src" / "burridge_knopoff")
-        provenance.git_commit.cache_clear()
-        return provenance.git_commit()
+        monkeypatch.setattr(software, "PACKAGE", folder / "src" / "burridge_knopoff")
+        software.git_commit.cache_clear()
+        return software.git_commit()
 
     root = tmp_path / "root"
     root.mkdir()
     git(root, "init", "-q")
     git(root, "commit", "-q", "--allow-empty", "-m", "first")
     yield root, look
-    provenance.git_commit.cache_clear()
+    software.git_commit.cache_clear()
 
 
 def test_the_commit_of_a_checkout_a_worktree_and_a_detached_head(checkout):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
-from burridge_knopoff.job_log import failure
+from burridge_knopoff.study.job_log import failure
 
 #: Verdicts whose claims are named, not only counted.
 NAMED_VERDICTS = (FAILS, CONVENTION)

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from burridge_knopoff.config.message import ConfigError, shown
-from burridge_knopoff.files import display_path
+from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.study.message import ConfigError, shown
 
 if TYPE_CHECKING:
     import yaml

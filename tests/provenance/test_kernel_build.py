@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from burridge_knopoff import kernel_build
-from burridge_knopoff.sources import PACKAGE
+from burridge_knopoff.provenance import kernel_build
+from burridge_knopoff.provenance.sources import PACKAGE
 
 RUN = "from burridge_knopoff import simulate; print(simulate(transient=0.0, window=2.0).status)"
 SERIES = Path("kernel/series.py")
@@ -41,19 +41,19 @@ def test_the_kernel_here_is_that_of_its_sources():
     kernel_build.check_kernel(compiled=True)
     recorded = json.loads((kernel_build.KERNEL / kernel_build.RECORD).read_text())
     assert recorded == kernel_build.kernel_sources()
-    assert {"kernel/series.py", "kernel/series.pxd", "compilation.py"} <= recorded.keys()
+    assert {"kernel/series.py", "kernel/series.pxd", "provenance/compilation.py"} <= recorded.keys()
 
 
 def test_as_it_was_built_it_runs(package):
     assert run(package).stdout == "completed\n"
 
 
-@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", "compilation.py"])
+@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", "provenance/compilation.py"])
 def test_changed_code_is_refused_with_the_command_that_rebuilds(package, name):
     change(package / name)
     rebuild = "run `pip install --force-reinstall burridge-knopoff`"
     expected = f"{name}: has changed since the kernel was compiled: {rebuild}"
-    assert refusal(package) == f"burridge_knopoff.kernel_build.KernelError: {expected}"
+    assert refusal(package) == f"burridge_knopoff.provenance.kernel_build.KernelError: {expected}"
     done = run(package, "from burridge_knopoff.cli import main; print(main('simulate --law x --a 1 --out x'.split()))")
     assert done.stdout == "2\n"
     assert done.stderr == f"bk simulate: {expected}\n"

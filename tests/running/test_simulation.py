@@ -209,8 +209,8 @@ def test_bad_input_is_refused_in_one_line(options, words):
 
 
 def test_settings_are_the_schema_defaults(repository):
-    from burridge_knopoff.config import read_schema
-    from burridge_knopoff.config.checks import RUN_KEYS
+    from burridge_knopoff.study import read_schema
+    from burridge_knopoff.study.checks import RUN_KEYS
 
     schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
     for key, item in schema["chain"]["properties"].items():

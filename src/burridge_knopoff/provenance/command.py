@@ -5,12 +5,14 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.laws import LAWS, Law
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.settings import Settings
+
+if TYPE_CHECKING:
+    from burridge_knopoff.running.settings import Settings
 
 #: Options of the chain, and the field of `Chain` that each is.
 CHAIN_OPTIONS = ("coupling", "pulling", "threshold", "ends")

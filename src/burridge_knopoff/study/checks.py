@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from burridge_knopoff.config.grid import values_of
-from burridge_knopoff.config.message import ConfigError, shown
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.paper import PAPER_BASINS, PAPER_COMPARED
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.study.grid import values_of
+from burridge_knopoff.study.message import ConfigError, shown
+from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED
 
 #: Config keys that are settings of a run under the same name.
 RUN_KEYS = (

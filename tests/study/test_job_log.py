@@ -2,7 +2,7 @@
 
 import pytest
 
-from burridge_knopoff.job_log import last_words
+from burridge_knopoff.study.job_log import last_words
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
