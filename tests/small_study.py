@@ -135,13 +135,13 @@ class SmallStudy:
 
     def further_summaries(self, found: Mapping[str, xarray.Dataset]) -> dict[str, xarray.Dataset]:
         """Return all others, made of the first ones where they take them."""
-        config, study, values = self.study.config, self.study, list(self.study.grid.values())
+        config, values = self.study.config, list(self.study.grid.values())
         window = {key: config[key] for key in ("transient", "window", "batches")}
         sample = sampled_states(2, 2, (-1.5, 1.5), (0.0, 0.2), 1)
         pair = [Model(Chain(2), model.law) for model in self.models]
         settings = two_blocks.run_settings(transient=100.0, window=100.0, batches=2)
         return {
-            "stick_slip": stick_slip.summarize(self.grid, study.blocks, **window),
+            "stick_slip": stick_slip.summarize(self.grid, **window),
             "equilibrium": equilibrium.summarize(self.models, values),
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),

@@ -61,7 +61,7 @@ def extended(tmp_path_factory):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=compiled)
     for name in ("Snakefile", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(REPOSITORY / name, folder / name)
-    assert len(apply(PAGE, folder)) == 12
+    assert len(apply(PAGE, folder)) == 9
     flags = folder / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
     optimised = flags.read_text()
     flags.write_text(optimised.replace('"-O3"', '"-O0"'))

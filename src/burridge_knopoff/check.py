@@ -15,6 +15,7 @@ from burridge_knopoff.provenance.seal import BadFile, read_seal
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study import ConfigError, Study, all_points
 from burridge_knopoff.study.job_log import last_words
+from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries.points import check_run
 
@@ -96,17 +97,20 @@ def check_study(results: str | Path) -> Check:
 def _runs(study: Study, results: Path) -> Iterator[tuple[Path, Path, str]]:
     """Yield file, log and command of every run of a study."""
     for law, initial, a in all_points(study):
-        place = f"{law}/{initial}/a{a}"
-        log = results / f"logs/simulate/{place}.log"
-        yield results / f"points/{place}.nc", log, study.command(law, initial, a)
+        place = POINT.format(law=law, initial=initial, a=a)
+        yield results / "points" / place, _log(results / "logs/simulate" / place), study.command(law, initial, a)
     compared = [name for name, value in study.grid.items() if value in study.config["solvers"]["a"]]
     for law in study.laws:
         for solver in study.other_solvers(law):
             for initial in study.initial:
                 for a in compared:
-                    place = f"{solver}/{law}/{initial}/a{a}"
-                    log = results / f"logs/simulate_solver/{place}.log"
-                    yield results / f"solvers/{place}.nc", log, study.command(law, initial, a, solver)
+                    place = f"{solver}/{POINT.format(law=law, initial=initial, a=a)}"
+                    log = _log(results / "logs/simulate_solver" / place)
+                    yield results / "solvers" / place, log, study.command(law, initial, a, solver)
+
+
+def _log(path: Path) -> Path:
+    return path.with_suffix(".log")
 
 
 def _look(path: Path, log: Path, command: str) -> Finding | None:

@@ -80,7 +80,7 @@ def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white():
 
 
 def test_motion_draws_every_block(point):
-    figure = motion.draw(point)
+    figure = motion.draw({"plus": point})
     for panel, name in zip(figure.axes, ("velocity", "position"), strict=True):
         assert len(panel.get_lines()) == 3
         assert (panel.get_lines()[2].get_ydata() == point[name].values[:, 2]).all()
@@ -103,7 +103,7 @@ def test_friction_laws_are_the_models():
         {"least_friction": (("law", "initial", "a"), least)},
         {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.3]},
     )
-    laws, seen = friction_laws.draw([law_of(law, 0.1) for law in PAPER_LAWS], [0.3], runs).axes
+    laws, seen = friction_laws.draw(runs, {law: {} for law in PAPER_LAWS}, 0.3).axes
     for number, law in enumerate(PAPER_LAWS):
         drawn = seen.get_lines()[number].get_ydata()
         assert np.array_equal(drawn, least[number, 0], equal_nan=True)
@@ -112,13 +112,16 @@ def test_friction_laws_are_the_models():
 
 
 def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
-    own = law_of("own", 0.1, {"formula": "1 - c*tanh(a*u/c)" + " + 0*u" * 60, "c": 0.1})
-    laws = [law_of("linearized", 0.1), law_of("drop", 0.1, {"law": "carlson_langer", "sigma": 0.02}), own]
+    laws = {
+        "linearized": {},
+        "drop": {"law": "carlson_langer", "sigma": 0.02},
+        "own": {"formula": "1 - c*tanh(a*u/c)" + " + 0*u" * 60, "c": 0.1},
+    }
     runs = xr.Dataset(
         {"least_friction": (("law", "initial", "a"), np.ones((3, 1, 1)))},
-        {"law": [law.name for law in laws], "initial": ["plus"], "a": [0.3]},
+        {"law": list(laws), "initial": ["plus"], "a": [0.3]},
     )
-    figure = friction_laws.draw(laws, [0.3, 0.5], runs)
+    figure = friction_laws.draw(runs, laws, 0.2)
     entries = [text.get_text() for text in figure.legends[0].get_texts()]
     assert entries[:2] == ["linearized: Φ = 1 − aU′", "drop: Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.02"]
     assert entries[2].startswith("own: Φ = 1 - c*tanh(a*u/c)")
@@ -128,14 +131,14 @@ def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
 
 def test_the_callers_style_is_untouched(point):
     before = dict(mpl.rcParams)
-    motion.draw(point)
+    motion.draw({"plus": point})
     assert dict(mpl.rcParams) == before
 
 
 @pytest.mark.parametrize("suffix", ["pdf", "png"])
 def test_the_same_figure_gives_the_same_bytes(tmp_path, point, suffix):
     for name in ("one", "two"):
-        write_figure(motion.draw(point), tmp_path / f"{name}.{suffix}")
+        write_figure(motion.draw({"plus": point}), tmp_path / f"{name}.{suffix}")
     assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
     assert len(list(tmp_path.iterdir())) == 2
 

@@ -40,7 +40,7 @@ def figures_of(small):
     point = to_dataset(run_shown)
     yield (
         "friction_laws",
-        friction_laws.draw([model.law for model in small.models], [0.05, 0.2], found["mean_distance"]),
+        friction_laws.draw(found["mean_distance"], study.law_descriptions, 0.05),
     )
     yield "mean_distance", mean_distance.draw(found["mean_distance"], found["attractors"])
     yield "bifurcation", bifurcation.draw(found["bifurcation"])
@@ -54,7 +54,7 @@ def figures_of(small):
     yield "solvers", solvers.draw(found["solvers"])
     yield "two_blocks", two_blocks.draw(found["two_blocks"])
     yield "distance", distance.draw({initial: point})
-    yield f"motion_{initial}", motion.draw(point)
+    yield f"motion_{initial}", motion.draw({initial: point})
 
 
 def test_every_figure_is_drawn_and_names_all_laws(small, tmp_path: Path):

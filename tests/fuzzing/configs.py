@@ -185,7 +185,7 @@ def check_study(study: Study, content: bytes) -> None:
     _check_chain(study, given)
     assert flat["basins.initial"] in study.initial
     assert flat.get("figures.a", next(iter(study.grid.values()))) in study.grid.values()
-    assert study.grid[study.figure_point] == flat.get("figures.a", study.grid[study.figure_point])
+    assert study.shown_a == flat.get("figures.a", study.shown_a)
     _check_states(study)
     _check_options(study)
     assert len(study.laws) * len(study.initial) * len(study.grid) <= 100_000

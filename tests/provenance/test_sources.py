@@ -105,8 +105,10 @@ def test_every_module_that_a_script_loads_is_among_its_sources(script):
 
 def test_results_depend_on_what_makes_them():
     def names(stem):
-        script = next(path for path in SCRIPTS if path.stem == stem)
-        return {path.relative_to(PACKAGE).as_posix() for path in sources_of(script) if path != script}
+        script, *modules = stem.split()
+        path = next(path for path in SCRIPTS if path.stem == script)
+        found = sources_of(path, *(f"burridge_knopoff.{module}" for module in modules))
+        return {item.relative_to(PACKAGE).as_posix() for item in found if item != path}
 
     point = {path.relative_to(PACKAGE).as_posix() for path in sources_of("burridge_knopoff.dataset.point")}
     assert {
@@ -122,8 +124,9 @@ def test_results_depend_on_what_makes_them():
     assert "kernel/ensemble.py" not in point
     assert {"kernel/ensemble.py", "stability/attractors.py"} <= names("attractors_of_law")
     assert not {"dataset/point.py", "stability/basins.py"} & names("attractors_of_law")
-    assert {"figures/agreement.py", "figures/style.py"} <= names("figure_agreement")
-    assert not {name for name in names("figure_agreement") if name.startswith(("kernel", "stability", "report"))}
+    assert {"figures/agreement.py", "figures/style.py"} <= names("figure figures.agreement")
+    drawn = names("figure figures.agreement")
+    assert not {name for name in drawn if name.startswith(("kernel", "stability", "report"))}
     assert {"report/static/style.css", "report/templates/report.html.jinja", "report/page.py"} <= names("report")
     assert not any(name.startswith(PLUMBING) for name in names("report"))
 

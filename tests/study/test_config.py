@@ -237,7 +237,7 @@ def test_the_shipped_configs_are_valid(repository, schema, name):
         assert len(all_points(study)) == 484
         assert study.grid["0.0800"] == 0.08
         assert study.grid["0.3000"] == 0.3
-        assert study.figure_point == "0.0800"
+        assert study.shown_point == "0.0800"
 
 
 def test_every_key_of_the_schema_is_described(schema):

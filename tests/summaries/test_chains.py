@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.stability.sampling import fraction_interval
@@ -41,7 +41,7 @@ def compared():
 
 
 def test_chains_are_ordered_by_their_number_of_blocks(files):
-    summary = chains.summarize(files)
+    summary = chains.merge([open_summary(path) for path in files])
     assert summary["blocks"].values.tolist() == [2, 10]
     assert summary.attrs["time_limit"] == 400.0
     first = chain_file(2)
@@ -58,7 +58,7 @@ def test_fractions_count_outcomes(files):
     chain["mean_distance"][0, 0] = [1e-13, 1e-13, 0.1, 0.2, 0.3]
     path = files[0].with_name("altered.nc")
     write_summary(chain, path)
-    point = chains.summarize([path]).isel(blocks=0, law=0, a=0)
+    point = chains.merge([open_summary(path)]).isel(blocks=0, law=0, a=0)
     assert point["synchronized_fraction"] == 0.4
     assert point["undetermined_fraction"] == 0.2
     assert point["partial_fraction"] == 0.2
@@ -71,14 +71,14 @@ def test_a_damaged_chain_file_is_named(files):
     path = files[0].with_name("damaged.nc")
     path.write_bytes(files[0].read_bytes()[:1000])
     with pytest.raises(ValueError, match=r"damaged\.nc: has no seal at its end"):
-        chains.summarize([path])
+        chains.merge([open_summary(path)])
 
 
 def test_files_of_other_settings_do_not_mix(files):
     path = files[0].with_name("other.nc")
     write_summary(chain_file(3, 200.0), path)
     with pytest.raises(ValueError, match=r"other\.nc: made with other settings"):
-        chains.summarize([*files, path])
+        chains.merge([open_summary(name) for name in (*files, path)])
 
 
 def test_two_blocks_agree_where_both_synchronize(compared):
@@ -103,7 +103,7 @@ def test_one_law_has_nothing_to_be_compared_with():
 
 
 def test_the_figure_shows_the_fractions(files, compared):
-    summary = chains.summarize(files)
+    summary = chains.merge([open_summary(path) for path in files])
     panels = draw(summary, compared).axes
     titled = [panel for panel in panels if panel.get_title(loc="left")]
     assert [panel.get_title(loc="left")[:8] for panel in titled] == ["(a) $N=2", "(b) $N=1", "(c) $N=2"]

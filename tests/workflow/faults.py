@@ -132,10 +132,14 @@ def differences(study: Study, other: Study, *folders: str) -> list[str]:
 
 
 def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment in which each Python process whose command holds a key first runs that code."""
+    """Return the environment in which each Python process first runs the code of a key that stands in its command.
+
+    A script of Snakemake's holds the names of its files itself: its text counts as part of the command.
+    """
     folder = study.folder / "faults"
     folder.mkdir()
     lines = ["import os, signal, sys", "words = ' '.join(sys.orig_argv)"]
+    lines += ["if sys.orig_argv[-1].endswith('.py'):", "    words += open(sys.orig_argv[-1]).read()"]
     for words, code in faults.items():
         lines += [f"if {words!r} in words:", *(f"    {line}" for line in code.strip().splitlines())]
     (folder / "sitecustomize.py").write_text("\n".join(lines))

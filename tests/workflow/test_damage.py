@@ -115,7 +115,7 @@ def readers(results: Path):
         "bifurcation": bifurcation.summarize,
         "lyapunov": lambda grid: lyapunov.summarize(grid, 3, 1e-6, motion),
         "agreement": lambda grid: agreement.summarize(grid, exponents.sel(a=[0.2]), 1e-6, compared),
-        "stick_slip": lambda grid: stick_slip.summarize(grid, 3, **RUN),
+        "stick_slip": lambda grid: stick_slip.summarize(grid, **RUN),
         "solvers": lambda grid: solvers.summarize(grid, {}, 0.01),
         "figures": lambda grid: open_point(grid, "linearized", "minus", "0.2000"),
     }

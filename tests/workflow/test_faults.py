@@ -120,9 +120,9 @@ def test_scripts_that_die(finished, copy):
     for name in ("figures/equilibrium.pdf", "figures/distance.png", "summary/stick_slip.nc"):
         (results / name).unlink()
     faults = {
-        ".figure_equilibrium.py": killed_at_the_move("equilibrium.png"),
-        ".figure_distance.py": out_of_memory("burridge_knopoff.figures.distance", 1),
-        ".stick_slip.py": crash("burridge_knopoff.summaries.stick_slip", "summarize"),
+        "figure_equilibrium.log": killed_at_the_move("equilibrium.png"),
+        "figure_distance.log": out_of_memory("burridge_knopoff.figures.distance", 1),
+        "logs/stick_slip.log": crash("burridge_knopoff.summaries.stick_slip", "summarize"),
     }
     process = begin(copy, environment=broken(copy, faults))
     assert process.wait() == 1

@@ -13,7 +13,8 @@ from tests.workflow.test_runs import jobs
 
 #: Rules by stage; an edit makes some of them run again, and all that needs their output.
 POINTS = ("simulate", "simulate_solver")
-SUMMARIES = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip", "solvers")
+OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
+SUMMARIES = (*OF_POINTS, "solvers")
 STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "orbits", "equilibrium", "two_blocks")
 FIGURES = tuple(
     f"figure_{name}"
@@ -104,8 +105,8 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
         ("figures/style.py", FIGURES),
         ("claims/history.py", ("claims",)),
         ("report/page.py", ("report",)),
-        ("../../workflow/scripts/figure_agreement.py", ("figure_agreement",)),
-        ("../../workflow/scripts/stick_slip.py", ("stick_slip",)),
+        ("../../workflow/scripts/figure.py", FIGURES),
+        ("../../workflow/scripts/summary.py", (*OF_POINTS, "orbits", "equilibrium")),
     ],
 )
 def test_code_remakes_what_depends_on_it(studied, name, roots):

@@ -14,13 +14,11 @@ rule attractors_of_law:
         mem_mb=400,
         runtime=240,
     params:
+        **keys("initial", "start", "attractors"),
         grid=list(STUDY.grid.values()),
-        initial=STUDY.config["initial"],
         model=lambda wildcards: model_config([wildcards.law]),
-        start=STUDY.config["start"],
-        attractors=STUDY.config["attractors"],
         motion=motion_config(),
-        sources=script_sources("attractors_of_law"),
+        sources=sources("attractors_of_law"),
     message:
         "attractors of the {wildcards.law} law along a"
     script:
@@ -31,8 +29,8 @@ rule attractors:
     input:
         expand(rules.attractors_of_law.output, law=STUDY.laws),
     output:
-        dataset=f"{SUMMARY}/attractors.nc",
-        digest=report(
+        f"{SUMMARY}/attractors.nc",
+        report(
             f"{SUMMARY}/attractors.txt",
             caption="../report/attractors_text.rst",
             category="Attractors",
@@ -46,8 +44,9 @@ rule attractors:
         mem_mb=400,
         runtime=10,
     params:
-        sources=script_sources("attractors"),
+        summary="attractors",
+        sources=sources("merge", "summaries.attractors"),
     message:
         "attractors of all laws"
     script:
-        "../scripts/attractors.py"
+        "../scripts/merge.py"

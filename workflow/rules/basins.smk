@@ -1,26 +1,35 @@
 # Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
 
 
-BASIN_MAPS = [
-    (law, a) for law, values in STUDY.config["basins"]["a"].items() for a in values
-]
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
 PLANE_STATE = STUDY.config["basins"]["initial"]
 
 
+# Keys of the section that a job uses: what has a name of its own, or changes no map, is not among them.
+BASIN_KEYS = {
+    job: {
+        key: value
+        for key, value in STUDY.config["basins"].items()
+        if key not in {"a", "initial", "threads", *unused}
+    }
+    for job, unused in {
+        "tile": ["pairs"],
+        "pairs": ["pixels", "tiles"],
+        "maps": [],
+    }.items()
+}
 # What both kinds of jobs of a map depend on.
 BASIN_PARAMS = {
     "state": {"name": PLANE_STATE, **STUDY.config["initial"][PLANE_STATE]},
-    "start": STUDY.config["start"],
-    "attractors": STUDY.config["attractors"],
+    **keys("start", "attractors"),
     "motion": motion_config(),
 }
 
 
 rule basin_tile:
     input:
-        rules.attractors.output.dataset,
+        f"{SUMMARY}/attractors.nc",
     output:
         TILE,
     log:
@@ -37,8 +46,8 @@ rule basin_tile:
         **BASIN_PARAMS,
         a=lambda wildcards: STUDY.value(wildcards.a),
         model=lambda wildcards: model_config([wildcards.law]),
-        basins=basin_config("pairs"),
-        sources=script_sources("basin_tile"),
+        basins=BASIN_KEYS["tile"],
+        sources=sources("basin_tile"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
     script:
@@ -47,7 +56,7 @@ rule basin_tile:
 
 rule basin_pairs:
     input:
-        rules.attractors.output.dataset,
+        f"{SUMMARY}/attractors.nc",
     output:
         f"{RESULTS}/basins/{{law}}/a{{a}}/pairs.nc",
     log:
@@ -62,8 +71,8 @@ rule basin_pairs:
         **BASIN_PARAMS,
         a=lambda wildcards: STUDY.value(wildcards.a),
         model=lambda wildcards: model_config([wildcards.law]),
-        basins=basin_config("pixels", "tiles"),
-        sources=script_sources("basin_pairs"),
+        basins=BASIN_KEYS["pairs"],
+        sources=sources("basin_pairs"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
     script:
@@ -74,16 +83,16 @@ rule basins:
     input:
         tiles=[
             TILE.format(law=law, a=GRID_NAMES[a], tile=tile)
-            for law, a in BASIN_MAPS
+            for law, a in STUDY.basin_maps
             for tile in range(STUDY.config["basins"]["tiles"])
         ],
         pairs=[
             f"{RESULTS}/basins/{law}/a{GRID_NAMES[a]}/pairs.nc"
-            for law, a in BASIN_MAPS
+            for law, a in STUDY.basin_maps
         ],
     output:
-        dataset=f"{SUMMARY}/basins.nc",
-        digest=report(
+        f"{SUMMARY}/basins.nc",
+        report(
             f"{SUMMARY}/basins.txt",
             caption="../report/basins_text.rst",
             category="Attractors",
@@ -93,17 +102,19 @@ rule basins:
         f"{RESULTS}/logs/basins.log",
     benchmark:
         f"{RESULTS}/benchmarks/basins.tsv"
+    group:
+        group("summaries")
     resources:
         mem_mb=400,
         runtime=10,
     params:
-        maps=BASIN_MAPS,
+        **keys("start"),
+        maps=STUDY.basin_maps,
         model=model_config(),
-        basins=basin_config(),
+        basins=BASIN_KEYS["maps"],
         state=BASIN_PARAMS["state"],
-        start=STUDY.config["start"],
         time_limit=STUDY.config["attractors"]["time_limit"],
-        sources=script_sources("basins"),
+        sources=sources("basins"),
     message:
         "maps of basins of attraction"
     script:

@@ -44,7 +44,7 @@ rule watch_chain:
             },
         },
         threshold=STUDY.config["synchronization_threshold"],
-        sources=script_sources("watch_chain"),
+        sources=sources("watch_chain"),
     message:
         "mirror synchrony of sampled states, {wildcards.blocks} blocks"
     script:
@@ -60,39 +60,15 @@ rule chains_summary:
         f"{RESULTS}/logs/chains_summary.log",
     benchmark:
         f"{RESULTS}/benchmarks/chains_summary.tsv"
+    group:
+        group("summaries")
     resources:
         mem_mb=400,
         runtime=10,
     params:
-        sources=script_sources("chains_summary"),
+        summary="chains",
+        sources=sources("merge", "summaries.chains"),
     message:
         "fraction of synchronizing states over number of blocks and a"
     script:
-        "../scripts/chains_summary.py"
-
-
-rule figure_chains:
-    input:
-        chains=f"{SUMMARY}/chains.nc",
-        two_blocks=f"{SUMMARY}/two_blocks.nc",
-    output:
-        f"{FIGURES}/chains.pdf",
-        report(
-            f"{FIGURES}/chains.png",
-            caption="../report/chains.rst",
-            category="Longer chains",
-            labels={"result": "longer chains, two blocks", "paper": "none"},
-        ),
-    log:
-        f"{RESULTS}/logs/figure_chains.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure_chains.tsv"
-    resources:
-        mem_mb=400,
-        runtime=10,
-    params:
-        sources=script_sources("figure_chains"),
-    message:
-        "figure: longer chains, two blocks under each law"
-    script:
-        "../scripts/figure_chains.py"
+        "../scripts/merge.py"

@@ -3,21 +3,8 @@
 
 rule claims:
     input:
-        summaries=[
-            f"{SUMMARY}/{name}.nc"
-            for name in (
-                "mean_distance",
-                "bifurcation",
-                "lyapunov",
-                "agreement",
-                "attractors",
-                "orbits",
-                "stick_slip",
-                "equilibrium",
-                "solvers",
-                *([] if SINGLE_LENGTH else ["two_blocks"]),
-            )
-        ],
+        [f"{SUMMARY}/{name}.nc" for name in [*SUMMARIES, "attractors", "solvers"]],
+        [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
     output:
         content=f"{SUMMARY}/claims.json",
         table=report(
@@ -31,21 +18,20 @@ rule claims:
         f"{RESULTS}/logs/claims.log",
     benchmark:
         f"{RESULTS}/benchmarks/claims.tsv"
+    group:
+        group("summaries")
     resources:
         mem_mb=1000,
         runtime=10,
     params:
         study=STUDY.name,
         claims=CLAIMS,
-        config={
-            key: STUDY.config[key]
-            for key in (
-                *("v", "contact", "start", "transient", "window", "initial", "motion"),
-                *("laws", "chain"),
-            )
-        },
-        figures=FIGURE_NAMES,
-        sources=script_sources("claims"),
+        config=keys(
+            *("v", "contact", "start", "transient", "window", "initial", "motion"),
+            *("laws", "chain"),
+        ),
+        figures=sorted({Path(path).stem for path in rules.figures.input}),
+        sources=sources("claims"),
     message:
         "verdicts on the claims of the paper"
     script:

@@ -1,4 +1,5 @@
 # Report: one HTML file that opens offline, with the verdicts, charts, figures and commands of the study.
+import hashlib
 
 # Results of the optional stage are no inputs: the report must not make them. It shows those that are there.
 OPTIONAL_RESULTS = {
@@ -19,6 +20,8 @@ rule report:
         f"{RESULTS}/logs/report.log",
     benchmark:
         f"{RESULTS}/benchmarks/report.tsv"
+    group:
+        group("figures")
     resources:
         mem_mb=1000,
         runtime=10,
@@ -26,10 +29,10 @@ rule report:
         # The report shows the whole config.
         config=STUDY.config,
         grid=dict(STUDY.grid),
-        configfile=CONFIG_FILE,
+        configfile=CONFIG_ARGUMENT,
         optional=OPTIONAL_RESULTS,
         benchmarks=f"{RESULTS}/benchmarks",
-        sources=script_sources("report"),
+        sources=sources("report"),
     message:
         f"report: {RESULTS}/report.html"
     script:

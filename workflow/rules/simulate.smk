@@ -1,18 +1,20 @@
 # Points: one simulation for each friction law, initial state and a.
 
-
 POINTS = all_points(STUDY)
 POINT_NUMBERS = {point: number for number, point in enumerate(POINTS)}
 
 
 rule points:
     input:
-        [POINT.format(law=law, initial=initial, a=a) for law, initial, a in POINTS],
+        [
+            f"{RESULTS}/points/{POINT}".format(law=law, initial=initial, a=a)
+            for law, initial, a in POINTS
+        ],
 
 
 rule simulate:
     output:
-        POINT,
+        f"{RESULTS}/points/{POINT}",
     log:
         f"{RESULTS}/logs/simulate/{{law}}/{{initial}}/a{{a}}.log",
     benchmark:

@@ -1,6 +1,8 @@
 # Solvers: the points of a few values of a once more, by every other solver of each law.
 
-SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{{law}}/{{initial}}/a{{a}}.nc"
+from burridge_knopoff.running.settings import SOLVERS
+
+SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT}"
 SOLVER_GRID = {
     name: value
     for name, value in STUDY.grid.items()
@@ -46,7 +48,7 @@ rule simulate_solver:
 rule solvers:
     input:
         points=[
-            POINT.format(law=law, initial=initial, a=a)
+            f"{RESULTS}/points/{POINT}".format(law=law, initial=initial, a=a)
             for law in STUDY.laws
             for initial in STUDY.initial
             for a in SOLVER_GRID
@@ -61,11 +63,13 @@ rule solvers:
         f"{RESULTS}/logs/solvers.log",
     benchmark:
         f"{RESULTS}/benchmarks/solvers.tsv"
+    group:
+        group("summaries")
     resources:
         mem_mb=400,
         runtime=10,
     params:
-        points={**STUDY.points, "a": SOLVER_GRID},
+        points={**STUDY.points, "folder": RESULTS, "a": SOLVER_GRID},
         others={
             solver: {
                 law: asdict(STUDY.settings(law, solver))
@@ -75,7 +79,7 @@ rule solvers:
             for solver in SOLVERS
         },
         step=STUDY.config["solvers"]["step"],
-        sources=script_sources("solvers"),
+        sources=sources("solvers"),
     message:
         "independent solvers of the same equations"
     script:

@@ -16,46 +16,14 @@ rule two_blocks:
         mem_mb=400,
         runtime=30,
     params:
+        **keys("agreement"),
         model=lambda wildcards: other_length_config(),
         sample={key: CHAINS[key] for key in ("seed", "position", "velocity")},
         two_blocks=CHAINS["two_blocks"],
-        settings={
-            key: STUDY.config[key]
-            for key in (
-                "start",
-                "transient",
-                "window",
-                "batches",
-                "lyapunov_alignment",
-            )
-        },
+        settings=keys("start", "transient", "window", "batches", "lyapunov_alignment"),
         motion=motion_config(),
-        agreement=STUDY.config["agreement"],
-        sources=script_sources("two_blocks"),
+        sources=sources("two_blocks"),
     message:
         "two blocks: each law against the first one"
     script:
         "../scripts/two_blocks.py"
-
-
-rule figure_two_blocks:
-    input:
-        f"{SUMMARY}/two_blocks.nc",
-    output:
-        f"{FIGURES}/two_blocks.pdf",
-        report(
-            f"{FIGURES}/two_blocks.png",
-            caption="../report/two_blocks.rst",
-            category="Friction laws",
-            labels={"result": "two blocks under both laws", "paper": "none"},
-        ),
-    log:
-        f"{RESULTS}/logs/figure_two_blocks.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure_two_blocks.tsv"
-    params:
-        sources=script_sources("figure_two_blocks"),
-    message:
-        "figure: two blocks under each law"
-    script:
-        "../scripts/figure_two_blocks.py"

@@ -10,7 +10,7 @@ from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
 
 params = snakemake.params
-grid = Grid.of(Path(snakemake.input.points[0]).parents[2], params.points)
-folder = Path(snakemake.input.others[0]).parents[3]
-others = {solver: grid.elsewhere(folder / solver, settings) for solver, settings in params.others.items()}
+folder = Path(params.points["folder"])
+grid = Grid.of(folder / "points", params.points)
+others = {solver: grid.elsewhere(folder / "solvers" / solver, settings) for solver, settings in params.others.items()}
 write_summary(summarize(grid, others, params.step), snakemake.output[0])

@@ -64,6 +64,11 @@ def read_claims(path: str | Path, schema: str | Path) -> list[Claim]:
     content = read_yaml(path)
     check_names(content, file)
     check_schema(content, read_schema(schema), file)
+    return claims_of(content, file)
+
+
+def claims_of(content: Mapping[str, Any], file: str = "claims") -> list[Claim]:
+    """Return the claims in the content of such a file; raises ConfigError for what the schema cannot forbid."""
     return [_claim(name, item, f"{file}: {name}") for name, item in content.items()]
 
 

@@ -10,6 +10,16 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.style import cells, color, label_panels, new_figure, page_width, say_nothing, styled
 
+TITLE = "Agreement of the laws"
+CATEGORY = "Friction laws"
+INPUTS = ("agreement",)
+CONDITION = "has_several_laws"
+CAPTION = """\
+Each law compared with the first one of the study, for each initial state, against a: the difference of ⟨J⟩ with both
+tolerances, the Wasserstein distance between the section points W', and the time until which both laws have the same
+order of events. Shaded where the two disagree, in ⟨J⟩ or in the kind of motion.
+"""
+
 ROUNDING = 1e-17
 
 LABELS = (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")

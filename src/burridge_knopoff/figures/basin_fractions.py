@@ -11,6 +11,15 @@ from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch
 from burridge_knopoff.figures.style import label_panels, new_figure, page_width, styled
 from burridge_knopoff.stability.sampling import fraction_interval
 
+TITLE = "Basin fractions and sweeps"
+CATEGORY = "Attractors"
+INPUTS = ("attractors",)
+CAPTION = """\
+Above: the fraction of sampled initial states that reach each branch of attractors against a, with 95 % Wilson
+intervals; crosses are states whose attractor is undetermined. Below: ⟨J⟩ of the attractors that are followed as a is
+raised or lowered.
+"""
+
 
 @styled
 def draw(attractors: xarray.Dataset) -> Figure:

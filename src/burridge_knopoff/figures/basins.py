@@ -11,14 +11,25 @@ from matplotlib.patches import Patch
 from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
 from burridge_knopoff.figures.style import PAGE, label_panels, styled
 
+TITLE = "Basins of attraction"
+CATEGORY = "Attractors"
+INPUTS = ("basins", "attractors")
+FROM_STUDY = ("marked_states",)
+CONDITION = "basin_maps"
+CAPTION = """\
+Maps over the initial positions U_1(0) and U_N(0) of the end blocks, each pixel in the colour of the branch that is
+reached; the mirror image of a branch in a lighter shade, undetermined in black. The initial states of the study that
+lie in this plane are marked.
+"""
+
 COLUMNS = 2
 
 
 @styled
-def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, tuple[float, float]]) -> Figure:
+def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict[str, tuple[float, float]]) -> Figure:
     """Draw each map in the colours of the branches reached, mirror images in a lighter shade, undetermined in black.
 
-    marked : U_1(0) and U_N(0) of initial states that lie in the plane of the maps, by name
+    marked_states : U_1(0) and U_N(0) of initial states that lie in the plane of the maps, by name
     """
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
@@ -48,7 +59,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked: dict[str, t
             shown[branch, -side] = Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name)
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
         panel.set_box_aspect(1.0)
-        for name, (x, y) in marked.items():
+        for name, (x, y) in marked_states.items():
             if not (extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]):
                 continue
             panel.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=1.0)

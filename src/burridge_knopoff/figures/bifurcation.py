@@ -9,6 +9,15 @@ from burridge_knopoff.dataset.variables import DIRECTION
 from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
 from burridge_knopoff.summaries.bifurcation import section_points
 
+TITLE = "Bifurcation diagrams"
+CATEGORY = "Synchronization"
+PAPER = "Figs. 4a, 4b"
+INPUTS = ("bifurcation",)
+CAPTION = """\
+Section points W' at W = 0 against a, for each law and initial state; upward crossings above 0, downward crossings
+below. W is the sum of the positions relative to uniform sliding.
+"""
+
 _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"].split(), strict=True))
 
 

@@ -13,6 +13,15 @@ from burridge_knopoff.figures.style import PAGE, color, label_panels, styled
 from burridge_knopoff.figures.two_blocks import draw_panel
 from burridge_knopoff.stability.chains import STANDARD_ERRORS
 
+TITLE = "Longer chains"
+CATEGORY = "Longer chains"
+INPUTS = ("chains", "two_blocks")
+CAPTION = """\
+Small panels: the fraction of sampled states that end in mirror synchrony against a, for each number of blocks N, with
+confidence intervals; squares mark where synchrony is stable. Below: ⟨J⟩ of two blocks under each law, shaded where one
+disagrees with the first one.
+"""
+
 COLUMNS = 3
 ROW_HEIGHT = 1.35
 TWO_BLOCKS_HEIGHT = 2.3

@@ -10,22 +10,31 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
 
+TITLE = "J against time"
+CATEGORY = "Runs"
+PAPER = "Figs. 5a, 5b"
+INPUTS = ("runs",)
+CAPTION = """\
+The phase-space distance J between the end blocks against time τ in single runs from each initial state, on a linear
+and on a logarithmic scale. The linear panels leave out the first relaxation.
+"""
+
 # Below this J is rounding; on a logarithmic axis it would take all the room.
 FLOOR = 1e-16
 
 
 @styled
-def draw(points: Mapping[str, xarray.Dataset]) -> Figure:
+def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     """Draw J(τ), a panel for each {initial state: point file}, with the same run on a logarithmic scale below.
 
     The linear panels leave out the first relaxation, which is up to a hundred times what follows; a run that ended
     early leaves the rest of its panel empty.
     """
-    figure, panels = new_figure(page_width(len(points)), 4.0, rows=2, columns=len(points), share_rows=False)
+    figure, panels = new_figure(page_width(len(runs)), 4.0, rows=2, columns=len(runs), share_rows=False)
     titles = []
-    for column, (initial, point) in enumerate(points.items()):
+    for column, (initial, point) in enumerate(runs.items()):
         for row in range(2):
-            panel = panels[row * len(points) + column]
+            panel = panels[row * len(runs) + column]
             distance = point["distance"].values
             panel.plot(point["time"], np.maximum(distance, FLOOR) if row else distance, color=color(0), linewidth=0.5)
             if row == 0:
@@ -33,12 +42,12 @@ def draw(points: Mapping[str, xarray.Dataset]) -> Figure:
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
         panel.set_xlabel(r"$\tau$")
         titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")
-    for panel in (panels[0], panels[len(points)]):
+    for panel in (panels[0], panels[len(runs)]):
         panel.set_ylabel(r"$J(\tau)$")
-    for panel in panels[len(points) :]:
+    for panel in panels[len(runs) :]:
         panel.set(yscale="log", ylim=(FLOOR, 10.0))
     panels[0].legend(loc="upper right", handlelength=1.2)
-    label_panels(panels, titles + [f"{title}, logarithmic" for title in points])
+    label_panels(panels, titles + [f"{title}, logarithmic" for title in runs])
     return figure
 
 

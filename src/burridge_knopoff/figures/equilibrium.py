@@ -11,6 +11,14 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, styled
 
+TITLE = "Uniform sliding"
+CATEGORY = "Model"
+INPUTS = ("equilibrium",)
+CAPTION = """\
+(a) The eigenvalues λ of its stability matrix for all a of the study, for each law. (b) The largest real part, which is
+the growth rate of perturbations, against a, and what the tangent dynamics of the simulation shows.
+"""
+
 # Of the first and of the last law: where curves lie on each other both are seen.
 WIDTHS = (2.2, 1.0)
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 import xarray
@@ -13,7 +14,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import BEHIND, PAGE, color, dashes, label_panels, new_figure, styled
-from burridge_knopoff.laws import Law
+from burridge_knopoff.laws import Law, law_of
+
+TITLE = "Friction laws"
+CATEGORY = "Model"
+PAPER = "Fig. 2"
+INPUTS = ("mean_distance",)
+FROM_STUDY = ("law_descriptions", "shown_a")
+CAPTION = """\
+(a) The friction Φ of each law, as a share of the static friction, against the velocity U' of a block, for the value
+of a of the single runs and the largest of the study, and the static friction that holds a stuck block (U' = 0). (b) The
+least friction on a slipping block in each run, against a.
+"""
 
 # Largest velocity that is drawn.
 FASTEST = 3.0
@@ -24,11 +36,14 @@ LETTERS = 100
 
 
 @styled
-def draw(laws: Sequence[Law], a_values: Sequence[float], mean_distance: xarray.Dataset) -> Figure:
-    """Draw Φ of each law for some values of a, and the least friction on a slipping block in each run.
+def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[str, Any]], shown_a: float) -> Figure:
+    """Draw Φ of each law at two values of a, and the least friction on a slipping block in each run.
 
-    laws : those of the study, each at any a; a colour each
+    law_descriptions : the laws of the study as its config has them, a colour each
+    shown_a : value of a of the single runs; the other one is the largest of the runs
     """
+    laws = [law_of(name, shown_a, description) for name, description in law_descriptions.items()]
+    a_values = sorted({shown_a, float(mean_distance["a"].max())})
     figure, (left, right) = new_figure(PAGE, 2.8 + 0.17 * len(laws), columns=2, share_rows=False)
     speed = np.linspace(0.0, FASTEST, 301)
     left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, label="stuck")

@@ -12,6 +12,16 @@ from matplotlib.lines import Line2D
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
 from burridge_knopoff.figures.style import cells, label_panels, page_width, styled
 
+TITLE = "⟨J⟩ against a"
+CATEGORY = "Synchronization"
+PAPER = "Figs. 3a, 3b"
+INPUTS = ("mean_distance", "attractors")
+CAPTION = """\
+Above: the time average ⟨J⟩ of the phase-space distance between the end blocks against a, for each law: runs from each
+initial state (black, bars of three standard errors), on top of the attractors that were found, in the colours of their
+branches. Below: the branch that each initial state reaches under each convention of contact and start.
+"""
+
 # Each initial state has a marker; colours are left to the branches.
 MARKERS = "ovs^Dphx"
 

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+
+TITLE = "Motion from {initial}"
+CATEGORY = "Runs"
+PAPER = "Figs. 6, 7"
+FILE = "motion_{initial}"
+INPUTS = ("runs",)
+CAPTION = """\
+Velocities U_i' and positions U_i − vτ of all blocks against time τ at the end of the run from the state {initial}.
+"""
 
 # Later blocks lie above earlier ones and are thinner or broken, so that blocks in synchrony are all seen.
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 2.2)), "-.")
@@ -17,8 +28,9 @@ SHADES = ("#7FB2DA", "#D55E00", "#000000")
 
 
 @styled
-def draw(point: xarray.Dataset) -> Figure:
-    """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the run."""
+def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
+    """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the one run."""
+    (point,) = runs.values()
     figure, panels = new_figure(PAGE, 4.0, rows=2)
     time = point["trajectory_time"].values
     for panel, name in zip(panels, ("velocity", "position"), strict=True):

@@ -14,6 +14,17 @@ from matplotlib.lines import Line2D
 from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, say_nothing, styled
 from burridge_knopoff.study.paper import PAPER_LAWS
 
+TITLE = "The synchronized orbit"
+CATEGORY = "Synchronization"
+INPUTS = ("orbits", "mean_distance")
+CONDITION = "has_synchronized_orbit"
+CAPTION = """\
+(a) Its Floquet multipliers; synchrony is lost where the transverse multiplier μ passes 1. (b) ⟨J⟩ of the stable and
+unstable orbits around that a_c, with the runs of the study. (c) The distance of the end blocks on the orbit that takes
+its place grows as a power of the distance from a_c. (d) How far each law differs from the first one in μ and in the
+period T at the same a; the paper's two laws at the same slope of friction at the driver velocity as well.
+"""
+
 # What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
 NEAR = 0.93
 

@@ -11,6 +11,14 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
 
+TITLE = "Independent solvers"
+CATEGORY = "Friction laws"
+INPUTS = ("solvers",)
+CAPTION = """\
+Every solver of each law at a few values of a: ⟨J⟩, its difference to that of the study's own solver with the standard
+error of that difference as a bar, and the number of steps in a unit of time.
+"""
+
 #: Steps in a unit of time of the paper's own numerical solution.
 PAPER_STEPS = 1e6
 

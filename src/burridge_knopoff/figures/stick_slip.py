@@ -13,6 +13,17 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
 
+TITLE = "Stick-slip cycles"
+CATEGORY = "Runs"
+INPUTS = ("stick_slip",)
+FROM_STUDY = ("shown_law",)
+CAPTION = """\
+Cycles of each block against a, a column for each initial state: the time between two stops, the frequency of the end
+blocks over that of the middle block, by the peaks of the spectra of their velocities and by their stops, the
+correlation of the velocities of the end blocks, and the share of time for which each block sticks. The band and the
+dotted line are what the paper states.
+"""
+
 #: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
 #: half the frequency of the middle one.
 PAPER_CYCLE = (2.0, 3.0)
@@ -24,7 +35,7 @@ MARKERS = ("o", "s", "^")
 
 
 @styled
-def draw(stick_slip: xarray.Dataset, law: str) -> Figure:
+def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
 
     A column for each initial state. Of the blocks the first, the middle and the last one are shown; ratios are those of
@@ -36,7 +47,7 @@ def draw(stick_slip: xarray.Dataset, law: str) -> Figure:
     shown = sorted({1, middle, count})
     figure, panels = new_figure(PAGE, 7.4, rows=4, columns=len(states))
     for column, initial in enumerate(states):
-        run = stick_slip.sel(law=law, initial=initial)
+        run = stick_slip.sel(law=shown_law, initial=initial)
         cycles, ratios, together, sticks = panels[column :: len(states)]
         for n, block in enumerate(shown):
             one = run.sel(block=block)
@@ -63,7 +74,7 @@ def draw(stick_slip: xarray.Dataset, law: str) -> Figure:
         f"$U_1'$ with $U_{{{count}}}'$",
         "stick fraction",
     )
-    label_panels(panels, [f"{initial}, {law} law: {title}" for title in titles for initial in states])
+    label_panels(panels, [f"{initial}, {shown_law} law: {title}" for title in titles for initial in states])
     return figure
 
 

@@ -13,6 +13,7 @@ from burridge_knopoff.report.numbers import exact
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
 from burridge_knopoff.study import Study
+from burridge_knopoff.study.paths import POINT
 
 #: How runs end, in words, in the order of the numbers in files.
 STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED]
@@ -30,7 +31,7 @@ class Commands:
 
     def point(self, law: str, initial: str, a: str) -> str:
         """Return the path of a point file below the results of the study."""
-        return f"points/{law}/{initial}/a{a}.nc"
+        return f"points/{POINT.format(law=law, initial=initial, a=a)}"
 
     def snakemake(self, law: str, initial: str, a: str) -> str:
         """Return the command that makes the point file again; the target stands before --configfile."""
@@ -61,7 +62,7 @@ def embedded_runs(
         "a": list(study.grid.values()),
         "texts": [repr(value) for value in study.grid.values()],
         "names": names,
-        "first": [study.laws.index(study.config["figures"]["law"]), 0, names.index(study.figure_point)],
+        "first": [study.laws.index(study.shown_law), 0, names.index(study.shown_point)],
         "mean_distance": _nested(mean_distance["mean_distance"].values),
         "mean_distance_error": _nested(mean_distance["mean_distance_error"].values),
         "status": mean_distance["status"].values.tolist(),

@@ -13,6 +13,11 @@ from burridge_knopoff.model.model import Model
 MODEL_KEYS = ("laws", "chain", "v", "contact")
 
 
+def models_of(config: Mapping[str, Any], a: float, blocks: int) -> list[Model]:
+    """Return a model for each law of a study, at one a; raises ValueError as `model_of` does."""
+    return [model_of(config, law, a, blocks) for law in config["laws"]]
+
+
 def model_of(config: Mapping[str, Any], law: str, a: float, blocks: int) -> Model:
     """Return the model of a study under one of its laws, at one a; raises ValueError if there is none."""
     chain = Chain(blocks, **config["chain"])

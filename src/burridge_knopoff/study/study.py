@@ -62,10 +62,63 @@ class Study:
         return len(next(iter(self.config["initial"].values()))["position"])
 
     @property
-    def figure_point(self) -> str:
+    def shown_point(self) -> str:
         """Name of the value of a that the figures of single runs show."""
         shown = self.config["figures"].get("a", PAPER_A)
         return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
+
+    @property
+    def shown_a(self) -> float:
+        """The value of a that the figures of single runs show."""
+        return self.grid[self.shown_point]
+
+    @property
+    def shown_law(self) -> str:
+        """The law that the figures of single runs show."""
+        return self.config["figures"]["law"]
+
+    def shown_runs(self, wildcards: Mapping[str, str]) -> dict[str, Any]:
+        """Return `points` of the runs that figures of single runs show, of one initial state if a wildcard names it."""
+        points, law = self.points, self.shown_law
+        initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
+        only = {key: {law: points[key][law]} for key in ("laws", "settings")}
+        folder = f"results/{self.name}/points"
+        return {**points, **only, "folder": folder, "initial": initial, "a": {self.shown_point: self.shown_a}}
+
+    @property
+    def law_descriptions(self) -> dict[str, dict[str, Any]]:
+        """The laws as the config describes them, by name."""
+        return self.config["laws"]
+
+    @property
+    def has_several_laws(self) -> bool:
+        """Whether there is a law to compare with the first one."""
+        return len(self.laws) > 1
+
+    @property
+    def is_mirror_symmetric(self) -> bool:
+        """Whether the chain is its own mirror image."""
+        return self.model(self.laws[0], self.shown_a).chain.is_mirror_symmetric
+
+    @property
+    def has_synchronized_orbit(self) -> bool:
+        """Whether the orbit of three blocks is looked for, the last of which is the mirror image of the first."""
+        return self.blocks == 3 and self.is_mirror_symmetric
+
+    @property
+    def basin_maps(self) -> list[tuple[str, float]]:
+        """Law and a of every map of basins."""
+        return [(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
+
+    @property
+    def has_other_lengths(self) -> bool:
+        """Whether there are chains of other lengths, of two blocks among them."""
+        return not self.single_length_key
+
+    @property
+    def single_length_key(self) -> str:
+        """Key of the chain that has a number for each spring or block: there is no other length then. Else empty."""
+        return next((key for key, value in self.config["chain"].items() if isinstance(value, list)), "")
 
     @property
     def marked_states(self) -> dict[str, tuple[float, float]]:
@@ -159,7 +212,7 @@ def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) 
     shown = filled["figures"].get("a")
     if shown is not None and shown not in values:
         raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
-    fill_compared(filled, set(values), grid[study.figure_point], file)
+    fill_compared(filled, set(values), study.shown_a, file)
     check_size(filled, grid, file)
     return Study(_with_numbers(filled, schema), grid)
 

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.dataset.summary import STATE, axes, open_summary, summary
+from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.software import provenance
@@ -93,16 +92,16 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
     )
 
 
-def summarize(paths: Sequence[str | Path]) -> xarray.Dataset:
+def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     """Put chain files together, in the order of their numbers of blocks, and count outcomes.
 
-    Raises ValueError, one line, if a file cannot be read or was made with other settings than the first.
+    Raises ValueError, one line, if one was made with other settings than the first.
     """
-    chains = [open_summary(path) for path in paths]
-    for path, chain in zip(paths, chains, strict=True):
-        if _settings(chain) != _settings(chains[0]):
-            raise ValueError(f"{path}: made with other settings than {paths[0]}; delete both and run snakemake again")
-    chains.sort(key=lambda chain: chain.attrs["blocks"])
+    for part in parts:
+        if _settings(part) != _settings(parts[0]):
+            one, other = (dataset.encoding["source"] for dataset in (part, parts[0]))
+            raise ValueError(f"{one}: made with other settings than {other}; delete both and run snakemake again")
+    chains = sorted(parts, key=lambda chain: chain.attrs["blocks"])
     first = chains[0]
     values = {name: np.stack([chain[name].values for chain in chains]) for name in CHAIN_VARIABLES}
     values.update(_fractions(values["outcome"], values["pairs"], values["mean_distance"]))

@@ -46,18 +46,18 @@ _COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "me
 
 
 def summarize(
-    grid: Grid, exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
+    grid: Grid, lyapunov_exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
 ) -> xarray.Dataset:
     """Return exponents and kinds of motion with the evidence for them.
 
-    exponents : how many were computed in each run
+    lyapunov_exponents : how many were computed in each run
     motion : the config's section of that name: thresholds of the kinds of motion
     """
     settings = MotionSettings(**motion, synchronization_threshold=synchronization_threshold)
     symmetric = grid.is_mirror_symmetric
     values = {}
     for name, item in VARIABLES.items():
-        shape = (*grid.shape, exponents) if "exponent" in item.dimensions else grid.shape
+        shape = (*grid.shape, lyapunov_exponents) if "exponent" in item.dimensions else grid.shape
         values[name] = np.zeros(shape, dtype=item.dtype)
     for index, point in grid:
         read = read_point(grid, *point, [*_COPIED, "crossing_velocity", "crossing_direction"])

@@ -19,6 +19,7 @@ from burridge_knopoff.provenance.seal import BadFile, Seal, read_seal
 from burridge_knopoff.provenance.software import SOFTWARE
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
+from burridge_knopoff.study.paths import POINT
 
 _EVENT = ("time", "block", "kind")
 
@@ -85,7 +86,7 @@ class Grid:
 
     def path(self, law: str, initial: str, a: str) -> Path:
         """Return the path of a point file."""
-        return self.folder / law / initial / f"a{a}.nc"
+        return self.folder / POINT.format(law=law, initial=initial, a=a)
 
     def command(self, law: str, initial: str, a: str) -> str:
         """Return the `bk simulate` command that makes a point."""
@@ -129,6 +130,12 @@ def open_point(grid: Grid, law: str, initial: str, a: str) -> xarray.Dataset:
         return xarray.load_dataset(path, engine="netcdf4")
     except (OSError, RuntimeError, ValueError) as error:
         raise BadFile(path, f"is not a point file ({error})") from error
+
+
+def open_runs(grid: Grid) -> dict[str, xarray.Dataset]:
+    """Return the points of a grid of one law and one a, as `open_point` does, by initial state."""
+    (law,), (a,) = grid.laws, grid.a
+    return {initial: open_point(grid, law, initial, a) for initial in grid.initial}
 
 
 def check_run(path: Path, command: str) -> Seal:

@@ -51,11 +51,12 @@ BLOCK = Variable(("block",), "i2", "block number, 1 to N along the chain", coord
 _READ = ["status", "velocity", "trajectory_time", *EVENTS]
 
 
-def summarize(grid: Grid, blocks: int, transient: float, window: float, batches: int) -> xarray.Dataset:
+def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarray.Dataset:
     """Return rates, durations and velocities of the stick-slip motion; a run that did not complete has NaN.
 
     transient, window, batches : of the runs; stops are counted from transient to transient + window
     """
+    blocks = grid.blocks
     sizes = dict(zip(_POINT, grid.shape, strict=True), block=blocks)
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for index, point in grid:

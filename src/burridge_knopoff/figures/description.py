@@ -1,0 +1,78 @@
+"""What each figure says of itself: rules, `snakemake --report` and the report of a study read it without drawing.
+
+A module of this folder that assigns CAPTION is a figure. It has a function `draw` and, as plain constants:
+
+TITLE, CATEGORY : in words; PAPER : figures of the paper that it shows again, as "Fig. 2"
+CAPTION : what is seen; {initial} stands for an initial state
+INPUTS : names of the summaries that `draw` takes, in order; `runs` are the point files of single runs
+FROM_STUDY : names of properties of `Study` that it takes besides
+CONDITION : property of `Study` without which there is no such figure
+FILE : name of the picture if it is not that of the module
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Description:
+    """What the figure of a module says of itself."""
+
+    name: str
+    title: str
+    category: str
+    caption: str
+    inputs: tuple[str, ...]
+    from_study: tuple[str, ...] = ()
+    condition: str = ""
+    paper: str = ""
+    file: str = ""
+
+    def caption_of(self, wildcards: Mapping[str, str]) -> str:
+        """Return the caption of one picture, in one paragraph, with what the paper has of it."""
+        paper = f" The paper's {self.paper}." if self.paper else ""
+        return _filled(f"{' '.join(self.caption.split())}{paper}", wildcards)
+
+    def title_of(self, wildcards: Mapping[str, str]) -> str:
+        """Return the title of one picture."""
+        return _filled(self.title, wildcards)
+
+
+def _filled(text: str, wildcards: Mapping[str, str]) -> str:
+    return text.replace("{initial}", wildcards.get("initial", ""))
+
+
+def figure_descriptions() -> list[Description]:
+    """Return all figures, those of the paper first, then by name."""
+    found = [_described(path) for path in Path(__file__).parent.glob("*.py")]
+    figures = [description for description in found if description is not None]
+    return sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name))
+
+
+def described_picture(file: str) -> tuple[str, str]:
+    """Return title and caption of a picture by the name of its file.
+
+    Raises ValueError if no figure makes it.
+    """
+    for figure in figure_descriptions():
+        head, wildcard, _ = figure.file.partition("{initial}")
+        if file == figure.file or (wildcard and file.startswith(head)):
+            wildcards = {"initial": file.removeprefix(head)}
+            return figure.title_of(wildcards), figure.caption_of(wildcards)
+    raise ValueError(f"{file}: no figure of that name")
+
+
+def _described(path: Path) -> Description | None:
+    constants = {}
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            constants[node.targets[0].id] = node.value
+    if "CAPTION" not in constants:
+        return None
+    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
+    told = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
+    return Description(path.stem, **{"file": path.stem, **told})

@@ -1,0 +1,70 @@
+"""docs/architecture.md: rooms import from rooms below them, and every file that the page names is there."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "src" / "burridge_knopoff"
+PAGE = (ROOT / "docs" / "architecture.md").read_text()
+PICTURE = PAGE.split("```text\n")[1].split("```")[0]
+NAMED = [name for name in re.findall(r"`([\w/]+(?:\.\w+)?/?)`", PAGE) if "/" in name]
+
+
+def floors():
+    """Return {room: its floor, counted from below} as the page draws them."""
+    inside = PICTURE.split(" src/burridge_knopoff ")[1].split(" src/snakemake")[0].splitlines()[1:-1]
+    rows = [re.split(r"\s{3,}", line.strip())[:-1] for line in inside]
+    names = [[name for cell in row for name in re.split(r",\s*", cell)] for row in rows]
+    return {name: len(names) - number for number, row in enumerate(names) for name in row}
+
+
+def imports(path):
+    """Return the rooms that a file imports from, leaving out what only a type checker reads."""
+    tree = ast.parse(path.read_text())
+    checked = [node for node in ast.walk(tree) if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)]
+    skipped = {id(inner) for node in checked for inner in ast.walk(node)}
+    rooms = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module and id(node) not in skipped:
+            module = node.module.removeprefix("cython.cimports.")
+            if module.startswith("burridge_knopoff."):
+                rooms.add(module.split(".")[1])
+    return rooms
+
+
+def room_of(path):
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+@pytest.mark.parametrize("room", sorted({room_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}))
+def test_a_room_imports_from_below(room):
+    floor = floors()
+    files = [path for path in PACKAGE.rglob("*.py") if room_of(path) == room]
+    for path in files:
+        for other in imports(path) - {room}:
+            assert floor[other] < floor[room] or (room, other) == ("cli", "check"), f"{path}: {other}"
+
+
+def test_every_room_is_in_the_picture():
+    assert set(floors()) == {room_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}
+
+
+@pytest.mark.parametrize("name", sorted(set(NAMED)))
+def test_every_file_that_is_named_is_there(name):
+    assert any((folder / name).exists() for folder in (ROOT, PACKAGE)), name
+
+
+def test_the_display_and_the_package():
+    """The package knows nothing of Snakemake."""
+    for path in PACKAGE.rglob("*.py"):
+        names = {node.module for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)}
+        names |= {
+            alias.name
+            for node in ast.walk(ast.parse(path.read_text()))
+            if isinstance(node, ast.Import)
+            for alias in node.names
+        }
+        assert not [name for name in names if name and name.split(".")[0].startswith("snakemake")], path

@@ -1,0 +1,180 @@
+# The study that the config describes, where its results lie, and what rules of several stages use.
+import os
+import shlex
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+from snakemake.utils import update_config
+
+from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
+
+# Before anything imports the kernel. What is to run can be seen without one.
+try:
+    check_kernel(compiled=not workflow.output_settings.dryrun)
+except KernelError as error:
+    sys.exit(f"{error}")
+
+from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.provenance.files import (
+    check_folder,
+    check_folders,
+    display_path,
+    nearest_folder,
+)
+from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study import (
+    ConfigError,
+    all_points,
+    load_study,
+    read_config,
+    read_schema,
+    read_yaml,
+)
+from burridge_knopoff.study.model import MODEL_KEYS
+from burridge_knopoff.study.paths import POINT
+from snakemake_logger_plugin_study.closing import closing_lines
+from snakemake_logger_plugin_study.command_line import SEVERAL_FILES
+from snakemake_logger_plugin_study.outcome import say_outcome
+from snakemake_logger_plugin_study.plan import announce
+
+BEGINNING = time.monotonic()
+ROOT = Path(workflow.basedir)
+# One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+if len(workflow.configfiles) > 1:
+    sys.exit(SEVERAL_FILES)
+if " " in sys.executable:
+    sys.exit(
+        f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
+    )
+CONFIG_FILE = workflow.configfiles[0]
+OVERRIDES = workflow.config_settings.config
+
+try:
+    CLAIMS_FILE = ROOT / "config/claims.yaml"
+    read_claims(CLAIMS_FILE, ROOT / "workflow/schemas/claims.schema.yaml")
+    CLAIMS = read_yaml(CLAIMS_FILE)
+    # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
+    GIVEN = read_config(CONFIG_FILE)
+    update_config(GIVEN, OVERRIDES)
+    STUDY = load_study(
+        GIVEN,
+        read_schema(ROOT / "workflow/schemas/config.schema.yaml"),
+        display_path(CONFIG_FILE),
+    )
+    RESULTS = f"results/{STUDY.name}"
+    # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
+    check_folder(os.path.abspath(".snakemake"))
+    nearest_folder(RESULTS)
+except (ConfigError, OSError) as error:
+    sys.exit(f"{error}")
+
+SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
+
+# How the study is named to `snakemake`: its config file, empty for the default one, and all arguments.
+CONFIG_ARGUMENT = os.path.relpath(CONFIG_FILE)
+if Path(CONFIG_FILE).resolve() == (ROOT / "config/paper.yaml").resolve():
+    CONFIG_ARGUMENT = ""
+ARGUMENTS = []
+if ROOT.resolve() != Path.cwd():
+    ARGUMENTS += ["-s", os.path.relpath(workflow.main_snakefile)]
+if CONFIG_ARGUMENT:
+    ARGUMENTS += ["--configfile", CONFIG_ARGUMENT]
+if OVERRIDES:
+    ARGUMENTS += ["--config", *(f"{key}={value}" for key, value in OVERRIDES.items())]
+
+# Programs that submit jobs tell the studies of a folder apart by it.
+os.environ.update(BK_RESULTS=RESULTS)
+
+
+# Jobs find the `bk` of this environment, activated or not.
+shell.prefix(
+    f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
+)
+
+
+wildcard_constraints:
+    law="|".join(STUDY.laws),
+    initial="|".join(STUDY.initial),
+    a=r"\d+\.\d+",
+
+
+def prepare_results():
+    """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
+    try:
+        check_folders(RESULTS)
+        write_study_record(
+            RESULTS, STUDY, CONFIG_FILE, read_yaml(CONFIG_FILE), shlex.join(ARGUMENTS)
+        )
+    except OSError as error:
+        sys.exit(f"{error}")
+    announce(workflow)
+
+
+def say_end(success):
+    """Say what the run made and what it found, or what failed."""
+    say_outcome(
+        workflow,
+        closing_lines,
+        results=RESULTS,
+        seconds=time.monotonic() - BEGINNING,
+        success=success,
+    )
+
+
+def sources(script, *modules):
+    """Return the fingerprint of a script, of modules that it picks by name, and of all that they import."""
+    return source_fingerprint(
+        ROOT / f"workflow/scripts/{script}.py",
+        *(f"burridge_knopoff.{module}" for module in modules),
+    )
+
+
+def keys(*names):
+    """Return these keys of the config: a rule has those that it uses among its params, and no others."""
+    return {name: STUDY.config[name] for name in names}
+
+
+def group(name):
+    """Return the name of a group of jobs if the profile has it among `group-components`, else None."""
+    return name if name in workflow.group_settings.group_components else None
+
+
+def fixed_group(name, number):
+    """Return the group of a job, given its number among those of its rule; None unless `group-components` has a size.
+
+    Snakemake would put jobs together at random. These groups are always the same, so that a run finds those of an
+    earlier one that was killed.
+    """
+    size = workflow.group_settings.group_components.get(name, 1)
+    if size == 1 or number is None:
+        return None
+    group = f"{name}{number // size}"
+    # Snakemake unites jobs that need nothing of each other up to the size of the parent group.
+    workflow.parent_groupids[group] = name
+    return group
+
+
+def model_config(laws=STUDY.laws):
+    """Return what decides the models of a study under some of its laws; see `study.model.model_of`."""
+    config = keys(*MODEL_KEYS)
+    return {**config, "laws": {law: config["laws"][law] for law in laws}}
+
+
+def other_length_config(laws=STUDY.laws):
+    """Return the same for chains of other lengths; raises ConfigError if the study has one length only."""
+    key = STUDY.single_length_key
+    if key:
+        raise ConfigError(
+            f"chain.{key}: {STUDY.config['chain'][key]} is not allowed for chains of another length: one number"
+        )
+    return model_config(laws)
+
+
+def motion_config():
+    """Return how kinds of motion are told."""
+    return {**STUDY.config["motion"], **keys("synchronization_threshold")}

@@ -1,0 +1,79 @@
+# Summaries of points, and of models alone: a netCDF file a question, by the module of its name in burridge_knopoff.summaries.
+
+# What a summary is of; what else it reads; keys of the config that it uses; texts beside it, {suffix: result}.
+SUMMARIES = {
+    "mean_distance": {"of": "points", "keys": ["synchronization_threshold"]},
+    "bifurcation": {"of": "points", "mem_mb": 1000},
+    "lyapunov": {
+        "of": "points",
+        "keys": ["lyapunov_exponents", "synchronization_threshold", "motion"],
+    },
+    "agreement": {
+        "of": "points",
+        "summaries": ["lyapunov"],
+        "keys": ["synchronization_threshold", "agreement"],
+        "texts": {"csv": "table of the agreement", "txt": "agreement in words"},
+    },
+    "stick_slip": {"of": "points", "keys": ["transient", "window", "batches"]},
+    "orbits": {"of": "models"},
+    "equilibrium": {"of": "models"},
+}
+SUMMARY_FILES = {"points": {"points": rules.points.input}, "models": {}}
+SUMMARY_PARAMS = {
+    "points": {"points": {"folder": f"{RESULTS}/points", **STUDY.points}},
+    "models": {
+        "model": model_config(),
+        "blocks": STUDY.blocks,
+        "grid": list(STUDY.grid.values()),
+    },
+}
+
+
+rule summary:
+    input:
+        expand(f"{SUMMARY}/{{name}}.nc", name=[*SUMMARIES, "attractors", "solvers"]),
+        multiext(f"{SUMMARY}/agreement", ".csv", ".txt"),
+        f"{SUMMARY}/attractors.txt",
+        multiext(f"{SUMMARY}/basins", ".nc", ".txt") if STUDY.basin_maps else [],
+        [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
+        multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md"),
+
+
+for name, row in SUMMARIES.items():
+
+    rule:
+        name:
+            name
+        input:
+            **SUMMARY_FILES[row["of"]],
+            summaries=[f"{SUMMARY}/{other}.nc" for other in row.get("summaries", [])],
+        output:
+            f"{SUMMARY}/{name}.nc",
+            [
+                report(
+                    f"{SUMMARY}/{name}.{suffix}",
+                    caption=f"../report/{name}_{suffix}.rst",
+                    category="Friction laws",
+                    labels={"result": result, "paper": "none"},
+                )
+                for suffix, result in row.get("texts", {}).items()
+            ],
+        log:
+            f"{RESULTS}/logs/{name}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/{name}.tsv"
+        group:
+            group("summaries")
+        resources:
+            mem_mb=row.get("mem_mb", 400),
+            runtime=30,
+        params:
+            **SUMMARY_PARAMS[row["of"]],
+            summary=name,
+            of=row["of"],
+            config=keys(*row.get("keys", [])),
+            sources=sources("summary", f"summaries.{name}"),
+        message:
+            f"summary: {name}"
+        script:
+            "../scripts/summary.py"

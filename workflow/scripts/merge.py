@@ -1,0 +1,13 @@
+"""Summary: the files of a stage, one for each of its jobs, put together by the module of its rule."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from importlib import import_module
+
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.summaries.results import write_results
+
+module = import_module(f"burridge_knopoff.summaries.{snakemake.params.summary}")
+write_results(module.merge([open_summary(path) for path in snakemake.input]), module, snakemake.output)
