@@ -3,7 +3,6 @@ import hashlib
 import os
 import shlex
 import sys
-import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -20,7 +19,6 @@ except KernelError as error:
     sys.exit(f"{error}")
 
 from burridge_knopoff.claims.ledger import read_claims
-from snakemake_logger_plugin_study.closing import closing_lines
 from burridge_knopoff.study import (
     ConfigError,
     all_points,
@@ -38,15 +36,12 @@ from burridge_knopoff.provenance.files import (
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.provenance.record import write_study_record
-from snakemake_logger_plugin_study.command_line import SEVERAL_FILES
-from snakemake_logger_plugin_study.outcome import say_outcome
-from snakemake_logger_plugin_study.plan import announce
+from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.refusal import SEVERAL_FILES
 
 SNAKEFILE = Path(workflow.main_snakefile).resolve()
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
-BEGIN = time.monotonic()
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
 DEFAULT_CONFIG = Path(workflow.basedir, "config/paper.yaml")
@@ -168,24 +163,4 @@ onstart:
         )
     except OSError as error:
         sys.exit(f"{error}")
-    announce(workflow)
-
-
-onsuccess:
-    say_outcome(
-        workflow,
-        closing_lines,
-        results=RESULTS,
-        seconds=time.monotonic() - BEGIN,
-        success=True,
-    )
-
-
-onerror:
-    say_outcome(
-        workflow,
-        closing_lines,
-        results=RESULTS,
-        seconds=time.monotonic() - BEGIN,
-        success=False,
-    )
+    PLAN.announce(RESULTS, workflow.rules)
