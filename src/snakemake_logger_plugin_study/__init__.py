@@ -23,18 +23,11 @@ from snakemake_logger_plugin_study.refusal import check_command_line, reworded
 from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally
 from snakemake_logger_plugin_study.wording import job_name, jobs
 
-#: Records that the display replaces; -p and --verbose bring them back.
-_REPLACED = {
-    LogEvent.JOB_INFO,
-    LogEvent.GROUP_INFO,
-    LogEvent.JOB_STARTED,
-    LogEvent.JOB_FINISHED,
-    LogEvent.PROGRESS,
-    LogEvent.RUN_INFO,
-    LogEvent.RESOURCES_INFO,
-    LogEvent.RULEGRAPH,
-    LogEvent.SHELLCMD,
-}
+#: Events that the display does not replace; -p and --verbose bring the others back.
+_KEPT = (
+    *(None, LogEvent.ERROR, LogEvent.JOB_ERROR, LogEvent.GROUP_ERROR),
+    *(LogEvent.WORKFLOW_STARTED, LogEvent.DEBUG_DAG),
+)
 
 
 class LogHandler(LogHandlerBase):
@@ -49,9 +42,9 @@ class LogHandler(LogHandlerBase):
 
         settings: Any = self.common_settings
         quiet = settings.quiet or set()
-        stream = sys.stdout if settings.stdout else sys.stderr
+        self._stream = sys.stdout if settings.stdout else sys.stderr
         form = DefaultFormatter(quiet, settings.show_failed_logs)
-        self._text = ColorizingTextHandler(nocolor=settings.nocolor, stream=stream, formatter=form)
+        self._text = ColorizingTextHandler(nocolor=settings.nocolor, stream=self._stream, formatter=form)
         self._text.addFilter(
             DefaultFilter(quiet, settings.debug_dag, settings.verbose, settings.dryrun, settings.printshellcmds)
         )
@@ -91,7 +84,7 @@ class LogHandler(LogHandlerBase):
         if event == LogEvent.JOB_ERROR and not self._whole_errors and (job := self._tally.job(record.jobid)):
             # Snakemake's own block lists all input, which may be 10,000 files.
             return _line(failure(job.name, record.log or []), record)
-        if event in _REPLACED and record.levelno == INFO and not self._everything:
+        if event not in _KEPT and record.levelno == INFO and not self._everything:
             return None
         words = reworded(record.getMessage()) if event in (None, LogEvent.ERROR) else None
         if words is None or (words == "" and self._everything):
@@ -134,15 +127,15 @@ class LogHandler(LogHandlerBase):
                     stage = PLAN.stages.get(name, name)
                     self._tally.rules[name] = Rule(stage, self._counts[name], PLAN.last_duration(name), needs)
             if PLAN.stages:
-                stages = ", ".join(f"{stage.name} {stage.total}" for stage in self._tally.stages())
-                self._say(f"{jobs(self._tally.total().total)}: {stages}")
+                *stages, total = self._tally.counts()
+                self._say(f"{jobs(total.total)}: {', '.join(f'{stage.name} {stage.total}' for stage in stages)}")
         if self._silent:
             return
         if self._text.can_color_tty():
             # Only a terminal needs rich, which takes a while to import.
             from snakemake_logger_plugin_study.live import LiveDisplay
 
-            self._display = LiveDisplay(self._tally, self._lock, self._text.stream, self._text.nocolor)
+            self._display = LiveDisplay(self._tally, self._lock, self._stream, self._text.nocolor)
             self._text.setStream(self._display.above)
         else:
             from snakemake_logger_plugin_study.plain import PlainDisplay
@@ -156,14 +149,12 @@ class LogHandler(LogHandlerBase):
         """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""
         display, self._display = self._display, None
         if display is not None:
-            stream = display.close()
-            if stream is not None:
-                self._text.setStream(stream)
+            display.close()
+            self._text.setStream(self._stream)
         if PLAN.stages and self._tally.rules:
-            seconds = time.time() - self._begin
             tally, self._tally = self._tally, Tally()
             try:
-                lines = closing_lines(PLAN.results, seconds, tally, self._needs)
+                lines = closing_lines(PLAN.results, time.time() - self._begin, tally, self._needs)
             except Exception as error:
                 lines = [f"what the run left cannot be told: {error}"]
             for line in lines:

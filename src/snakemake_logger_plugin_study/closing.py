@@ -37,7 +37,7 @@ def closing_lines(results: str | Path, seconds: float, tally: Tally, wanted: Col
     # `--quiet progress` keeps from the log which jobs were done, but their files are there.
     begun = [*tally.jobs(DONE), *tally.jobs(RUNNING)]
     done = [job for job in begun if all(Path(path).exists() for path in job.output)]
-    missed = tally.total().total - len(failed) - len(done)
+    missed = tally.counts()[-1].total - len(failed) - len(done)
     made = _made(results, [path for job in done for path in job.output])
     if failed or missed:
         counts = ((len(failed), "failed"), (missed, "did not run"))

@@ -27,7 +27,7 @@ class LiveDisplay:
     """Draws the state of a run at the bottom of a terminal; what is written to `above` scrolls by over it."""
 
     def __init__(self, tally: Tally, lock: threading.RLock, stream: TextIO, nocolor: bool) -> None:
-        self._tally, self._lock, self._stream = tally, lock, stream
+        self._tally, self._lock = tally, lock
         self._begin = time.time()
         # Long lines are left to the terminal: a command in a message can be copied.
         self._console = Console(file=stream, no_color=nocolor, highlight=False, soft_wrap=True)
@@ -47,14 +47,15 @@ class LiveDisplay:
         """Return what the display shows now."""
         with self._lock:
             now = time.time()
-            stages, total = self._tally.stages(), self._tally.total()
+            counts = self._tally.counts()
             left, failed = time_left(self._tally.time_left(now)), failures(self._tally)
             running = sorted((job.begin, job.message or job.name) for job in self._tally.jobs(RUNNING))
         table = Table.grid(padding=(0, 1))
-        for stage in [*stages, total]:
-            style = "bold" if stage.running or stage is total else "dim"
+        for stage in counts:
+            is_all = stage is counts[-1]
+            style = "bold" if stage.running or is_all else "dim"
             bar = ProgressBar(max(stage.total, 1), stage.done if stage.total else 1, BAR_WIDTH)
-            at_work = f"{stage.running} running" if stage.running and stage is not total else ""
+            at_work = f"{stage.running} running" if stage.running and not is_all else ""
             cells = [Text(words, style) for words in (stage.name, f"{stage.done} of {stage.total}", at_work)]
             table.add_row(cells[0], *([bar] if self._console.width >= NARROW else []), *cells[1:])
         table.columns[-2].justify = "right"
@@ -65,10 +66,9 @@ class LiveDisplay:
             lines.append(Text(f"{message}: {clock(seconds)}", "dim", no_wrap=True, overflow="ellipsis"))
         return Group(table, *lines)
 
-    def close(self) -> TextIO:
-        """Take the display away, give the cursor back, and return the stream that is free again."""
+    def close(self) -> None:
+        """Take the display away and give the cursor back."""
         self._live.stop()
-        return self._stream
 
 
 def clock(seconds: float) -> str:

@@ -38,7 +38,7 @@ class PlainDisplay:
 
     def line(self, now: float) -> str:
         """Return a progress line if one is due, else ""."""
-        total, waited = self._tally.total(), now - self._time
+        total, waited = self._tally.counts()[-1], now - self._time
         little = total.done - self._done < STEP * total.total and waited < LONGEST
         if total.done == total.total or waited < SHORTEST or little:
             return ""

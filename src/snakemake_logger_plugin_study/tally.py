@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 RUNNING, DONE, FAILED = "running", "done", "failed"
+#: The name of all stages together.
+ALL = "all"
 
 
 @dataclass
@@ -51,8 +54,7 @@ class Rule:
         return sum(seconds) / len(seconds) if seconds else self.last
 
 
-@dataclass(frozen=True)
-class Count:
+class Count(NamedTuple):
     """Jobs of a stage, or of all stages."""
 
     name: str
@@ -61,8 +63,7 @@ class Count:
     running: int
 
 
-@dataclass(frozen=True)
-class TimeLeft:
+class TimeLeft(NamedTuple):
     """Seconds left; `complete` is False if rules of unknown duration come on top."""
 
     seconds: float
@@ -92,19 +93,14 @@ class Tally:
         if job := self.job(number):
             job.state, job.end = state, now
 
-    def stages(self) -> list[Count]:
-        """Return the counts of each stage, in the order of the rules."""
-        names = dict.fromkeys(rule.stage for rule in self.rules.values())
-        return [self._count(name, [rule for rule in self.rules.values() if rule.stage == name]) for name in names]
-
-    def total(self) -> Count:
-        """Return the counts of all stages."""
-        return self._count("all", self.rules.values())
-
-    @staticmethod
-    def _count(name: str, rules: Iterable[Rule]) -> Count:
-        counts = [(rule.count(DONE), rule.total, rule.count(RUNNING)) for rule in rules]
-        return Count(name, *map(sum, zip(*counts, strict=True))) if counts else Count(name, 0, 0, 0)
+    def counts(self) -> list[Count]:
+        """Return the counts of each stage, in the order of the rules, and at last those of all."""
+        counts = []
+        for name in [*dict.fromkeys(rule.stage for rule in self.rules.values()), ALL]:
+            rules = [rule for rule in self.rules.values() if name in (rule.stage, ALL)]
+            done, running = (sum(rule.count(state) for rule in rules) for state in (DONE, RUNNING))
+            counts.append(Count(name, done, sum(rule.total for rule in rules), running))
+        return counts
 
     def jobs(self, state: str) -> list[Job]:
         """Return the jobs in a state, in the order of the rules."""
@@ -145,9 +141,9 @@ class Tally:
         if not longest:
             return None
         chains: dict[str, float] = {}
-        return TimeLeft(
-            max(work / max(self.cores, 1), *(self._chain(name, longest, chains) for name in self.rules)), complete
-        )
+        for name in self.rules:
+            self._chain(name, longest, chains)
+        return TimeLeft(max(work / max(self.cores, 1), *chains.values()), complete)
 
     def _chain(self, name: str, longest: Mapping[str, float], chains: dict[str, float]) -> float:
         """Return the time of the longest chain of rules up to this one; `chains` keeps those found before."""

@@ -45,9 +45,9 @@ def failures(tally: Tally) -> str:
 
 def progress_line(tally: Tally, now: float) -> str:
     """Return one line: the stages at work, all jobs, the time left."""
-    total = tally.total()
+    *stages, total = tally.counts()
     percent = 100 * total.done // total.total if total.total else 100
-    parts = [f"{stage.name} {stage.done} of {stage.total}" for stage in tally.stages() if stage.running]
+    parts = [f"{stage.name} {stage.done} of {stage.total}" for stage in stages if stage.running]
     parts.append(f"all {total.done} of {total.total} ({percent} %)")
     parts += [words for words in (failures(tally), time_left(tally.time_left(now))) if words]
     return ", ".join(parts)
