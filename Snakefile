@@ -8,7 +8,7 @@ from pathlib import Path
 
 from snakemake.utils import min_version, update_config
 
-min_version("9.0")
+min_version("9.22")
 
 from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
 

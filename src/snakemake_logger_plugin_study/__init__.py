@@ -1,7 +1,7 @@
 """Progress of a study for people: `snakemake --logger study`, set in workflow/profiles/default.
 
 On a terminal a display with a line for each stage, elsewhere a progress line now and then, and at the end what the run
-left. Everything else goes through Snakemake's own handler, with its own filter and format.
+left. Everything else goes through Snakemake's own handler, filter and format.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from logging import INFO, LogRecord, makeLogRecord
+from logging import INFO, Formatter, LogRecord, makeLogRecord
 from typing import Any
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
@@ -38,19 +38,14 @@ class LogHandler(LogHandlerBase):
             check_command_line(sys.argv[1:])
         except ConfigError as error:
             sys.exit(str(error))
-        from snakemake.logging import ColorizingTextHandler, DefaultFilter, DefaultFormatter, is_quiet_about
+        from snakemake.logging import ColorizingTextHandler, is_quiet_about
 
         settings: Any = self.common_settings
-        quiet = settings.quiet or set()
         self._stream = sys.stdout if settings.stdout else sys.stderr
-        form = DefaultFormatter(quiet, settings.show_failed_logs)
-        self._text = ColorizingTextHandler(nocolor=settings.nocolor, stream=self._stream, formatter=form)
-        self._text.addFilter(
-            DefaultFilter(quiet, settings.debug_dag, settings.verbose, settings.dryrun, settings.printshellcmds)
-        )
+        self._text = ColorizingTextHandler(nocolor=settings.nocolor, stream=self._stream)
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
         self._whole_errors = self._everything or settings.show_failed_logs
-        self._silent = settings.dryrun or is_quiet_about(quiet, "progress")
+        self._silent = settings.dryrun or is_quiet_about(settings.quiet or set(), "progress")
         self._begin = time.time()
         self._tally = Tally()
         #: {rule: number of its jobs that are to run}, and {rule of the targets: rules that it needs}.
@@ -62,9 +57,18 @@ class LogHandler(LogHandlerBase):
 
     writes_to_stream = True
     writes_to_file = False
-    has_filter = True
-    has_formatter = True
+    # Snakemake gives its own, as it does to its own handler.
+    has_filter = False
+    has_formatter = False
     needs_rulegraph = True
+
+    def filter(self, record: LogRecord) -> bool:
+        """Let each record count, also what is not to be shown."""
+        return True
+
+    def setFormatter(self, fmt: Formatter | None) -> None:
+        """Hand Snakemake's formatter on."""
+        self._text.setFormatter(fmt)
 
     def emit(self, record: LogRecord) -> None:
         """Take a record of Snakemake's log."""
@@ -76,7 +80,7 @@ class LogHandler(LogHandlerBase):
             self.handleError(record)
         shown = self._shown(record)
         if shown is not None:
-            self._text.handle(shown)
+            self._write(shown)
 
     def _shown(self, record: Any) -> LogRecord | None:
         """Return what is shown of a record: itself, one line in its place, or nothing."""
@@ -142,8 +146,12 @@ class LogHandler(LogHandlerBase):
 
             self._display = PlainDisplay(self._tally, self._lock, self._say)
 
+    def _write(self, record: LogRecord) -> None:
+        if super().filter(record):
+            self._text.handle(record)
+
     def _say(self, line: str) -> None:
-        self._text.handle(_line(line))
+        self._write(_line(line))
 
     def close(self) -> None:
         """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""

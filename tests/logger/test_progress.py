@@ -3,9 +3,11 @@
 import io
 import logging
 import sys
+from inspect import getsource, signature
 from types import SimpleNamespace
 
 import pytest
+from snakemake.logging import DefaultFilter, DefaultFormatter
 from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
@@ -191,7 +193,11 @@ def written(monkeypatch):
     def write(*records, **settings):
         stream = io.StringIO()
         monkeypatch.setattr(sys, "stderr", stream)
-        handler = plugin.LogHandler(common_settings=SimpleNamespace(**{**SETTINGS, **settings}), settings=None)
+        settings = {**SETTINGS, **settings}
+        handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
+        # As Snakemake does it.
+        handler.addFilter(DefaultFilter(**{name: settings[name] for name in signature(DefaultFilter).parameters}))
+        handler.setFormatter(DefaultFormatter(settings["quiet"], settings["show_failed_logs"]))
         for record in records:
             handler.handle(record)
         handler.close()
@@ -288,12 +294,10 @@ def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
 
 def test_snakemake_says_what_is_reworded():
     """Its own words: here it shows that a version has changed them."""
-    import inspect
-
     from snakemake import exceptions
     from snakemake.scheduling import job_scheduler
 
     assert reworded("Select jobs to execute...") == ""
-    assert '"Select jobs to execute..."' in inspect.getsource(job_scheduler)
+    assert '"Select jobs to execute..."' in getsource(job_scheduler)
     missing = exceptions.MissingRuleException("x.nc")
     assert reworded(exceptions.format_exception_to_string(missing)) == "x.nc: neither a rule nor a file of this study"
