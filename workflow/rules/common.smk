@@ -17,7 +17,8 @@ def fixed_group(name, number):
     if size == 1 or number is None:
         return None
     group = f"{name}{number // size}"
-    # Snakemake unites jobs that need nothing of each other up to the size of the parent group.
+    # Snakemake unites jobs that need nothing of each other up to the size of the parent group. Nothing documented says
+    # which jobs: a group named by wildcards cannot cut the grid into pieces. tests/workflow/test_groups.py holds it.
     workflow.parent_groupids[group] = name
     return group
 
