@@ -20,7 +20,7 @@ from burridge_knopoff.study.job_log import failure
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import check_command_line, reworded
-from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally
+from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally, downstream
 from snakemake_logger_plugin_study.wording import job_name, jobs
 
 #: Events that the display does not replace; -p and --verbose bring the others back.
@@ -161,8 +161,10 @@ class LogHandler(LogHandlerBase):
             self._text.setStream(self._stream)
         if PLAN.stages and self._tally.rules:
             tally, self._tally = self._tally, Tally()
+            # What comes after a rule that runs, and does not run itself, is left out by --until.
+            left_out = downstream(self._counts.keys(), self._needs) - self._counts.keys()
             try:
-                lines = closing_lines(PLAN.results, time.time() - self._begin, tally, self._needs)
+                lines = closing_lines(PLAN.results, time.time() - self._begin, tally, self._needs.keys() - left_out)
             except Exception as error:
                 lines = [f"what the run left cannot be told: {error}"]
             for line in lines:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -70,6 +70,14 @@ class TimeLeft(NamedTuple):
     complete: bool
 
 
+def downstream(names: Set[str], needs: Mapping[str, Set[str]]) -> set[str]:
+    """Return the rules that come after some of these, given what each rule needs."""
+    found: set[str] = set()
+    while more := {name for name, own in needs.items() if own & (names | found)} - found:
+        found |= more
+    return found
+
+
 class Tally:
     """Counts the jobs of a run and estimates how long it still takes; times are in seconds since any fixed moment."""
 
@@ -111,10 +119,8 @@ class Tally:
 
         The log tells which rules need each other, not which jobs: one that needs no failed job counts until it begins.
         """
-        stopped = {name for name, rule in self.rules.items() if rule.count(FAILED)}
-        after: set[str] = set()
-        while more := {name for name, rule in self.rules.items() if rule.needs & (stopped | after)} - after:
-            after |= more
+        failed = {name for name, rule in self.rules.items() if rule.count(FAILED)}
+        after = downstream(failed, {name: rule.needs for name, rule in self.rules.items()})
         return {name: self.rules[name].total - len(self.rules[name].jobs) for name in after}
 
     def time_left(self, now: float) -> TimeLeft | None:
