@@ -1,5 +1,5 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
-# `make kernel`: compile the kernel again.
+# `make kernel`: compile the kernel again.  `make test-oldest`: the workflow with the oldest Snakemake that is allowed.
 # `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
 # `make faults`, `make fuzz`, `make size`: a study killed 20 times and more; an hour of broken input; 10,000 points.
 
@@ -9,7 +9,7 @@ KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kerne
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup kernel test benchmark faults fuzz size docs lock clean
+.PHONY: study setup kernel test test-oldest benchmark faults fuzz size docs lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -46,6 +46,19 @@ test: .venv/kernel .venv/test
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
 	$(BIN)/python -m pytest
+
+# The lock files hold the newest; between the two is what pyproject.toml states.
+.venv-oldest/ready: requirements/test.lock requirements/oldest.txt setup.py pyproject.toml $(KERNEL)
+	$(PYTHON) -m venv .venv-oldest
+	.venv-oldest/bin/python -m pip --disable-pip-version-check --quiet install --require-hashes --requirement $<
+	.venv-oldest/bin/python -m pip --disable-pip-version-check --quiet install --require-hashes --no-deps \
+		--requirement requirements/oldest.txt
+	.venv-oldest/bin/python -m pip --disable-pip-version-check --quiet install --no-build-isolation --no-deps --editable .
+	@touch $@
+
+test-oldest: .venv-oldest/ready
+	.venv-oldest/bin/python -m pytest tests/logger $(addprefix tests/workflow/test_,runs.py progress.py bad_input.py \
+		failed_points.py)
 
 # The peers live apart from the study's environment.
 .venv-benchmark/ready: requirements/benchmark.lock setup.py pyproject.toml $(KERNEL)
@@ -90,4 +103,4 @@ lock:
 		$$name.in -o $$name.lock; done
 
 clean:
-	rm -rf .venv .venv-benchmark build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so
+	rm -rf .venv .venv-benchmark .venv-oldest build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so

@@ -1,7 +1,7 @@
 # The study: config -> points -> summaries -> figures -> report. Run `snakemake -c2`; README.md tells more.
 from snakemake.utils import min_version
 
-min_version("9.0")
+min_version("9.22")
 
 
 # A config given on the command line replaces the default one; Snakemake would merge the two.
@@ -44,11 +44,3 @@ rule all:
 
 onstart:
     prepare_results()
-
-
-onsuccess:
-    say_end(success=True)
-
-
-onerror:
-    say_end(success=False)

@@ -39,7 +39,7 @@ transient: 200
 window: 400
 batches: 4
 attractors: {{samples: 4, transient: 300, window: 300, time_limit: 2000, pushes: 4}}
-basins: {{linearized: [], nonlinear: []}}
+basins: {{a: {{linearized: [], nonlinear: []}}}}
 chains: {{two_blocks: {{a: [0.02, 0.15], samples: 2}}}}
 """
 #: The paper's positions but for that of the first block.

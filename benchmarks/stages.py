@@ -7,7 +7,6 @@ has measured of each job. `--target chains` runs the optional stage of longer ch
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import subprocess
 import sys
@@ -17,6 +16,8 @@ from collections import defaultdict
 from pathlib import Path
 
 from measure import print_table, verdict
+
+from burridge_knopoff.study.job_costs import read_costs
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 LIMIT_MB = 400.0
@@ -31,14 +32,8 @@ def rule_of(path: Path) -> str:
 def jobs(folder: Path) -> dict[str, list[tuple[float, float, float]]]:
     """Return {rule: [(wall s, CPU s, MB), …]} from the benchmark files of a study."""
     found: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
-    for path in sorted(folder.rglob("*.tsv")):
-        with path.open() as file:
-            for row in csv.DictReader(file, delimiter="\t"):
-                # Snakemake cannot sample jobs that end at once.
-                values = [
-                    0.0 if row[key] in ("-", "NA", "") else float(row[key]) for key in ("s", "cpu_time", "max_rss")
-                ]
-                found[rule_of(path.relative_to(folder))].append((values[0], values[1], values[2] * 1.048576))
+    for job in read_costs(sorted(folder.rglob("*.tsv"))):
+        found[rule_of(job.path.relative_to(folder))].append((job.wall, job.cpu, job.memory * 1.048576))
     return found
 
 

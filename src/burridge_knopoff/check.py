@@ -52,8 +52,7 @@ class Check:
     @property
     def exit_code(self) -> int:
         """0 if there is nothing to list, 3 if runs have failed only, else 1."""
-        kinds = {finding.kind for finding in self.findings}
-        return 1 if self.changed or kinds - {FAILED} else 3 if kinds else 0
+        return 1 if self.changed or self.paths else 3 if self.findings else 0
 
     @property
     def paths(self) -> list[str]:
@@ -82,35 +81,26 @@ def check_study(results: str | Path) -> Check:
     """
     results = Path(results)
     record = read_study_record(results)
-    study = Study(record["config"], record["grid"])
-    points = list(_runs(study, results))
-    findings = [finding for path, log, command in points if (finding := _look(path, log, command))]
-    wanted = {path for path, _, _ in points}
-    others = [path for path in sorted(results.rglob("*.nc")) if path not in wanted and not path.name.startswith(".")]
-    runs = [path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")]
-    summaries = [path for path in others if path not in set(runs)]
-    findings += [finding for path in summaries if (finding := _look_at_summary(path))]
-    findings.sort(key=lambda finding: (KINDS.index(finding.kind), finding.path))
-    return Check(results, len(points), len(summaries), tuple(findings), len(runs), _changed(record))
+    points = {results / place: run for place, *run in _runs(Study(record["config"], record["grid"]))}
+    others = [path for path in sorted(results.rglob("*.nc")) if path not in points and not path.name.startswith(".")]
+    summaries = [path for path in others if path.relative_to(results).parts[0] not in ("points", "solvers")]
+    found = [_look(path, results / log, command) for path, (log, command) in points.items()]
+    found += map(_look_at_summary, summaries)
+    findings = sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path))
+    unused = len(others) - len(summaries)
+    return Check(results, len(points), len(summaries), tuple(findings), unused, _changed(record))
 
 
-def _runs(study: Study, results: Path) -> Iterator[tuple[Path, Path, str]]:
-    """Yield file, log and command of every run of a study."""
+def _runs(study: Study) -> Iterator[tuple[str, str, str]]:
+    """Yield file, log and command of every run of a study, the paths below its results."""
     for law, initial, a in all_points(study):
         place = POINT.format(law=law, initial=initial, a=a)
-        yield results / "points" / place, _log(results / "logs/simulate" / place), study.command(law, initial, a)
-    compared = [name for name, value in study.grid.items() if value in study.config["solvers"]["a"]]
-    for law in study.laws:
-        for solver in study.other_solvers(law):
-            for initial in study.initial:
-                for a in compared:
-                    place = f"{solver}/{POINT.format(law=law, initial=initial, a=a)}"
-                    log = _log(results / "logs/simulate_solver" / place)
-                    yield results / "solvers" / place, log, study.command(law, initial, a, solver)
-
-
-def _log(path: Path) -> Path:
-    return path.with_suffix(".log")
+        log = f"{place.removesuffix('.nc')}.log"
+        yield f"points/{place}", f"logs/simulate/{log}", study.command(law, initial, a)
+        if study.grid[a] in study.config["solvers"]["a"]:
+            for solver in study.other_solvers(law):
+                command = study.command(law, initial, a, solver)
+                yield f"solvers/{solver}/{place}", f"logs/simulate_solver/{solver}/{log}", command
 
 
 def _look(path: Path, log: Path, command: str) -> Finding | None:
@@ -126,9 +116,7 @@ def _look(path: Path, log: Path, command: str) -> Finding | None:
             check_run(path, command)
         except BadFile as error:
             return Finding(STALE, path, error.reason)
-    if seal.status != "completed":
-        return Finding(FAILED, path, f"ended with status {seal.status}")
-    return None
+    return Finding(FAILED, path, f"ended with status {seal.status}") if seal.status != "completed" else None
 
 
 def _look_at_summary(path: Path) -> Finding | None:

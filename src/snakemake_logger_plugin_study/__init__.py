@@ -1,15 +1,15 @@
 """Progress of a study for people: `snakemake --logger study`, set in workflow/profiles/default.
 
-On a terminal a display with a line for each stage, elsewhere a progress line now and then. Everything that is not
-progress goes through Snakemake's own handler, with its own filter and format.
+On a terminal a display with a line for each stage, elsewhere a progress line now and then, and at the end what the run
+left. Everything else goes through Snakemake's own handler, filter and format.
 """
 
 from __future__ import annotations
 
-import re
 import sys
 import threading
-from logging import ERROR, INFO, LogRecord, makeLogRecord
+import time
+from logging import INFO, Formatter, LogRecord, makeLogRecord
 from typing import Any
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
@@ -17,26 +17,17 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 from burridge_knopoff.study import ConfigError
 from burridge_knopoff.study.job_log import failure
-from snakemake_logger_plugin_study.command_line import check_command_line
-from snakemake_logger_plugin_study.refusal import one_line
-from snakemake_logger_plugin_study.tally import Tally
-from snakemake_logger_plugin_study.wording import job_name
+from snakemake_logger_plugin_study.closing import closing_lines
+from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.refusal import check_command_line, reworded
+from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally, downstream
+from snakemake_logger_plugin_study.wording import job_name, jobs
 
-#: Records that the display replaces; -p and --verbose bring them back.
-_REPLACED = {
-    LogEvent.JOB_INFO,
-    LogEvent.GROUP_INFO,
-    LogEvent.JOB_STARTED,
-    LogEvent.JOB_FINISHED,
-    LogEvent.PROGRESS,
-    LogEvent.RUN_INFO,
-    LogEvent.RESOURCES_INFO,
-    LogEvent.SHELLCMD,
-}
-# The one message without an event that comes with every few jobs.
-_ROUTINE = "Select jobs to execute"
-# What Snakemake says of a script that ended with an error.
-_FAILED_COMMAND = re.compile(r"RuleException:\s+CalledProcessError ")
+#: Events that the display does not replace; -p and --verbose bring the others back.
+_KEPT = (
+    *(None, LogEvent.ERROR, LogEvent.JOB_ERROR, LogEvent.GROUP_ERROR),
+    *(LogEvent.WORKFLOW_STARTED, LogEvent.DEBUG_DAG),
+)
 
 
 class LogHandler(LogHandlerBase):
@@ -47,111 +38,141 @@ class LogHandler(LogHandlerBase):
             check_command_line(sys.argv[1:])
         except ConfigError as error:
             sys.exit(str(error))
-        from snakemake.logging import ColorizingTextHandler, DefaultFilter, DefaultFormatter, is_quiet_about
+        from snakemake.logging import ColorizingTextHandler, is_quiet_about
 
         settings: Any = self.common_settings
-        quiet = settings.quiet or set()
         self._stream = sys.stdout if settings.stdout else sys.stderr
-        self._text = ColorizingTextHandler(
-            nocolor=settings.nocolor,
-            stream=self._stream,
-            formatter=DefaultFormatter(quiet, settings.show_failed_logs),
-        )
-        self._text.addFilter(
-            DefaultFilter(quiet, settings.debug_dag, settings.verbose, settings.dryrun, settings.printshellcmds)
-        )
-        self._whole_logs = settings.show_failed_logs
+        self._text = ColorizingTextHandler(nocolor=settings.nocolor, stream=self._stream)
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
-        self._silent = settings.dryrun or is_quiet_about(quiet, "progress")
+        self._whole_errors = self._everything or settings.show_failed_logs
+        self._silent = settings.dryrun or is_quiet_about(settings.quiet or set(), "progress")
+        self._begin = time.time()
         self._tally = Tally()
-        self._grouped: set[int] = set()
-        self._names: dict[int, str] = {}
+        #: {rule: number of its jobs that are to run}, and {rule of the targets: rules that it needs}.
+        self._counts: dict[str, int] = {}
+        self._needs: dict[str, set[str]] = {}
         self._display: Any = None
-        # Two displays read the tally from threads of their own.
-        self._state = threading.RLock()
+        # Displays read the tally from threads of their own.
+        self._lock = threading.RLock()
 
     writes_to_stream = True
     writes_to_file = False
-    has_filter = True
-    has_formatter = True
-    needs_rulegraph = False
+    # Snakemake gives its own, as it does to its own handler.
+    has_filter = False
+    has_formatter = False
+    needs_rulegraph = True
+
+    def filter(self, record: LogRecord) -> bool:
+        """Let each record count, also what is not to be shown."""
+        return True
+
+    def setFormatter(self, fmt: Formatter | None) -> None:
+        """Hand Snakemake's formatter on."""
+        self._text.setFormatter(fmt)
 
     def emit(self, record: LogRecord) -> None:
         """Take a record of Snakemake's log."""
         try:
-            with self._state:
-                self._count(record)
+            with self._lock:
+                self._take(record)
         except Exception:
             # A defect of the display must neither end the thread of the log nor hide a message.
             self.handleError(record)
-        if not self._replaced(record):
-            self._text.handle(self._in_a_line(record) if self._short(record) else one_line(record))
+        shown = self._shown(record)
+        if shown is not None:
+            self._write(shown)
 
-    def _replaced(self, record: LogRecord) -> bool:
-        if self._everything:
-            return False
-        if record.levelno == ERROR:
-            # The failed job itself is told of right after, with what its log says.
-            return bool(_FAILED_COMMAND.match(record.getMessage()))
-        if record.levelno != INFO:
-            return False
+    def _shown(self, record: Any) -> LogRecord | None:
+        """Return what is shown of a record: itself, one line in its place, or nothing."""
         event = getattr(record, "event", None)
-        return event in _REPLACED or (event is None and record.getMessage().startswith(_ROUTINE))
+        if event == LogEvent.JOB_ERROR and not self._whole_errors and (job := self._tally.job(record.jobid)):
+            # Snakemake's own block lists all input, which may be 10,000 files.
+            return _line(failure(job.name, record.log or []), record)
+        if event not in _KEPT and record.levelno == INFO and not self._everything:
+            return None
+        words = reworded(record.getMessage()) if event in (None, LogEvent.ERROR) else None
+        if words is None or (words == "" and self._everything):
+            return record
+        return _line(words, record) if words else None
 
-    def _short(self, record: LogRecord) -> bool:
-        """Tell whether a line is enough for a failed job: its block lists all input, which may be 10,000 files."""
-        if self._everything or self._whole_logs or getattr(record, "event", None) != LogEvent.JOB_ERROR:
-            return False
-        return getattr(record, "jobid", None) in self._names
-
-    def _in_a_line(self, record: Any) -> LogRecord:
-        """Return the record of a failed job as one line: job, reason, log."""
-        line = failure(self._names[record.jobid], record.log or [])
-        return makeLogRecord({**record.__dict__, "event": None, "msg": line, "args": None})
-
-    def _count(self, record: Any) -> None:
+    def _take(self, record: Any) -> None:
         event = getattr(record, "event", None)
-        if event == LogEvent.RESOURCES_INFO:
+        if event == LogEvent.RULEGRAPH:
+            graph = record.rulegraph
+            self._needs = {node["rule"]: set() for node in graph["nodes"]}
+            for link in graph["links"]:
+                self._needs[link["targetrule"]].add(link["sourcerule"])
+        elif event == LogEvent.RESOURCES_INFO:
             # `nodes` with jobs on a cluster; without a limit it is a number too large to tell anything.
             limit = getattr(record, "cores", None) or getattr(record, "nodes", None)
             if limit is not None and limit < sys.maxsize:
                 self._tally.cores = limit
         elif event == LogEvent.RUN_INFO:
-            self._tally.expect_counts({name: count for name, count in record.stats.items() if name != "total"})
-        elif hasattr(record, "plan"):
-            self._tally.expect(*record.plan)
-            self._show()
+            self._counts = {name: count for name, count in record.stats.items() if name != "total"}
+        elif event == LogEvent.JOB_STARTED and self._display is None:
+            self._expect()
         elif event == LogEvent.JOB_INFO and (record.output or record.rule_name in self._tally.rules):
-            # The plan shows the display already, unless --no-hooks keeps it away.
-            self._show()
-            self._names[record.jobid] = job_name(record.rule_name, record.wildcards)
-            if record.indent:
-                self._grouped.add(record.jobid)
-            self._tally.start(record.jobid, record.rule_name, record.created, record.threads, record.rule_msg or "")
-        elif event == LogEvent.JOB_FINISHED:
             # Jobs of a group start and end together: that tells no duration of each.
-            self._tally.finish(record.job_id, record.created, timed=record.job_id not in self._grouped)
+            name, message = job_name(record.rule_name, record.wildcards), record.rule_msg or ""
+            files = tuple(record.output), tuple(record.log or ())
+            job = Job(name, record.created, message, *files, timed=not record.indent)
+            self._tally.start(record.jobid, record.rule_name, job, record.threads)
+        elif event == LogEvent.JOB_FINISHED:
+            self._tally.end(record.job_id, DONE, record.created)
         elif event == LogEvent.JOB_ERROR:
-            self._tally.fail(record.jobid)
+            self._tally.end(record.jobid, FAILED)
 
-    def _show(self) -> None:
-        if self._silent or self._display is not None:
+    def _expect(self) -> None:
+        """Begin to show a run, whose first jobs start."""
+        if not self._tally.rules:
+            for name in PLAN.stages or self._counts:
+                if name in self._counts:
+                    needs = frozenset(self._needs.get(name, ()))
+                    stage = PLAN.stages.get(name, name)
+                    self._tally.rules[name] = Rule(stage, self._counts[name], PLAN.last_duration(name), needs)
+            if PLAN.stages:
+                *stages, total = self._tally.counts()
+                self._say(f"{jobs(total.total)}: {', '.join(f'{stage.name} {stage.total}' for stage in stages)}")
+        if self._silent:
             return
         if self._text.can_color_tty():
             # Only a terminal needs rich, which takes a while to import.
             from snakemake_logger_plugin_study.live import LiveDisplay
 
-            self._display = LiveDisplay(self._tally, self._state, self._stream, self._text.nocolor)
+            self._display = LiveDisplay(self._tally, self._lock, self._stream, self._text.nocolor)
             self._text.setStream(self._display.above)
         else:
             from snakemake_logger_plugin_study.plain import PlainDisplay
 
-            self._display = PlainDisplay(self._tally, self._state, self._text)
+            self._display = PlainDisplay(self._tally, self._lock, self._say)
+
+    def _write(self, record: LogRecord) -> None:
+        if super().filter(record):
+            self._text.handle(record)
+
+    def _say(self, line: str) -> None:
+        self._write(_line(line))
 
     def close(self) -> None:
-        """Take the display away; Snakemake calls this at the end, also after an error or Ctrl-C."""
+        """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""
         display, self._display = self._display, None
         if display is not None:
             display.close()
             self._text.setStream(self._stream)
+        if PLAN.stages and self._tally.rules:
+            tally, self._tally = self._tally, Tally()
+            # What comes after a rule that runs, and does not run itself, is left out by --until.
+            left_out = downstream(self._counts.keys(), self._needs) - self._counts.keys()
+            try:
+                lines = closing_lines(PLAN.results, time.time() - self._begin, tally, self._needs.keys() - left_out)
+            except Exception as error:
+                lines = [f"what the run left cannot be told: {error}"]
+            for line in lines:
+                self._say(line)
         super().close()
+
+
+def _line(words: str, record: LogRecord | None = None) -> LogRecord:
+    """Return the record of one line, at the level of another record."""
+    kept = record.__dict__ if record else {"levelno": INFO, "levelname": "INFO"}
+    return makeLogRecord({**kept, "event": None, "msg": words, "args": None})

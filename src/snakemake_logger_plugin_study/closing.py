@@ -11,6 +11,8 @@ import numpy as np
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
 from burridge_knopoff.study.job_log import failure
+from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Tally
+from snakemake_logger_plugin_study.wording import elapsed, jobs
 
 #: Verdicts whose claims are named, not only counted.
 NAMED_VERDICTS = (FAILS, CONVENTION)
@@ -20,99 +22,66 @@ MOST_NAMES, MOST_FAILED = 8, 10
 FEW_FILES = 3
 
 
-def closing_lines(
-    results: str | Path,
-    seconds: float,
-    *,
-    success: bool,
-    made: Collection[str] = (),
-    wanted: Collection[str] = (),
-    failed: Sequence[tuple[str, Sequence[str]]] = (),
-    missed: int = 0,
-) -> list[str]:
+def closing_lines(results: str | Path, seconds: float, tally: Tally, wanted: Collection[str]) -> list[str]:
     """Return the last lines of a run, plain text.
 
     results : folder of the study, results/<study>
     seconds : how long the run took
-    success : whether it reached its end
-    made, wanted : files that the run made; files that it made or found up to date
-    failed : (job, its log files) of the jobs that failed
-    missed : number of jobs that were to run and did not
+    wanted : rules of all files that the run was to make or found up to date
 
-    Summaries are read only if they are wanted and the run reached its end: older ones say nothing about it. A file
-    that cannot be read gives a line that says so.
+    Summaries are read only if they are wanted and all jobs were done: older ones say nothing about the run. A file that
+    cannot be read gives a line that says so.
     """
     results = Path(results)
-    if not success:
-        return _stopped(results, seconds, made, failed, missed)
-    lines = [f"study {results.name}: done in {elapsed(seconds)}", *_made(results, made)]
-    readers: tuple[tuple[str, Callable[[Path], list[str]]], ...] = (
-        ("claims.json", _claims),
-        ("mean_distance.nc", _incomplete),
-        ("lyapunov.nc", _undetermined),
-    )
-    known = {Path(path) for path in wanted}
-    for name, read in readers:
-        path = results / "summary" / name
-        if path not in known:
-            continue
-        try:
-            lines += read(path)
-        except (OSError, RuntimeError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
-            lines.append(f"{path}: cannot be read ({error})")
-    lines += [f"report: {path}" for path in sorted(known) if path.parent == results and path.suffix == ".html"]
+    failed = tally.jobs(FAILED)
+    # `--quiet progress` keeps from the log which jobs were done, but their files are there.
+    begun = [*tally.jobs(DONE), *tally.jobs(RUNNING)]
+    done = [job for job in begun if all(Path(path).exists() for path in job.output)]
+    missed = tally.counts()[-1].total - len(failed) - len(done)
+    made = _made(results, [path for job in done for path in job.output])
+    if failed or missed:
+        counts = ((len(failed), "failed"), (missed, "did not run"))
+        reasons = [f"{jobs(count)} {what}" for count, what in counts if count]
+        lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons)}"]
+        told = sorted((job.name, job.log) for job in failed)
+        lines += [failure(*job) for job in told[:MOST_FAILED]]
+        if len(told) > MOST_FAILED:
+            lines.append(f"failed: and {len(told) - MOST_FAILED} more")
+        return [*lines, made, "the same command goes on where this run stopped"]
+    lines = [f"study {results.name}: done in {elapsed(seconds)}", made]
+    for rule, (name, read) in _READERS.items():
+        path = results / name
+        if rule in wanted:
+            try:
+                lines += read(path)
+            except (OSError, RuntimeError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
+                lines.append(f"{path}: cannot be read ({error})")
     return lines
 
 
-def elapsed(seconds: float) -> str:
-    """Return a duration as 12 s, 5 min 12 s or 2 h 5 min."""
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    if hours:
-        return f"{hours} h {minutes} min"
-    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
-
-
-def _stopped(
-    results: Path, seconds: float, made: Collection[str], failed: Sequence[tuple[str, Sequence[str]]], missed: int
-) -> list[str]:
-    counts = ((len(failed), "failed"), (missed, "did not run"))
-    reasons = [f"{count} {'job' if count == 1 else 'jobs'} {what}" for count, what in counts if count]
-    lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons) or 'not at its end'}"]
-    lines += [failure(job, logs) for job, logs in failed[:MOST_FAILED]]
-    if len(failed) > MOST_FAILED:
-        lines.append(f"failed: and {len(failed) - MOST_FAILED} more")
-    return [*lines, *_made(results, made), "the same command goes on where this run stopped"]
-
-
-def _made(results: Path, made: Collection[str]) -> list[str]:
-    if not made:
-        return ["made: nothing"]
+def _made(results: Path, made: Sequence[str]) -> str:
     if len(made) <= FEW_FILES:
-        return [f"made: {', '.join(made)}"]
-    inside = [Path(path).relative_to(results) for path in made if Path(path).is_relative_to(results)]
-    folders = Counter(path.parts[0] for path in inside if len(path.parts) > 1)
-    alone = [path.name for path in inside if len(path.parts) == 1]
-    parts = [*(f"{name} {count}" for name, count in folders.items()), *alone]
-    return [f"files made in {results}: {', '.join(parts)}"]
+        return f"made: {', '.join(made) or 'nothing'}"
+    inside = [Path(path).relative_to(results).parts for path in made if Path(path).is_relative_to(results)]
+    folders = Counter(parts[0] for parts in inside if len(parts) > 1)
+    parts = [
+        *(f"{name} {count}" for name, count in folders.items()),
+        *(names[0] for names in inside if len(names) == 1),
+    ]
+    return f"files made in {results}: {', '.join(parts)}"
 
 
 def _claims(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
-    counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
-    lines = [f"claims of the paper: {counts} ({path.with_suffix('.md')})"]
     if reason := one_reason(read["claims"]):
         return [f"claims of the paper: none is judged ({path.with_suffix('.md')})", f"  {reason}"]
+    counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
+    lines = [f"claims of the paper: {counts} ({path.with_suffix('.md')})"]
     for verdict in NAMED_VERDICTS:
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
-        if names:
-            lines.append(f"  {verdict}: {_list(names)}")
+        more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+        lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{more}"] if names else []
     return lines
-
-
-def _list(names: Sequence[str]) -> str:
-    more = len(names) - MOST_NAMES
-    return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
 
 
 def _flags(path: Path, name: str) -> tuple[int, Counter[str]]:
@@ -140,3 +109,12 @@ def _undetermined(path: Path) -> list[str]:
     total, meanings = _flags(path, "kind")
     count = meanings["undetermined"]
     return [f"points: kind of motion undetermined at {count} of {total} (kind in {path})"] if count else []
+
+
+#: {rule: (its file below results, the lines about it)}
+_READERS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
+    "claims": ("summary/claims.json", _claims),
+    "mean_distance": ("summary/mean_distance.nc", _incomplete),
+    "lyapunov": ("summary/lyapunov.nc", _undetermined),
+    "report": ("report.html", lambda path: [f"report: {path}"]),
+}

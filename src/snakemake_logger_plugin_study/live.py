@@ -7,12 +7,13 @@ import time
 from typing import TextIO
 
 from rich.console import Console, Group
+from rich.file_proxy import FileProxy
 from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from snakemake_logger_plugin_study.tally import Tally
+from snakemake_logger_plugin_study.tally import RUNNING, Tally
 from snakemake_logger_plugin_study.wording import failures, time_left
 
 REFRESHES_PER_SECOND = 2
@@ -28,11 +29,12 @@ class LiveDisplay:
     def __init__(self, tally: Tally, lock: threading.RLock, stream: TextIO, nocolor: bool) -> None:
         self._tally, self._lock = tally, lock
         self._begin = time.time()
-        self.console = Console(file=stream, no_color=nocolor, highlight=False)
-        self.above = Above(self.console)
+        # Long lines are left to the terminal: a command in a message can be copied.
+        self._console = Console(file=stream, no_color=nocolor, highlight=False, soft_wrap=True)
+        self.above = FileProxy(self._console, stream)
         self._live = Live(
             get_renderable=self.picture,
-            console=self.console,
+            console=self._console,
             refresh_per_second=REFRESHES_PER_SECOND,
             transient=True,
             # Whatever writes to the terminal goes through `above`.
@@ -45,56 +47,28 @@ class LiveDisplay:
         """Return what the display shows now."""
         with self._lock:
             now = time.time()
-            stages, total = self._tally.stages(), self._tally.total()
-            left = time_left(self._tally.time_left(now))
-            failed = failures(self._tally)
-            long = self._tally.running(now, LONG_JOB)[:LONG_JOBS]
-        wide = self.console.width >= NARROW
+            counts = self._tally.counts()
+            left, failed = time_left(self._tally.time_left(now)), failures(self._tally)
+            running = sorted((job.begin, job.message or job.name) for job in self._tally.jobs(RUNNING))
         table = Table.grid(padding=(0, 1))
-        table.add_column(no_wrap=True)
-        if wide:
-            table.add_column(width=BAR_WIDTH)
-        table.add_column(justify="right", no_wrap=True)
-        table.add_column(no_wrap=True)
-        for stage in [*stages, total]:
-            style = "bold" if stage.running or stage is total else "dim"
-            bar = ProgressBar(total=max(stage.total, 1), completed=stage.done if stage.total else 1)
-            running = f"{stage.running} running" if stage.running and stage is not total else ""
-            cells = [Text(words, style=style) for words in (stage.name, f"{stage.done} of {stage.total}", running)]
-            table.add_row(cells[0], *([bar] if wide else []), *cells[1:])
+        for stage in counts:
+            is_all = stage is counts[-1]
+            style = "bold" if stage.running or is_all else "dim"
+            bar = ProgressBar(max(stage.total, 1), stage.done if stage.total else 1, BAR_WIDTH)
+            at_work = f"{stage.running} running" if stage.running and not is_all else ""
+            cells = [Text(words, style) for words in (stage.name, f"{stage.done} of {stage.total}", at_work)]
+            table.add_row(cells[0], *([bar] if self._console.width >= NARROW else []), *cells[1:])
+        table.columns[-2].justify = "right"
         words = ", ".join(part for part in (failed, left, f"{clock(now - self._begin)} so far") if part)
-        lines = [Text(words, style="bold red" if failed else "bold")]
-        lines += [Text(f"{message}: {clock(seconds)}", style="dim") for message, seconds in long]
-        for line in lines:
-            line.no_wrap, line.overflow = True, "ellipsis"
+        long = [(message, now - begin) for begin, message in running if now - begin > LONG_JOB][:LONG_JOBS]
+        lines = [Text(words, "bold red" if failed else "bold", no_wrap=True, overflow="ellipsis")]
+        for message, seconds in long:
+            lines.append(Text(f"{message}: {clock(seconds)}", "dim", no_wrap=True, overflow="ellipsis"))
         return Group(table, *lines)
 
     def close(self) -> None:
         """Take the display away and give the cursor back."""
         self._live.stop()
-
-
-class Above:
-    """A stream for Snakemake's own handler: each message is printed above the display, colours and all."""
-
-    def __init__(self, console: Console) -> None:
-        self._console = console
-        self._parts: list[str] = []
-
-    def isatty(self) -> bool:
-        """Tell that this is a terminal."""
-        return True
-
-    def write(self, text: str) -> int:
-        """Keep text until `flush`."""
-        self._parts.append(text)
-        return len(text)
-
-    def flush(self) -> None:
-        """Print what was kept."""
-        text, self._parts = "".join(self._parts), []
-        if text:
-            self._console.print(Text.from_ansi(text.removesuffix("\n")), soft_wrap=True)
 
 
 def clock(seconds: float) -> str:

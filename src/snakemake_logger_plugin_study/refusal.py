@@ -1,30 +1,66 @@
-"""Errors of Snakemake about targets and wildcards, told with one line."""
+"""What Snakemake would answer with a traceback, in a block of lines or not at all is said in one line."""
 
 from __future__ import annotations
 
-import logging
+import argparse
 import re
-from logging import LogRecord
+from collections.abc import Sequence
+from pathlib import Path
 
-from snakemake_interface_logger_plugins.common import LogEvent
+from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.study import ConfigError, read_config
 
-# What a function of a rule raised: one line made for people, among the wildcards and the lines of code.
-_CONFIG_ERROR = re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE)
-_NO_RULE = re.compile(r"^No rule to produce (.+?) \(if you use input functions", re.MULTILINE)
+SEVERAL_FILES = (
+    "--configfile: several files are not allowed: one file is one study (a target stands before --configfile)"
+)
+
+# What Snakemake takes for the name of a key.
+_NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
+
+#: Messages of Snakemake that no event and no field tells apart, and what is said instead.
+_REWORDED = (
+    # It comes with every few jobs.
+    (re.compile(r"\ASelect jobs to execute"), ""),
+    # The failed job itself is told of right after, with what its log says.
+    (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
+    # What a function of a rule raised: one line made for people, among the wildcards and the lines of code.
+    (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
+    (
+        re.compile(r"^No rule to produce (.+?) \(if you use input functions", re.MULTILINE),
+        r"\1: neither a rule nor a file of this study",
+    ),
+)
 
 
-def one_line(record: LogRecord) -> LogRecord:
-    """Return a record that says in one line what a ConfigError or a target without a rule is about, else the record."""
-    if getattr(record, "event", None) != LogEvent.ERROR:
-        return record
-    text = record.getMessage()
-    refused, missing = _CONFIG_ERROR.search(text), _NO_RULE.search(text)
-    if refused is not None:
-        line = refused[1]
-    elif missing is not None:
-        line = f"{missing[1]}: neither a rule nor a file of this study"
-    else:
-        return record
-    changed = logging.makeLogRecord(record.__dict__)
-    changed.msg, changed.args = line, ()
-    return changed
+def reworded(message: str) -> str | None:
+    """Return what is said instead of a message of Snakemake, "" for nothing; None if it is said as it is."""
+    for pattern, words in _REWORDED:
+        if found := pattern.search(message):
+            return found.expand(words)
+    return None
+
+
+def check_command_line(arguments: Sequence[str]) -> None:
+    """Raise ConfigError, one line, for a config file that cannot be read and for what --config does not take.
+
+    Snakemake makes its log handlers first and reads the config files next; nothing of the project runs in between.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    parser.add_argument("--configfile", "--configfiles", nargs="+", action="extend", default=[])
+    parser.add_argument("--config", "-C", nargs="*", action="extend", default=[])
+    try:
+        options, _ = parser.parse_known_args(arguments)
+    except argparse.ArgumentError:
+        # Snakemake's own parser says what is wrong.
+        return
+    if len(options.configfile) > 1:
+        raise ConfigError(SEVERAL_FILES)
+    for path in options.configfile:
+        if "__use_yte__" in read_config(Path(path)):
+            raise ConfigError(
+                f"{display_path(path)}: __use_yte__: unknown key; a study is plain YAML, without templates"
+            )
+    for entry in options.config:
+        name, equals, _ = entry.partition("=")
+        if not (equals and _NAME.fullmatch(name)):
+            raise ConfigError(f"--config: {entry!r} is not allowed: key=value, the key of two letters or more")

@@ -2,47 +2,59 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
+from typing import NamedTuple
+
+RUNNING, DONE, FAILED = "running", "done", "failed"
+#: The name of all stages together.
+ALL = "all"
+
+
+@dataclass
+class Job:
+    """A job that has begun; `timed` is False if its begin and end say nothing about its duration."""
+
+    name: str
+    begin: float
+    message: str = ""
+    output: tuple[str, ...] = ()
+    log: tuple[str, ...] = ()
+    timed: bool = True
+    state: str = RUNNING
+    end: float = 0.0
 
 
 @dataclass
 class Rule:
     """The jobs of one rule.
 
-    stage : name of the stage that the rule belongs to
     total : number of jobs that are to run
-    threads : cores that a job takes
-    needs : rules whose jobs come before
     last : mean duration of a job in the last run, in seconds; None if it is not known
+    needs : rules whose jobs come before
+    threads : cores that a job takes
+    jobs : {number: job} of those that have begun
     """
 
     stage: str
     total: int
-    threads: int = 1
-    needs: tuple[str, ...] = ()
     last: float | None = None
-    done: int = 0
-    failed: int = 0
-    blocked: int = 0
-    running: dict[int, float] = field(default_factory=dict)
-    seconds: float = 0.0
-    timed: int = 0
+    needs: frozenset[str] = frozenset()
+    threads: int = 1
+    jobs: dict[int, Job] = field(default_factory=dict)
+
+    def count(self, state: str) -> int:
+        """Return the number of jobs in a state."""
+        return sum(job.state == state for job in self.jobs.values())
 
     @property
     def duration(self) -> float | None:
         """Mean duration of a job: of those finished in this run, else of the last run; None if unknown."""
-        return self.seconds / self.timed if self.timed else self.last
-
-    @property
-    def left(self) -> int:
-        """Number of jobs that run or will run."""
-        return max(self.total - self.done - self.failed - self.blocked, 0)
+        seconds = [job.end - job.begin for job in self.jobs.values() if job.state == DONE and job.timed]
+        return sum(seconds) / len(seconds) if seconds else self.last
 
 
-@dataclass(frozen=True)
-class Count:
+class Count(NamedTuple):
     """Jobs of a stage, or of all stages."""
 
     name: str
@@ -51,128 +63,65 @@ class Count:
     running: int
 
 
-@dataclass(frozen=True)
-class TimeLeft:
+class TimeLeft(NamedTuple):
     """Seconds left; `complete` is False if rules of unknown duration come on top."""
 
     seconds: float
     complete: bool
 
 
+def downstream(names: Set[str], needs: Mapping[str, Set[str]]) -> set[str]:
+    """Return the rules that come after some of these, given what each rule needs."""
+    found: set[str] = set()
+    while more := {name for name, own in needs.items() if own & (names | found)} - found:
+        found |= more
+    return found
+
+
 class Tally:
     """Counts the jobs of a run and estimates how long it still takes; times are in seconds since any fixed moment."""
 
-    def __init__(self) -> None:
-        self.rules: dict[str, Rule] = {}
-        self.cores: float = 1
-        self._rule_of: dict[int, str] = {}
-        self._dependents: Mapping[int, Iterable[int]] = {}
-        self._messages: dict[int, str] = {}
-        self._failed: set[int] = set()
+    def __init__(self, rules: Mapping[str, Rule] | None = None, cores: float = 1) -> None:
+        self.rules = dict(rules or {})
+        self.cores = cores
 
-    def expect(
-        self, rules: Mapping[str, Rule], rule_of: Mapping[int, str], dependents: Mapping[int, Iterable[int]]
-    ) -> None:
-        """Set what is to run.
-
-        rule_of : {job: rule}
-        dependents : {job: jobs that need it}
-        """
-        self.rules = dict(rules)
-        self._rule_of = dict(rule_of)
-        self._dependents = dependents
-
-    def expect_counts(self, counts: Mapping[str, int]) -> None:
-        """Set what is to run from the number of jobs of each rule alone; each rule is a stage then."""
-        self.rules = {name: Rule(name, total) for name, total in counts.items()}
-
-    def start(self, job: int, rule: str, now: float, threads: int = 1, message: str = "") -> None:
+    def start(self, number: int, rule: str, job: Job, threads: int = 1) -> None:
         """Count a job as running, also one that failed and is tried again; a rule that was not expected is added."""
         known = self.rules.setdefault(rule, Rule(rule, 0))
-        self._rule_of[job] = rule
-        known.running[job] = now
+        known.jobs[number] = job
         known.threads = threads
-        self._messages[job] = message
-        if job in self._failed:
-            self._failed.remove(job)
-            self._find_blocked()
-        known.total = max(known.total, known.done + known.failed + known.blocked + len(known.running))
+        known.total = max(known.total, len(known.jobs))
 
-    def finish(self, job: int, now: float, timed: bool = True) -> None:
-        """Count a job as done.
+    def job(self, number: int) -> Job | None:
+        """Return a job that has begun."""
+        return next((rule.jobs[number] for rule in self.rules.values() if number in rule.jobs), None)
 
-        timed : False if the time since its start says nothing about its duration
+    def end(self, number: int, state: str, now: float = 0.0) -> None:
+        """Count a job as done or failed, if it has begun."""
+        if job := self.job(number):
+            job.state, job.end = state, now
+
+    def counts(self) -> list[Count]:
+        """Return the counts of each stage, in the order of the rules, and at last those of all."""
+        counts = []
+        for name in [*dict.fromkeys(rule.stage for rule in self.rules.values()), ALL]:
+            rules = [rule for rule in self.rules.values() if name in (rule.stage, ALL)]
+            done, running = (sum(rule.count(state) for rule in rules) for state in (DONE, RUNNING))
+            counts.append(Count(name, done, sum(rule.total for rule in rules), running))
+        return counts
+
+    def jobs(self, state: str) -> list[Job]:
+        """Return the jobs in a state, in the order of the rules."""
+        return [job for rule in self.rules.values() for job in rule.jobs.values() if job.state == state]
+
+    def blocked(self) -> dict[str, int]:
+        """Return {rule: jobs that cannot run because jobs failed}: what has not begun of all rules after theirs.
+
+        The log tells which rules need each other, not which jobs: one that needs no failed job counts until it begins.
         """
-        rule, start = self._end(job)
-        if rule is None or start is None:
-            return
-        rule.done += 1
-        if timed:
-            rule.seconds += now - start
-            rule.timed += 1
-
-    def fail(self, job: int) -> None:
-        """Count a job as failed, and all that need it as blocked."""
-        rule, start = self._end(job)
-        if rule is None or start is None:
-            return
-        self._failed.add(job)
-        self._find_blocked()
-
-    def _end(self, job: int) -> tuple[Rule | None, float | None]:
-        rule = self.rules.get(self._rule_of.get(job, ""))
-        self._messages.pop(job, None)
-        return rule, rule.running.pop(job, None) if rule else None
-
-    def _find_blocked(self) -> None:
-        blocked: set[int] = set()
-        waiting = [job for failed in self._failed for job in self._dependents.get(failed, ())]
-        while waiting:
-            job = waiting.pop()
-            if job not in blocked:
-                blocked.add(job)
-                waiting.extend(self._dependents.get(job, ()))
-        failed_of, blocked_of = (Counter(self._rule_of[job] for job in jobs) for jobs in (self._failed, blocked))
-        for name, rule in self.rules.items():
-            rule.failed, rule.blocked = failed_of[name], blocked_of[name]
-
-    def stages(self) -> list[Count]:
-        """Return the counts of each stage, in the order of the rules."""
-        names = dict.fromkeys(rule.stage for rule in self.rules.values())
-        return [self._count(name, [rule for rule in self.rules.values() if rule.stage == name]) for name in names]
-
-    def total(self) -> Count:
-        """Return the counts of all stages."""
-        return self._count("all", self.rules.values())
-
-    @staticmethod
-    def _count(name: str, rules: Iterable[Rule]) -> Count:
-        rules = list(rules)
-        return Count(
-            name,
-            sum(rule.done for rule in rules),
-            sum(rule.total for rule in rules),
-            sum(len(rule.running) for rule in rules),
-        )
-
-    @property
-    def failed(self) -> int:
-        """Number of jobs that failed."""
-        return sum(rule.failed for rule in self.rules.values())
-
-    @property
-    def blocked(self) -> int:
-        """Number of jobs that cannot run because others failed."""
-        return sum(rule.blocked for rule in self.rules.values())
-
-    def running(self, now: float, longer: float) -> list[tuple[str, float]]:
-        """Return (message, seconds so far) of the jobs that have been running longer than that, the oldest first."""
-        jobs = [(job, now - start) for rule in self.rules.values() for job, start in rule.running.items()]
-        return [
-            (self._messages.get(job) or self._rule_of[job], seconds)
-            for job, seconds in sorted(jobs, key=lambda item: -item[1])
-            if seconds > longer
-        ]
+        failed = {name for name, rule in self.rules.items() if rule.count(FAILED)}
+        after = downstream(failed, {name: rule.needs for name, rule in self.rules.items()})
+        return {name: self.rules[name].total - len(self.rules[name].jobs) for name in after}
 
     def time_left(self, now: float) -> TimeLeft | None:
         """Return how long the run still takes, or None if no duration is known.
@@ -180,21 +129,22 @@ class Tally:
         The larger of two lower bounds: all work spread over the cores, and the longest chain of rules that need each
         other, one job each. The scheduler fills the cores, so the truth is near them.
         """
-        work = 0.0
-        complete, known = True, False
+        blocked = self.blocked()
+        work, complete = 0.0, True
         longest: dict[str, float] = {}
         for name, rule in self.rules.items():
-            if not rule.left:
+            begins = [job.begin for job in rule.jobs.values() if job.state == RUNNING]
+            waiting = rule.total - len(rule.jobs) - blocked.get(name, 0)
+            if not (begins or waiting):
                 continue
-            if rule.duration is None:
+            duration = rule.duration
+            if duration is None:
                 complete = False
                 continue
-            known = True
-            begun = [max(rule.duration - (now - start), 0.0) for start in rule.running.values()]
-            waiting = max(rule.left - len(begun), 0)
-            work += min(rule.threads, self.cores) * (waiting * rule.duration + sum(begun))
-            longest[name] = rule.duration if waiting else max(begun)
-        if not known:
+            begun = [max(duration - (now - begin), 0.0) for begin in begins]
+            work += min(rule.threads, self.cores) * (waiting * duration + sum(begun))
+            longest[name] = duration if waiting else max(begun)
+        if not longest:
             return None
         chains: dict[str, float] = {}
         for name in self.rules:
@@ -204,6 +154,8 @@ class Tally:
     def _chain(self, name: str, longest: Mapping[str, float], chains: dict[str, float]) -> float:
         """Return the time of the longest chain of rules up to this one; `chains` keeps those found before."""
         if name not in chains:
+            # In case that rules need each other in a circle.
+            chains[name] = 0.0
             before = [self._chain(need, longest, chains) for need in self.rules[name].needs if need in self.rules]
             chains[name] = longest.get(name, 0.0) + max(before, default=0.0)
         return chains[name]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from snakemake_logger_plugin_study.tally import Tally, TimeLeft
+from snakemake_logger_plugin_study.tally import FAILED, Tally, TimeLeft
 
 
 def duration(seconds: float) -> str:
@@ -18,35 +18,44 @@ def duration(seconds: float) -> str:
     return f"{seconds / 3600:.1f} h"
 
 
+def elapsed(seconds: float) -> str:
+    """Return a duration as 12 s, 5 min 12 s or 2 h 5 min."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes} min"
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+
+
 def time_left(left: TimeLeft | None) -> str:
     """Return how long a run still takes, or "" if nothing is known; "at least" if a part of it is unknown."""
     if left is None:
         return ""
+    words = f"{duration(left.seconds)} left"
     if not left.complete:
-        return f"at least {duration(left.seconds)} left"
-    words = duration(left.seconds)
-    return f"{words} left" if left.seconds < 10 else f"about {words} left"
-
-
-def percentage(done: int, total: int) -> int:
-    """Return the whole percents done, 100 only if all is."""
-    return 100 * done // total if total else 100
+        return f"at least {words}"
+    return words if left.seconds < 10 else f"about {words}"
 
 
 def failures(tally: Tally) -> str:
     """Return how many jobs failed and how many cannot run for that, or ""."""
-    if not tally.failed:
-        return ""
-    return f"{tally.failed} failed" + (f", {tally.blocked} cannot run" if tally.blocked else "")
+    failed, blocked = len(tally.jobs(FAILED)), sum(tally.blocked().values())
+    return f"{failed} failed" + (f", {blocked} cannot run" if blocked else "") if failed else ""
 
 
 def progress_line(tally: Tally, now: float) -> str:
     """Return one line: the stages at work, all jobs, the time left."""
-    total = tally.total()
-    parts = [f"{stage.name} {stage.done} of {stage.total}" for stage in tally.stages() if stage.running]
-    parts.append(f"all {total.done} of {total.total} ({percentage(total.done, total.total)} %)")
+    *stages, total = tally.counts()
+    percent = 100 * total.done // total.total if total.total else 100
+    parts = [f"{stage.name} {stage.done} of {stage.total}" for stage in stages if stage.running]
+    parts.append(f"all {total.done} of {total.total} ({percent} %)")
     parts += [words for words in (failures(tally), time_left(tally.time_left(now))) if words]
     return ", ".join(parts)
+
+
+def jobs(number: int) -> str:
+    """Return 1 job, 2 jobs."""
+    return f"{number} job{'' if number == 1 else 's'}"
 
 
 def job_name(rule: str, wildcards: Mapping[str, object]) -> str:

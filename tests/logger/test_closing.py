@@ -11,39 +11,54 @@ from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.stability.motion import KINDS
 from burridge_knopoff.study.job_log import SILENT
-from snakemake_logger_plugin_study.closing import closing_lines, elapsed
+from snakemake_logger_plugin_study.closing import closing_lines
+from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally
+from snakemake_logger_plugin_study.wording import elapsed
 
 STATUSES = dict(enumerate(STATUS_FLAG["flag_meanings"].split()))
+RULES = {"claims": "claims.json", "mean_distance": "mean_distance.nc", "lyapunov": "lyapunov.nc"}
 
 
 @pytest.fixture
-def results(tmp_path):
-    (tmp_path / "paper" / "summary").mkdir(parents=True)
-    return tmp_path / "paper"
+def summary(tmp_path, monkeypatch):
+    """The folder of summaries, below the current folder."""
+    monkeypatch.chdir(tmp_path)
+    folder = Path("results/paper/summary")
+    folder.mkdir(parents=True)
+    return folder
 
 
-def write_flags(path, name, meanings, values):
-    values = np.array(values, dtype="i1")
-    xr.Dataset({name: ("a", values, flag("i1", meanings))}).to_netcdf(path)
+def write(summary, claims=None, statuses=None, kinds=None):
+    if claims is not None:
+        (summary / "claims.json").write_text(json.dumps(claims))
+    for name, variable, meanings, values in (
+        ("mean_distance.nc", "status", STATUSES, statuses),
+        ("lyapunov.nc", "kind", KINDS, kinds),
+    ):
+        if values is not None:
+            dataset = xr.Dataset({variable: ("a", np.array(values, dtype="i1"), flag("i1", meanings))})
+            dataset.to_netcdf(summary / name)
 
 
 def claim(name, verdict, reason="It is so."):
     return {"name": name, "verdict": verdict, "reason": reason}
 
 
-def summaries(results):
-    return [str(results / "summary" / name) for name in ("claims.json", "mean_distance.nc", "lyapunov.nc")]
+def lines(*jobs, total=None, wanted=(), seconds=1.0):
+    """Return the last lines of a run of these (name, state, output, log); the files of jobs that are done are there."""
+    begun = {
+        number: Job(name, 0.0, "", output, log, state=state) for number, (name, state, output, log) in jobs_of(jobs)
+    }
+    for job in begun.values():
+        for path in map(Path, job.output if job.state == DONE else ()):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+    tally = Tally({"rule": Rule("stage", len(jobs) if total is None else total, jobs=begun)})
+    return closing_lines("results/paper", seconds, tally, wanted)
 
 
-def test_claims_that_a_study_cannot_judge_at_all(results):
-    reason = "Not testable here: the paper's driver has v = 0.1, that of the study v = 0.2."
-    claims = [claim(f"claim_{n}", "not testable", reason) for n in range(5)]
-    path = results / "summary" / "claims.json"
-    path.write_text(json.dumps({"counts": {"holds": 0, "not testable": 5}, "claims": claims}))
-    lines = closing_lines(results, 1.0, success=True, made=[str(path)], wanted=[str(path)])
-    assert f"claims of the paper: none is judged ({results}/summary/claims.md)" in lines
-    assert f"  {reason}" in lines
-    assert not any("holds" in line for line in lines)
+def jobs_of(jobs):
+    return enumerate((*job, (), ())[:4] for job in jobs)
 
 
 @pytest.mark.parametrize(
@@ -53,75 +68,73 @@ def test_elapsed(seconds, words):
     assert elapsed(seconds) == words
 
 
-def test_a_whole_study(results):
-    claims = [claim(f"claim_{n}", "fails") for n in range(10)] + [
-        claim("plus", "depends on convention"),
-        claim("x", "holds"),
-    ]
+def test_a_whole_study(summary):
+    fails = [claim(f"claim_{n}", "fails") for n in range(10)]
+    claims = [*fails, claim("plus", "depends on convention"), claim("x", "holds")]
     counts = {"holds": 1, "holds loosely": 0, "depends on convention": 1, "fails": 10, "not testable": 0}
-    (results / "summary" / "claims.json").write_text(json.dumps({"counts": counts, "claims": claims}))
-    write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 3, 0, 1, 3])
-    write_flags(results / "summary" / "lyapunov.nc", "kind", KINDS, [-1, 3, 0, -1, 2])
-    made = [str(results / path) for path in ("points/a.nc", "points/b.nc", "summary/claims.json", "report.html")]
-    wanted = [*summaries(results), str(results / "report.html")]
-    assert closing_lines(results, 312.0, success=True, made=made, wanted=wanted) == [
+    write(summary, {"counts": counts, "claims": claims}, [0, 3, 0, 1, 3], [-1, 3, 0, -1, 2])
+    made = [f"results/paper/{path}" for path in ("points/a.nc", "points/b.nc", "summary/claims.json", "report.html")]
+    assert lines(*(("x", DONE, (path,)) for path in made), wanted=(*RULES, "report"), seconds=312.0) == [
         "study paper: done in 5 min 12 s",
-        f"files made in {results}: points 2, summary 1, report.html",
+        "files made in results/paper: points 2, summary 1, report.html",
         "claims of the paper: holds 1, holds loosely 0, depends on convention 1, fails 10, not testable 0 "
-        f"({results}/summary/claims.md)",
+        f"({summary}/claims.md)",
         "  fails: claim_0, claim_1, claim_2, claim_3, claim_4, claim_5, claim_6, claim_7 and 2 more",
         "  depends on convention: plus",
-        f"points: 3 of 5 did not complete: diverged 2, step_limit 1 (status in {results}/summary/mean_distance.nc)",
-        f"points: kind of motion undetermined at 2 of 5 (kind in {results}/summary/lyapunov.nc)",
-        f"report: {results}/report.html",
+        f"points: 3 of 5 did not complete: diverged 2, step_limit 1 (status in {summary}/mean_distance.nc)",
+        f"points: kind of motion undetermined at 2 of 5 (kind in {summary}/lyapunov.nc)",
+        "report: results/paper/report.html",
     ]
 
 
-def test_all_points_completed(results):
-    write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 0])
-    write_flags(results / "summary" / "lyapunov.nc", "kind", KINDS, [3, 2])
-    lines = closing_lines(results, 1.0, success=True, made=[], wanted=summaries(results)[1:])
-    assert lines == ["study paper: done in 1 s", "made: nothing", "points: all 2 completed"]
+def test_claims_that_a_study_cannot_judge_at_all(summary):
+    reason = "Not testable here: the paper's driver has v = 0.1, that of the study v = 0.2."
+    claims = [claim(f"claim_{n}", "not testable", reason) for n in range(5)]
+    write(summary, {"counts": {"holds": 0, "not testable": 5}, "claims": claims})
+    expected = [f"claims of the paper: none is judged ({summary}/claims.md)", f"  {reason}"]
+    assert lines(wanted=["claims"])[2:] == expected
 
 
-def test_a_single_point_says_nothing_of_summaries(results):
-    write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 3])
-    point = str(results / "points" / "a.nc")
-    lines = closing_lines(results, 1.0, success=True, made=[point], wanted=[point])
-    assert lines == ["study paper: done in 1 s", f"made: {point}"]
+def test_all_points_completed(summary):
+    write(summary, statuses=[0, 0], kinds=[3, 2])
+    expected = ["study paper: done in 1 s", "made: nothing", "points: all 2 completed"]
+    assert lines(wanted=["mean_distance", "lyapunov"]) == expected
+
+
+def test_a_single_point_says_nothing_of_summaries(summary):
+    write(summary, statuses=[0, 3])
+    made = "results/paper/points/a.nc"
+    assert lines(("simulate", DONE, (made,)), wanted=["simulate"]) == ["study paper: done in 1 s", f"made: {made}"]
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b'{"counts": 3}', b'{"counts": {}}', b"[]", b"\xff\xfe"])
-def test_a_damaged_summary_gives_a_line_and_no_error(results, content):
-    for path in summaries(results):
-        with open(path, "wb") as file:
-            file.write(content)
-    lines = closing_lines(results, 1.0, success=True, made=[], wanted=summaries(results))
-    assert len(lines) == 5
-    assert all(f"{path}: cannot be read" in line for path, line in zip(summaries(results), lines[2:], strict=True))
+def test_a_damaged_summary_gives_a_line_and_no_error(summary, content):
+    for name in RULES.values():
+        (summary / name).write_bytes(content)
+    said = lines(wanted=RULES)[2:]
+    assert [line.partition(": cannot be read (")[0] for line in said] == [str(summary / n) for n in RULES.values()]
 
 
-def test_a_run_that_failed(results, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("logs").mkdir()
+def test_a_run_that_failed(summary):
     error = "Traceback (most recent call last):\n  raise\nburridge_knopoff.provenance.seal.BadFile: x.nc: is empty\n\n"
-    Path("logs/mean_distance.log").write_text(error)
-    failed = [
-        ("mean_distance", ["logs/mean_distance.log"]),
-        *((f"simulate a={n}", [f"logs/{n}.log"]) for n in range(10)),
-    ]
-    lines = closing_lines(
-        results, 5.0, success=False, made=["x.nc"], wanted=summaries(results), failed=failed, missed=6
-    )
-    assert lines[:3] == [
+    Path("mean.log").write_text(error)
+    failed = [("mean", FAILED, (), ("mean.log",)), *((f"simulate a={n}", FAILED, (), (f"{n}.log",)) for n in range(10))]
+    said = lines(*failed, ("simulate a=x", DONE, ("x.nc",)), total=18, wanted=RULES, seconds=5.0)
+    assert said[:3] == [
         "study paper: stopped after 5 s: 11 jobs failed, 6 jobs did not run",
-        "failed: mean_distance: x.nc: is empty (log logs/mean_distance.log)",
-        f"failed: simulate a=0: {SILENT} (log logs/0.log)",
+        "failed: mean: x.nc: is empty (log mean.log)",
+        f"failed: simulate a=0: {SILENT} (log 0.log)",
     ]
-    assert lines[-3:] == ["failed: and 1 more", "made: x.nc", "the same command goes on where this run stopped"]
-    assert len(lines) == 14
+    assert said[-3:] == ["failed: and 1 more", "made: x.nc", "the same command goes on where this run stopped"]
+    assert len(said) == 14
 
 
-def test_a_run_that_was_interrupted(results):
-    lines = closing_lines(results, 5.0, success=False, missed=1)
-    assert lines[0] == "study paper: stopped after 5 s: 1 job did not run"
+def test_a_run_that_was_interrupted(summary):
+    """A job that has begun and left no file did not run to its end, whatever the log says."""
+    assert lines(("x", "running", ("x.nc",)))[0] == "study paper: stopped after 1 s: 1 job did not run"
+
+
+def test_jobs_that_the_log_does_not_tell_the_end_of(summary):
+    """As with `--quiet progress`: the files are there."""
+    Path("x.nc").touch()
+    assert lines(("x", "running", ("x.nc",)))[:2] == ["study paper: done in 1 s", "made: x.nc"]

@@ -3,140 +3,131 @@
 import io
 import logging
 import sys
+from inspect import getsource, signature
 from types import SimpleNamespace
 
 import pytest
+from snakemake.logging import DefaultFilter, DefaultFormatter
 from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
+import snakemake_logger_plugin_study as plugin
 from burridge_knopoff.study.job_log import SILENT
-from snakemake_logger_plugin_study import LogHandler
-from snakemake_logger_plugin_study.outcome import say_outcome
-from snakemake_logger_plugin_study.plain import Pace
-from snakemake_logger_plugin_study.plan import announce, mean_duration, stages
-from snakemake_logger_plugin_study.tally import Rule, Tally, TimeLeft
+from snakemake_logger_plugin_study.plain import PlainDisplay
+from snakemake_logger_plugin_study.plan import Plan
+from snakemake_logger_plugin_study.refusal import reworded
+from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally, TimeLeft
 from snakemake_logger_plugin_study.wording import duration, progress_line, time_left
 
 
-def tally(cores=2, dependents=None, **rules):
-    """Return a tally of these rules; jobs are numbered in the order of the rules, from 0."""
-    made = Tally()
-    made.cores = cores
-    names = [name for name, rule in rules.items() for _ in range(rule.total)]
-    made.expect(rules, dict(enumerate(names)), dependents or {})
+def tally(*done, cores=2, running=(), failed=(), **rules):
+    """Return a tally of these rules after (rule, begin, end) were done, (rule, begin) run, and these rules failed."""
+    made = Tally(rules, cores)
+    begun = [*((*job, DONE) for job in done), *((*job, 0.0, "running") for job in running)]
+    begun += [(rule, 0.0, 0.0, FAILED) for rule in failed]
+    for number, (rule, begin, end, state) in enumerate(begun):
+        made.start(number, rule, Job(rule, begin))
+        made.end(number, state, end)
     return made
 
 
-def test_nothing_is_said_while_no_duration_is_known():
-    made = tally(simulate=Rule("points", 10))
-    made.start(0, "simulate", 0.0)
-    assert made.time_left(5.0) is None
+def needing(stage, total, *needs, last=None):
+    return Rule(stage, total, last, frozenset(needs))
 
 
-def test_jobs_of_this_run_count_more_than_those_of_the_last():
-    made = tally(simulate=Rule("points", 10, last=100.0))
-    assert made.time_left(0.0) == TimeLeft(500.0, True)
-    made.start(0, "simulate", 0.0)
-    made.start(1, "simulate", 0.0)
-    made.finish(0, 2.0)
-    made.finish(1, 4.0)
-    assert made.time_left(4.0) == TimeLeft(8 * 3.0 / 2, True)
-
-
-def test_a_running_job_counts_with_what_is_left_of_it():
-    made = tally(simulate=Rule("points", 2, last=10.0))
-    made.start(0, "simulate", 100.0)
-    made.start(1, "simulate", 104.0)
-    assert made.time_left(106.0) == TimeLeft(8.0, True)
-    assert made.time_left(200.0) == TimeLeft(0.0, True)
-
-
-def test_rules_differ_by_a_factor_of_a_thousand():
-    """The mean over all jobs would say 242 jobs of 0.9 s each, 109 s."""
-    made = tally(simulate=Rule("points", 484, last=0.2), attractors_of_law=Rule("attractors", 2, last=170.0))
-    for job in range(242):
-        made.start(job, "simulate", 0.2 * job)
-        made.finish(job, 0.2 * job + 0.2)
-    assert made.time_left(100.0).seconds == pytest.approx((242 * 0.2 + 2 * 170.0) / 2)
-
-
-def test_a_rule_of_unknown_duration_makes_it_a_lower_bound():
-    made = tally(simulate=Rule("points", 4, last=1.0), basins=Rule("basins", 1))
-    assert made.time_left(0.0) == TimeLeft(2.0, False)
-    made.start(4, "basins", 0.0)
-    made.finish(4, 1.0)
-    assert made.time_left(1.0) == TimeLeft(2.0, True)
-
-
-def test_rules_that_need_each_other_take_their_sum_on_any_number_of_cores():
-    made = tally(
-        cores=8,
-        simulate=Rule("points", 8, last=1.0),
-        attractors=Rule("attractors", 1, last=30.0),
-        basins=Rule("basins", 4, needs=("attractors",), last=5.0),
-        figure=Rule("figures", 1, needs=("basins", "simulate"), last=2.0),
-    )
-    assert made.time_left(0.0) == TimeLeft(37.0, True)
-
-
-def test_threads_take_their_cores():
-    made = tally(simulate=Rule("points", 4, threads=2, last=1.0))
-    assert made.time_left(0.0) == TimeLeft(4.0, True)
-    made = tally(simulate=Rule("points", 4, threads=16, last=1.0))
-    assert made.time_left(0.0) == TimeLeft(4.0, True)
+@pytest.mark.parametrize(
+    ("made", "now", "left"),
+    [
+        # Nothing is said while no duration is known.
+        (tally(running=[("simulate", 0.0)], simulate=Rule("points", 10)), 5.0, None),
+        (tally(simulate=Rule("points", 10, 100.0)), 0.0, (500.0, True)),
+        # Jobs of this run count more than those of the last.
+        (
+            tally(("simulate", 0.0, 2.0), ("simulate", 0.0, 4.0), simulate=Rule("points", 10, 100.0)),
+            4.0,
+            (8 * 3.0 / 2, True),
+        ),
+        # A running job counts with what is left of it.
+        (tally(running=[("simulate", 100.0), ("simulate", 104.0)], simulate=Rule("points", 2, 10.0)), 106.0, (8, True)),
+        (tally(running=[("simulate", 100.0), ("simulate", 104.0)], simulate=Rule("points", 2, 10.0)), 200.0, (0, True)),
+        # Rules differ by a factor of a thousand: the mean over all jobs would say 242 jobs of 0.9 s each, 109 s.
+        (
+            tally(
+                *[("simulate", 1.0, 1.25)] * 242,
+                simulate=Rule("points", 484, 0.2),
+                attractors_of_law=Rule("attractors", 2, 170.0),
+            ),
+            100.0,
+            ((242 * 0.25 + 2 * 170.0) / 2, True),
+        ),
+        # A rule of unknown duration makes it a lower bound.
+        (tally(simulate=Rule("points", 4, 1.0), basins=Rule("basins", 1)), 0.0, (2.0, False)),
+        (tally(("basins", 0.0, 1.0), simulate=Rule("points", 4, 1.0), basins=Rule("basins", 1)), 1.0, (2.0, True)),
+        # Rules that need each other take their sum on any number of cores.
+        (
+            tally(
+                cores=8,
+                simulate=Rule("points", 8, 1.0),
+                attractors=Rule("attractors", 1, 30.0),
+                basins=needing("basins", 4, "attractors", last=5.0),
+                figure=needing("figures", 1, "basins", "simulate", last=2.0),
+            ),
+            0.0,
+            (37.0, True),
+        ),
+        # Threads take their cores, as far as there are so many.
+        (tally(simulate=Rule("points", 4, 1.0, threads=2)), 0.0, (4.0, True)),
+        (tally(simulate=Rule("points", 4, 1.0, threads=16)), 0.0, (4.0, True)),
+    ],
+)
+def test_time_left(made, now, left):
+    assert made.time_left(now) == left
 
 
 def test_jobs_of_a_group_tell_no_duration():
     made = tally(simulate=Rule("points", 4))
-    made.start(0, "simulate", 0.0)
-    made.finish(0, 100.0, timed=False)
+    made.start(0, "simulate", Job("simulate", 0.0, timed=False))
+    made.end(0, DONE, 100.0)
     assert made.time_left(100.0) is None
-    assert made.total().done == 1
+    assert made.counts()[-1].done == 1
 
 
 def test_what_a_failed_job_blocks_is_not_waited_for():
-    made = tally(
-        dependents={0: [2], 1: [2], 2: [3]},
-        simulate=Rule("points", 2, last=10.0),
-        mean_distance=Rule("summary", 1, last=10.0),
-        figure=Rule("figures", 1, last=10.0),
-    )
-    made.start(0, "simulate", 0.0)
-    made.start(1, "simulate", 0.0)
-    made.fail(0)
-    assert (made.failed, made.blocked) == (1, 2)
-    assert made.time_left(0.0) == TimeLeft(10.0, True)
-    made.fail(1)
-    assert (made.failed, made.blocked) == (2, 2)
+    rules = {
+        "simulate": Rule("points", 2, 10.0),
+        "mean_distance": needing("summary", 1, "simulate", last=10.0),
+        "figure": needing("figures", 1, "mean_distance", last=10.0),
+        "orbits": Rule("orbits", 1),
+    }
+    made = tally(failed=["simulate"], running=[("simulate", 0.0)], **rules)
+    assert made.blocked() == {"mean_distance": 1, "figure": 1}
+    assert made.time_left(0.0) == TimeLeft(10.0, False)
+    made.end(0, FAILED)
+    assert len(made.jobs(FAILED)) == 2
     assert made.time_left(0.0) is None
-    # Tried again, as on a cluster.
-    made.start(0, "simulate", 20.0)
-    made.start(1, "simulate", 20.0)
-    assert (made.failed, made.blocked) == (0, 0)
-    made.finish(0, 25.0)
-    assert made.total().done == 1
+    # Tried again, as on a cluster; and a job that needed none of the failed ones.
+    for number in (0, 1):
+        made.start(number, "simulate", Job("simulate", 20.0))
+    assert (made.jobs(FAILED), made.blocked()) == ([], {})
+    made.end(0, FAILED)
+    made.start(2, "mean_distance", Job("mean_distance", 20.0))
+    assert made.blocked() == {"mean_distance": 0, "figure": 1}
 
 
 def test_a_job_that_was_not_planned_is_added():
     made = tally()
-    made.start(7, "other", 0.0)
-    assert [(stage.name, stage.done, stage.total) for stage in made.stages()] == [("other", 0, 1)]
-    made.finish(7, 1.0)
-    made.finish(7, 1.0)
-    made.finish(8, 1.0)
-    assert made.total().done == 1
+    made.start(7, "other", Job("other", 0.0))
+    assert made.counts() == [("other", 0, 1, 1), ("all", 0, 1, 1)]
+    for number in (7, 7, 8):
+        made.end(number, DONE, 1.0)
+    assert made.counts()[-1] == ("all", 1, 1, 0)
 
 
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [
-        (0, "a few seconds"),
-        (12, "10 s"),
-        (48, "50 s"),
-        (56, "1 min"),
-        (170, "3 min"),
-        (5300, "88 min"),
-        (9000, "2.5 h"),
+        *((0, "a few seconds"), (12, "10 s"), (48, "50 s"), (56, "1 min"), (170, "3 min")),
+        *((5300, "88 min"), (9000, "2.5 h")),
     ],
 )
 def test_durations_in_words(seconds, words):
@@ -151,39 +142,41 @@ def test_time_left_in_words():
 
 
 def test_a_progress_line():
-    made = tally(simulate=Rule("points", 484, last=1.0), mean_distance=Rule("summary", 46, last=1.0))
-    for job in range(121):
-        made.start(job, "simulate", 0.0)
-    for job in range(120):
-        made.finish(job, 1.0)
+    rules = {"simulate": Rule("points", 484), "mean_distance": needing("summary", 46, "simulate", last=1.0)}
+    done = [("simulate", 0.0, 1.0)] * 120
+    made = tally(*done, running=[("simulate", 0.0)], **rules)
     assert progress_line(made, 1.0) == "points 120 of 484, all 120 of 530 (22 %), about 3 min left"
-    made.fail(120)
-    assert progress_line(made, 1.0) == "all 120 of 530 (22 %), 1 failed, about 3 min left"
+    made = tally(*done, failed=["simulate"], **rules)
+    assert progress_line(made, 1.0) == "all 120 of 530 (22 %), 1 failed, 46 cannot run, about 3 min left"
 
 
 def test_the_pace_of_plain_lines():
-    pace = Pace(0.0)
-    assert not pace.due(50, 100, 9.9)
-    assert pace.due(50, 100, 10.0)
-    assert not pace.due(54, 100, 69.9)
-    assert pace.due(55, 100, 69.9)
-    assert not pace.due(55, 100, 129.8)
-    assert pace.due(55, 100, 129.9)
+    made = tally(simulate=Rule("points", 100))
+    display = PlainDisplay(made, SimpleNamespace(__enter__=None), print)
+    display.close()
+    begin = display._time
+    due = []
+    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (55, 69.9), (55, 129.8), (55, 129.9), (100, 300.0)):
+        for number in range(done):
+            made.start(number, "simulate", Job("x", 0.0, state=DONE))
+        due.append(bool(display.line(begin + after)))
+    assert due == [False, True, False, True, False, True, False]
 
 
-def test_durations_of_the_last_run(tmp_path):
-    for name, content in {"a": "s\th:m:s\n1.5\t0:00:01\n", "b": "s\n2.5\n", "c": "s\n", "d": "s\nNA\n"}.items():
-        (tmp_path / name).write_text(content)
-    assert mean_duration([str(tmp_path / name) for name in "abcdef"]) == 2.0
-    assert mean_duration([str(tmp_path / "c"), str(tmp_path / "f")]) is None
+def test_what_the_snakefile_announces(tmp_path):
+    """Stages are files of rules; durations are means over benchmark files, as far as they can be read."""
 
+    def rule(name, file, *output, benchmark=None):
+        return SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=output, benchmark=benchmark)
 
-def test_a_stage_is_a_file_of_rules():
-    def rule(name, file, *output):
-        return SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=output)
-
-    rules = [rule("points", "simulate"), rule("simulate", "simulate", "x.nc"), rule("orbits", "stability", "y.nc")]
-    assert stages(rules) == {"points": "points", "simulate": "points", "orbits": "stability"}
+    for name, content in {"a1": "s\th:m:s\n1.5\t0:00:01\n", "a2": "s\n2.5\n", "a3": "s\n", "a4": "s\nNA\n"}.items():
+        (tmp_path / f"{name}.tsv").write_text(content)
+    plan = Plan()
+    simulate = rule("simulate", "simulate", "x.nc", benchmark=f"{tmp_path}/a{{a}}.tsv")
+    orbits = rule("orbits", "stability", "y.nc", benchmark=f"{tmp_path}/a3.tsv")
+    plan.announce("results/x", [rule("points", "simulate"), simulate, orbits, rule("all", "Snakefile")])
+    assert (plan.results, plan.stages) == ("results/x", {"simulate": "points", "orbits": "stability"})
+    assert [plan.last_duration(name) for name in ("simulate", "orbits", "other")] == [2.0, None, None]
 
 
 SETTINGS = {
@@ -200,7 +193,11 @@ def written(monkeypatch):
     def write(*records, **settings):
         stream = io.StringIO()
         monkeypatch.setattr(sys, "stderr", stream)
-        handler = LogHandler(common_settings=SimpleNamespace(**{**SETTINGS, **settings}), settings=None)
+        settings = {**SETTINGS, **settings}
+        handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
+        # As Snakemake does it.
+        handler.addFilter(DefaultFilter(**{name: settings[name] for name in signature(DefaultFilter).parameters}))
+        handler.setFormatter(DefaultFormatter(settings["quiet"], settings["show_failed_logs"]))
         for record in records:
             handler.handle(record)
         handler.close()
@@ -220,8 +217,10 @@ JOB = {
     **{"log": [], "benchmark": None, "wildcards": {}, "reason": "", "resources": {}, "priority": 0, "threads": 1},
     **{"indent": False, "is_checkpoint": False, "shellcmd": "bk simulate"},
 }
+GRAPH = {"nodes": [{"rule": name} for name in ("simulate", "all")]}
 ROUTINE = (
-    record("Job stats:", LogEvent.RUN_INFO, stats={"simulate": 1, "total": 1}),
+    record(None, LogEvent.RULEGRAPH, rulegraph={**GRAPH, "links": [{"sourcerule": "simulate", "targetrule": "all"}]}),
+    record("Job stats:", LogEvent.RUN_INFO, stats={"simulate": 2, "all": 1, "total": 3}),
     record("Select jobs to execute..."),
     record("Execute 1 jobs...", LogEvent.JOB_STARTED, jobs=[1]),
     record("Rule: simulate", LogEvent.JOB_INFO, **JOB),
@@ -229,9 +228,7 @@ ROUTINE = (
     record("Finished jobid: 1", LogEvent.JOB_FINISHED, job_id=1),
     record("None", LogEvent.PROGRESS, done=1, total=1),
 )
-
-
-START = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "wildcards": {"a": "0.0800"}})
+START = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "log": ["x.log"], "wildcards": {"a": "0.0800"}})
 
 
 def job_error(log):
@@ -240,6 +237,7 @@ def job_error(log):
 
 
 ERROR = job_error("x.log")
+TOLD = f"failed: simulate a=0.0800: {SILENT} (log x.log)"
 
 
 def test_routine_is_replaced_and_all_else_is_written(written):
@@ -248,14 +246,32 @@ def test_routine_is_replaced_and_all_else_is_written(written):
         record("Building DAG of jobs..."),
         record("careful", level=logging.WARNING),
         record("RuleException:\nCalledProcessError in file x.smk", level=logging.ERROR),
-        START,
-        ERROR,
-        record("the end"),
+        *(START, ERROR, record("the end")),
     )
-    text = written(*ROUTINE, *plain)
-    lines = text.splitlines()
-    assert lines[:2] == ["Building DAG of jobs...", "careful"]
-    assert lines[2:4] == [f"failed: simulate a=0.0800: {SILENT} (log x.log)", "the end"]
+    assert written(*ROUTINE, *plain).splitlines() == ["Building DAG of jobs...", "careful", TOLD, "the end"]
+
+
+def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(plugin, "PLAN", Plan("results/x", {"other": "others", "simulate": "points"}))
+    assert written(*ROUTINE[:2], record("the end")) == "the end\n"
+    assert written(*ROUTINE, START, ERROR).splitlines() == [
+        *("2 jobs: points 2", TOLD, "study x: stopped after 0 s: 1 job failed, 1 job did not run", TOLD),
+        *("made: nothing", "the same command goes on where this run stopped"),
+    ]
+    (tmp_path / "x.nc").touch()
+    other = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "jobid": 2})
+    # `report` comes after the points and does not run: `--until`. With no rule before it that runs it is up to date.
+    for link, told in (("simulate", False), ("orbits", True)):
+        nodes = [{"rule": name} for name in ("simulate", "orbits", "report")]
+        graph = {"nodes": nodes, "links": [{"sourcerule": link, "targetrule": "report"}]}
+        said = written(record(None, LogEvent.RULEGRAPH, rulegraph=graph), *ROUTINE[1:], other)
+        assert ("report: results/x/report.html" in said) is told
+    # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
+    for quiet, lines in ((Quietness.PROGRESS, 3), (Quietness.ALL, 0)):
+        assert len(written(*ROUTINE[:5], other, quiet={quiet}).splitlines()) == lines
+    monkeypatch.setattr(plugin, "closing_lines", lambda *given: 1 / 0)
+    assert "what the run left cannot be told: division by zero" in written(*ROUTINE)
 
 
 def test_an_unknown_job_that_fails_is_told_of_as_snakemake_does(written):
@@ -263,9 +279,8 @@ def test_an_unknown_job_that_fails_is_told_of_as_snakemake_does(written):
 
 
 def test_settings_of_snakemake_hold(written):
-    assert {"Job stats:", "Job 1: simulate it", "Finished jobid: 1"} <= set(
-        written(*ROUTINE, printshellcmds=True).splitlines()
-    )
+    said = written(*ROUTINE, printshellcmds=True).splitlines()
+    assert {"Job stats:", "Select jobs to execute...", "Job 1: simulate it", "Finished jobid: 1"} <= set(said)
     assert "bk simulate" in written(*ROUTINE, printshellcmds=True)
     assert "Job stats:" in written(*ROUTINE, dryrun=True)
     assert written(*ROUTINE, ERROR, quiet={Quietness.ALL}) == ""
@@ -277,16 +292,18 @@ def test_a_failed_log_is_shown(written, tmp_path):
 
 
 def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
-    monkeypatch.setattr(Tally, "fail", lambda self, job: 1 / 0)
+    monkeypatch.setattr(Tally, "end", lambda *given: 1 / 0)
     text = written(START, ERROR)
     assert "ZeroDivisionError" in text
-    assert "failed: simulate a=0.0800: " in text
+    assert TOLD in text
 
 
-def test_a_defect_of_plan_or_outcome_is_only_told(caplog):
-    announce(SimpleNamespace())
-    say_outcome(SimpleNamespace(), list)
-    assert [line.split(":")[0] for line in caplog.messages] == [
-        "the stages of this run cannot be told",
-        "what the run left cannot be told",
-    ]
+def test_snakemake_says_what_is_reworded():
+    """Its own words: here it shows that a version has changed them."""
+    from snakemake import exceptions
+    from snakemake.scheduling import job_scheduler
+
+    assert reworded("Select jobs to execute...") == ""
+    assert '"Select jobs to execute..."' in getsource(job_scheduler)
+    missing = exceptions.MissingRuleException("x.nc")
+    assert reworded(exceptions.format_exception_to_string(missing)) == "x.nc: neither a rule nor a file of this study"

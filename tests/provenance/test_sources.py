@@ -1,7 +1,6 @@
 """Fingerprints of sources: they see all code that runs, and nothing else."""
 
 import io
-import os
 import subprocess
 import sys
 import tokenize
@@ -11,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.provenance import sources
 from burridge_knopoff.provenance.sources import PACKAGE, PLUMBING, code_of, files_of, source_fingerprint, sources_of
 
 SCRIPTS = sorted((PACKAGE.parent.parent / "workflow" / "scripts").glob("*.py"))
@@ -128,7 +126,7 @@ def test_results_depend_on_what_makes_them():
     drawn = names("figure figures.agreement")
     assert not {name for name in drawn if name.startswith(("kernel", "stability", "report"))}
     assert {"report/static/style.css", "report/templates/report.html.jinja", "report/page.py"} <= names("report")
-    assert not any(name.startswith(PLUMBING) for name in names("report"))
+    assert not any(name.startswith(PLUMBING) for name in names("report") - {"provenance/compilation.py"})
 
 
 def test_the_fingerprint_is_of_the_code(tmp_path):
@@ -142,27 +140,8 @@ def test_the_fingerprint_is_of_the_code(tmp_path):
         assert (source_fingerprint(other) == one) is same
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", "\x00", '{"x": 1}'])
-def test_what_is_kept_may_be_damaged(tmp_path, content):
-    """A process of its own: what was read once is known."""
-    package = tmp_path / "burridge_knopoff"
-    subprocess.run(["cp", "-a", str(PACKAGE), str(package)], check=True)
-    kept = package / sources._CACHE.relative_to(PACKAGE)
-    kept.parent.mkdir(exist_ok=True)
-    kept.write_text(content)
-    program = (
-        "from burridge_knopoff.provenance.sources import source_fingerprint;"
-        "print(source_fingerprint('burridge_knopoff.laws.law'))"
-    )
-    for _ in range(2):
-        found = subprocess.run(
-            [sys.executable, "-c", program],
-            env={**os.environ, "PYTHONPATH": str(tmp_path)},
-            check=True,
-            capture_output=True,
-            text=True,
-        )
-        assert found.stdout.strip() == source_fingerprint("burridge_knopoff.laws.law")
+#: Names that are for people and for the display: no script that makes a result uses them.
+LOOKED_UP = ("burridge_knopoff/__init__.py", "study/__init__.py", "running/trajectory.py")
 
 
 def test_nothing_is_imported_that_would_not_be_followed():
@@ -173,7 +152,7 @@ def test_nothing_is_imported_that_would_not_be_followed():
             [],
             ["from burridge_knopoff import __version__"],
         )
-        if path not in (PACKAGE / "__init__.py", PACKAGE / "config" / "__init__.py"):
+        if not path.as_posix().endswith(LOOKED_UP):
             assert not [line for line in lines if "import_module(" in line]
 
 

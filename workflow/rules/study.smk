@@ -2,7 +2,6 @@
 import os
 import shlex
 import sys
-import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -35,12 +34,9 @@ from burridge_knopoff.study import (
 )
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import POINT
-from snakemake_logger_plugin_study.closing import closing_lines
-from snakemake_logger_plugin_study.command_line import SEVERAL_FILES
-from snakemake_logger_plugin_study.outcome import say_outcome
-from snakemake_logger_plugin_study.plan import announce
+from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.refusal import SEVERAL_FILES
 
-BEGINNING = time.monotonic()
 ROOT = Path(workflow.basedir)
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -112,18 +108,7 @@ def prepare_results():
         )
     except OSError as error:
         sys.exit(f"{error}")
-    announce(workflow)
-
-
-def say_end(success):
-    """Say what the run made and what it found, or what failed."""
-    say_outcome(
-        workflow,
-        closing_lines,
-        results=RESULTS,
-        seconds=time.monotonic() - BEGINNING,
-        success=success,
-    )
+    PLAN.announce(RESULTS, workflow.rules)
 
 
 def sources(script, *modules):
@@ -154,7 +139,8 @@ def fixed_group(name, number):
     if size == 1 or number is None:
         return None
     group = f"{name}{number // size}"
-    # Snakemake unites jobs that need nothing of each other up to the size of the parent group.
+    # Snakemake unites jobs that need nothing of each other up to the size of the parent group. Nothing documented says
+    # which jobs: a group named by wildcards cannot cut the grid into pieces. tests/workflow/test_groups.py holds it.
     workflow.parent_groupids[group] = name
     return group
 

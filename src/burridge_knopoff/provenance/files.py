@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import glob
 import os
-import re
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 #: How often a file is written if another process takes its temporary file away.
@@ -15,7 +15,7 @@ ATTEMPTS = 3
 PROBE = 1 << 20
 
 
-def write_whole(path: str | Path, write: Callable[[str], None]) -> None:
+def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
     """Let `write` fill a temporary file beside `path`, then move it into place; leave nothing behind if it fails.
 
     Temporary files of `path` that a killed process has left are removed as well. Two processes that write the same
@@ -26,13 +26,16 @@ def write_whole(path: str | Path, write: Callable[[str], None]) -> None:
     check_target(path)
     # A link stays, and the file that it leads to is replaced.
     path = Path(os.path.realpath(path))
+    # The suffix stays last: matplotlib and others tell the format from it.
+    name = ".{}.part-{}{}"
     for attempt in range(ATTEMPTS):
-        # The suffix stays last: matplotlib and others tell the format from it.
-        temporary = path.with_name(f"{_head(path)}{secrets.token_hex(4)}{path.suffix}")
+        temporary = path.with_name(name.format(path.stem, secrets.token_hex(4), path.suffix))
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             write(str(temporary))
-            _sync(temporary)
+            # The move could reach the disk before the content, and a power cut leave an empty file.
+            with temporary.open("rb") as file:
+                os.fsync(file.fileno())
             os.replace(temporary, path)
             break
         except (OSError, RuntimeError) as error:
@@ -41,36 +44,17 @@ def write_whole(path: str | Path, write: Callable[[str], None]) -> None:
                 continue
             raise OSError(f"{path}: cannot be written: {_reason(error, temporary)}") from error
         finally:
-            with contextlib.suppress(OSError):
-                temporary.unlink()
-    _remove_temporaries(path)
+            _remove(temporary)
+    # Whether the owners of others live cannot be known: on a cluster they run on other machines. One that does live
+    # writes once more.
+    left = name.format(glob.escape(path.stem), "[0-9a-f]" * 8, glob.escape(path.suffix))
+    _remove(*path.parent.glob(left))
 
 
-def _head(path: Path) -> str:
-    """Return how the names of the temporary files of a path begin; 8 hexadecimal digits and its suffix follow."""
-    return f".{path.stem}.part-"
-
-
-def _sync(path: Path) -> None:
-    """Wait until a file is on the disk.
-
-    The move could reach the disk before the content, and a power cut leave an empty file under the final name.
-    """
-    with path.open("rb") as file:
-        os.fsync(file.fileno())
-
-
-def _remove_temporaries(path: Path) -> None:
-    """Remove the temporary files that killed processes have left of a file that is now written.
-
-    Whether their owners live cannot be known: on a cluster they run on other machines. An owner that does live writes
-    once more.
-    """
-    pattern = re.compile(re.escape(_head(path)) + "[0-9a-f]{8}" + re.escape(path.suffix))
-    with contextlib.suppress(OSError):
-        for name in filter(pattern.fullmatch, os.listdir(path.parent)):
-            with contextlib.suppress(OSError):
-                path.with_name(name).unlink()
+def _remove(*paths: Path) -> None:
+    for path in paths:
+        with contextlib.suppress(OSError):
+            path.unlink()
 
 
 def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
@@ -88,14 +72,17 @@ def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
     return f"{error} (not for want of space on the disk, perhaps of memory)"
 
 
+def write_text(path: str | Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    write_whole(path, lambda name: Path(name).write_bytes(text.encode()))
+
+
 def check_target(path: str | Path) -> None:
     """Raise OSError, one line, if a file of that name could not be written: better before hours of work than after."""
     path = Path(os.path.realpath(path))
-    if path.is_dir():
-        raise OSError(f"{path}: cannot be written: it is a folder")
-    if path.exists() and not path.is_file():
-        raise OSError(f"{path}: cannot be written: it is not a regular file")
     try:
+        if path.exists() and not path.is_file():
+            raise OSError(f"it is {'a folder' if path.is_dir() else 'not a regular file'}")
         check_folder(path.parent)
     except OSError as error:
         raise OSError(f"{path}: cannot be written: {error}") from None
@@ -103,14 +90,12 @@ def check_target(path: str | Path) -> None:
 
 def check_folder(path: str | Path) -> None:
     """Raise OSError, one line that names the folder, if no file could be written into a folder, there or not yet."""
-    _check_access(nearest_folder(path))
+    _check_access([nearest_folder(path)])
 
 
 def check_folders(path: str | Path) -> None:
     """Raise OSError as `check_folder` does, for a folder and all folders in it."""
-    check_folder(path)
-    for folder, _, _ in os.walk(path):
-        _check_access(Path(folder))
+    _check_access([nearest_folder(path), *(folder for folder, _, _ in os.walk(path))])
 
 
 def nearest_folder(path: str | Path) -> Path:
@@ -128,20 +113,12 @@ def nearest_folder(path: str | Path) -> Path:
     return folder
 
 
-def _check_access(folder: Path) -> None:
-    if not os.access(folder, os.W_OK | os.X_OK):
-        read_only = os.statvfs(folder).f_flag & os.ST_RDONLY
-        reason = "its file system is read-only" if read_only else "its permissions do not allow it"
-        raise OSError(f"{folder} is a folder that cannot be written to: {reason}")
-
-
-def write_text(path: str | Path, text: str) -> None:
-    """Write a text file, whole or not at all."""
-
-    def write(name: str) -> None:
-        Path(name).write_text(text, encoding="utf-8")
-
-    write_whole(path, write)
+def _check_access(folders: Iterable[str | Path]) -> None:
+    for folder in folders:
+        if not os.access(folder, os.W_OK | os.X_OK):
+            read_only = os.statvfs(folder).f_flag & os.ST_RDONLY
+            reason = "its file system is read-only" if read_only else "its permissions do not allow it"
+            raise OSError(f"{folder} is a folder that cannot be written to: {reason}")
 
 
 def display_path(path: str | Path) -> str:

@@ -18,10 +18,13 @@ REBUILD = "make kernel" if (_CHECKOUT / "Makefile").is_file() else "pip install 
 class KernelError(ImportError):
     """A kernel that must not be used; the message is one line with the command that compiles it."""
 
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"{reason}: run `{REBUILD}`")
+
 
 def kernel_sources() -> dict[str, str]:
     """Return {name: SHA-256 of its code} of all sources of the kernel, as they are on disk."""
-    paths = [COMPILATION, *(path for path in KERNEL.glob("*.p*") if path.suffix in (".py", ".pxd"))]
+    paths = [COMPILATION, *KERNEL.glob("*.py"), *KERNEL.glob("*.pxd")]
     return {path.relative_to(PACKAGE).as_posix(): code_digest(path) for path in sorted(paths)}
 
 
@@ -30,27 +33,20 @@ def write_record(folder: Path) -> None:
     (folder / RECORD).write_text(json.dumps(kernel_sources(), indent=1) + "\n", encoding="utf-8")
 
 
-def is_compiled() -> bool:
-    """Tell whether there is a compiled kernel; without one its sources run as Python, about a hundred times slower."""
-    return any(path.suffix in (".so", ".pyd") for path in KERNEL.iterdir())
-
-
 def check_kernel(*, compiled: bool = False) -> None:
     """Raise KernelError if the compiled kernel is not that of the sources on disk.
 
-    compiled : whether a kernel that is not compiled at all is refused as well
+    compiled : whether a kernel that is not compiled at all, a hundred times slower as Python, is refused as well
     """
-    if not is_compiled():
+    if not any(path.suffix in (".so", ".pyd") for path in KERNEL.iterdir()):
         if compiled:
-            raise KernelError(f"the kernel is not compiled: run `{REBUILD}`")
+            raise KernelError("the kernel is not compiled")
         return
     try:
         recorded = dict(json.loads((KERNEL / RECORD).read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):
-        raise KernelError(
-            f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole: run `{REBUILD}`"
-        ) from None
+        raise KernelError(f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole") from None
     current = kernel_sources()
     for name in sorted(current.keys() | recorded.keys()):
         if current.get(name) != recorded.get(name):
-            raise KernelError(f"{name}: has changed since the kernel was compiled: run `{REBUILD}`")
+            raise KernelError(f"{name}: has changed since the kernel was compiled")

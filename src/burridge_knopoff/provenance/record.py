@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,11 @@ if TYPE_CHECKING:
 
 NAME = "study.json"
 
-_KEYS = ("software", "git_commit", "arguments", "config_file", "given", "config", "grid")
+#: {key of a record: its type}
+_TYPES = {
+    **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
+    **dict.fromkeys(("given", "config", "grid"), dict),
+}
 
 
 def write_study_record(
@@ -27,11 +32,8 @@ def write_study_record(
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    values = (
-        *(SOFTWARE, git_commit(), arguments, display_path(config_file)),
-        *(given, study.config, study.grid),
-    )
-    text = json.dumps(dict(zip(_KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, study.config, study.grid)
+    text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
 
@@ -53,23 +55,9 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not readable ({error}); run snakemake again, it writes it") from None
-    types = (str, str, str, str, dict, dict, dict)
-    right = isinstance(record, dict) and tuple(record) == _KEYS
-    if not right or not all(isinstance(value, kind) for value, kind in zip(record.values(), types, strict=True)):
+    if not isinstance(record, dict) or {key: type(value) for key, value in record.items()} != _TYPES:
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record
-
-
-def snakemake_command(path: str | Path) -> str:
-    """Return the start of the command that runs the study in whose results a file lies."""
-    for folder in Path(path).absolute().parents:
-        if (folder / NAME).is_file():
-            try:
-                arguments = read_study_record(folder)["arguments"]
-            except ValueError:
-                break
-            return f"snakemake -c2 {arguments}".strip()
-    return "snakemake -c2"
 
 
 def remake_command(study_file: str | Path, *paths: str | Path) -> str:
@@ -78,4 +66,10 @@ def remake_command(study_file: str | Path, *paths: str | Path) -> str:
     study_file : a file in the results of their study
     paths : the files, if it is not that one
     """
-    return f"{snakemake_command(study_file)} -R {' '.join(map(str, paths or [study_file]))}"
+    arguments = ""
+    for folder in Path(study_file).absolute().parents:
+        if (folder / NAME).is_file():
+            with contextlib.suppress(ValueError):
+                arguments = f"{read_study_record(folder)['arguments']} ".lstrip()
+            break
+    return f"snakemake -c2 {arguments}-R {' '.join(map(str, paths or [study_file]))}"

@@ -5,37 +5,25 @@ Nothing here depends on the user, the host or the time of day, so that the same 
 
 from __future__ import annotations
 
+import subprocess
 from functools import cache
-from pathlib import Path
 
 from burridge_knopoff import __version__
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import PACKAGE, source_fingerprint
 
-PACKAGE = Path(__file__).parents[1]
 SOFTWARE = f"burridge-knopoff {__version__}"
 
 
 @cache
 def git_commit() -> str:
     """Return the commit that is checked out around the package, or "unknown" outside a checkout."""
-    git = PACKAGE.parent.parent / ".git"
+    checkout = PACKAGE.parent.parent
+    # The checkout may lie in the folder of another user.
+    command = ["git", "-c", "safe.directory=*", "rev-parse", "HEAD"]
     try:
-        folder = git
-        if git.is_file():
-            # A worktree: its HEAD is its own, the branches are those of the repository.
-            folder = Path(git.read_text().removeprefix("gitdir:").strip())
-            git = (folder / (folder / "commondir").read_text().strip()).resolve()
-        head = (folder / "HEAD").read_text().strip()
-        if not head.startswith("ref: "):
-            return head
-        reference = head.removeprefix("ref: ")
-        loose = git / reference
-        if loose.exists():
-            return loose.read_text().strip()
-        for line in (git / "packed-refs").read_text().splitlines():
-            if line.endswith(f" {reference}"):
-                return line.split()[0]
-    except OSError:
+        if (checkout / ".git").exists():
+            return subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
         pass
     return "unknown"
 

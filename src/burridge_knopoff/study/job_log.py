@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from itertools import dropwhile
 from pathlib import Path
 
 #: Of a log only its end is read.
 _TAIL = 20_000
 #: Longer reasons are cut.
 _LONGEST = 500
+# The calls of a traceback; what is not indented after them is the message, which may have several lines.
+_CALLS = re.compile(r"\A(?:[ \t].*\n?|\n)*")
 # The class of an error of ours says less than its line.
 _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
 
-_TRACEBACK = "Traceback (most recent call last):"
+_TRACEBACK = "Traceback (most recent call last):\n"
 
 SILENT = "nothing in its log: it was killed, or could not begin"
 
@@ -22,17 +23,12 @@ SILENT = "nothing in its log: it was killed, or could not begin"
 def last_words(log: str | Path) -> str:
     """Return in one line what a log says last: of a traceback the error, else its last line. Nothing if it is empty."""
     try:
-        with open(log, "rb") as file:
-            file.seek(max(Path(log).stat().st_size - _TAIL, 0))
-            text = file.read().decode("utf-8", errors="replace")
+        text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
         return ""
-    lines = [line for line in text.splitlines() if line.strip()]
-    if _TRACEBACK in lines:
-        # What is not indented after the calls is the message, which may have several lines.
-        calls = lines[len(lines) - lines[::-1].index(_TRACEBACK) :]
-        lines = [" ".join(line.strip() for line in dropwhile(lambda line: line[0].isspace(), calls))]
-    words = _CLASS.sub("", lines[-1].strip()) if lines else ""
+    _, traceback, said = text.rpartition(_TRACEBACK)
+    said = _CALLS.sub("", said) if traceback else said.rstrip().rpartition("\n")[2]
+    words = _CLASS.sub("", " ".join(said.split()))
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 
