@@ -26,7 +26,6 @@ from burridge_knopoff.study import (
     all_points,
     load_study,
     read_config,
-    read_schema,
     read_yaml,
 )
 from burridge_knopoff.provenance.files import (
@@ -65,18 +64,12 @@ if " " in sys.executable:
 CLAIMS_FILE = Path(workflow.basedir, "config/claims.yaml")
 
 try:
-    read_claims(
-        CLAIMS_FILE, Path(workflow.basedir, "workflow/schemas/claims.schema.yaml")
-    )
+    read_claims(CLAIMS_FILE)
     CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
     STUDY_CONFIG = read_config(workflow.configfiles[0])
     update_config(STUDY_CONFIG, workflow.config_settings.config)
-    STUDY = load_study(
-        STUDY_CONFIG,
-        read_schema(Path(workflow.basedir, "workflow/schemas/config.schema.yaml")),
-        display_path(workflow.configfiles[0]),
-    )
+    STUDY = load_study(STUDY_CONFIG, display_path(workflow.configfiles[0]))
 except ConfigError as error:
     sys.exit(f"{error}")
 

@@ -13,7 +13,7 @@ from burridge_knopoff.provenance.files import write_text
 summaries = {Path(path).stem: open_summary(path) for path in snakemake.input.summaries}
 # Not as input: moved results would be judged again. What it says is among the params.
 root = Path(snakemake.scriptdir).resolve().parents[1]
-claims = read_claims(root / "config/claims.yaml", root / "workflow/schemas/claims.schema.yaml")
+claims = read_claims(root / "config/claims.yaml")
 evidence = Evidence(summaries, snakemake.params.config)
 content = ledger(snakemake.params.study, claims, evidence, snakemake.params.figures)
 write_text(snakemake.output.content, as_json(content))
