@@ -21,7 +21,7 @@ from burridge_knopoff.model.ranges import Range, joined
 REQUIRED, FOLLOWS = object(), object()
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Field:
     """A setting: its range, what it means, and its default."""
 
@@ -30,7 +30,7 @@ class Field:
     default: Any = REQUIRED
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Keys(Range):
     """Fields by name: a mapping without others; its form has all defaults, in the order of the fields."""
 

@@ -33,7 +33,7 @@ class Range:
         raise NotImplementedError
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Number(Range):
     """A number from `least` to `most`, or, with `above`, more than `least`; True and False are none."""
 
@@ -52,7 +52,7 @@ class Number(Range):
         return f"a {'' if limits else 'finite '}number {' and '.join(limits)}".rstrip()
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Whole(Range):
     """A whole number from `least` to `most`; 7.0 is none."""
 
@@ -67,7 +67,7 @@ class Whole(Range):
         return f"a whole number ≥ {self.least} and ≤ {self.most}"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class OneOf(Range):
     """One of some words."""
 
@@ -80,7 +80,7 @@ class OneOf(Range):
         return " | ".join(self.words)
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Text(Range):
     """A text that matches a pattern as a whole; the words say it."""
 
@@ -94,7 +94,7 @@ class Text(Range):
         return self.words
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Several(Range):
     """A list of values, at least and at most so many; `distinct` if none may stand twice."""
 
@@ -117,7 +117,7 @@ class Several(Range):
         return f"a list ({'; '.join([*limits, f'each {self.each}'])})"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Interval(Range):
     """An interval [low, high] with low < high, both within the same limits."""
 
@@ -134,7 +134,7 @@ class Interval(Range):
         return f"[low, high] with low < high, each {self.ends}"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Named(Range):
     """Values by names, at least so many."""
 
@@ -152,7 +152,7 @@ class Named(Range):
         return f"named entries ({'; '.join([*limits, f'each {self.each}'])})"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False, repr=False)
 class Either(Range):
     """A value in one of several ranges."""
 
