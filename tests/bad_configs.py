@@ -8,12 +8,6 @@ STATES = "initial: {minus: {}}\n"
 GOOD = f"study: x\n{GRID}{STATES}"
 BLOCKS = "[{}]".format(", ".join(["0.1"] * 1025))
 
-
-def _laughs(first: str, line: str) -> str:
-    """Nine lines, each naming the one before ten times: 10^9 values in 500 characters."""
-    return first + "".join(line.format(n=n, before=", ".join([f"*l{n - 1}"] * 10)) for n in range(1, 10))
-
-
 # name of the case: (content of the file, words of the line)
 BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # The file.
@@ -34,26 +28,15 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "colon": (f"{GOOD}v 0.1\n", ["not YAML (line 5)", "':'"]),
     "json": ('{"study": "x", "a": [0.1', ["not YAML (line 1)"]),
     "directive": (f"%YAML 9.9\n---\n{GOOD}", ["not YAML (line 1)", "incompatible"]),
-    "long": (GOOD + "#" * 10_000_001, ["cannot be read: more than 10000000 bytes"]),
     # What YAML can do beyond keys, lists and values.
     "object": (f"{GOOD}v: !!python/object/apply:os.system ['touch made']\n", ["not YAML (line 4)", "python/object"]),
     "tag": (f"{GOOD}v: !speed 0.1\n", ["not YAML (line 4)", "!speed"]),
     "alias": (f"{GOOD}v: *speed\n", ["not YAML (line 4)", "alias"]),
-    "endless_list": (f"study: x\na: &a [0.1, *a]\n{STATES}", ["nested too deep", "20 levels"]),
-    "endless_keys": (f"study: x\n{GRID}initial: &i {{minus: *i}}\n", ["nested too deep"]),
-    "endless_merge": (f"study: x\n{GRID}initial: &i {{<<: *i}}\n", ["nested too deep"]),
-    "deep": (f"{GOOD}v: {'[' * 30}{']' * 30}\n", ["nested too deep"]),
-    "very_deep": (f"{GOOD}v: {'[' * 5000}{']' * 5000}\n", ["nested too deep"]),
-    "laughs": (_laughs(f"{GOOD}l0: &l0 [x]\n", "l{n}: &l{n} [{before}]\n"), ["too long", "50000 values"]),
-    "laughing_keys": (
-        _laughs(f"{GOOD}l0: &l0 {{x: 1}}\n", "l{n}: &l{n} {{k: [{before}]}}\n"),
-        ["too long", "50000 values"],
-    ),
-    "set": (f"study: x\na: !!set {{0.1, 0.2}}\n{STATES}", ["a: {", "a list"]),
-    "pairs": (f"study: x\n{GRID}initial: !!omap [minus: {{}}]\n", ["initial: [('minus', {})]", "named entries"]),
-    "bytes": (f"study: !!binary aGVsbG8=\n{GRID}{STATES}", ["study: b'hello'"]),
-    "date": (f"{GOOD}v: 2020-01-01\n", ["v: datetime.date(2020, 1, 1)", "a finite number"]),
-    "no_date": (f"{GOOD}v: 2020-99-99\n", ["not YAML", "month"]),
+    "set": (f"study: x\na: !!set {{0.1, 0.2}}\n{STATES}", ["0.1 (line 2) is not allowed as a key"]),
+    "pairs": (f"study: x\n{GRID}initial: !!omap [minus: {{}}]\n", ["not YAML (line 3)", "omap"]),
+    "bytes": (f"study: !!binary aGVsbG8=\n{GRID}{STATES}", ["not YAML (line 1)", "binary"]),
+    "date": (f"{GOOD}v: 2020-01-01\n", ["v: '2020-01-01'", "a number"]),
+    "no_date": (f"{GOOD}v: 2020-99-99\n", ["v: '2020-99-99'", "a number"]),
     "template": (f"__use_yte__: true\n{GOOD}", ["__use_yte__: unknown key", "without templates"]),
     "merged": (f"base: &b {{minus: {{}}}}\nstudy: x\n{GRID}initial: {{<<: *b}}\n", ["base: unknown key"]),
     # Keys.
@@ -61,44 +44,40 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "twice_quoted": (f"study: x\n{GRID}initial: {{minus: {{}}, 'minus': {{}}}}\n", ["minus: stands twice (line 3)"]),
     "unknown": (f"{GOOD}windows: 7000\n", ["windows: unknown key", "window"]),
     "upper_case": (f"{GOOD}Window: 7000\n", ["Window: unknown key", "window"]),
-    "lookalike": (f"{GOOD}w\u0456ndow: 7000\n", ["'w\\u0456ndow': unknown key"]),
-    "invisible": (f"{GOOD}window\u200b: 7000\n", ["'window\\u200b': unknown key"]),
     "key_of_two_lines": (f'{GOOD}"a\\nb": 1\n', ["'a\\nb': unknown key"]),
-    "key_with_space": (f'{GOOD}"window ": 1\n', ["'window ' is not allowed as a key"]),
+    "key_with_space": (f'{GOOD}"window ": 1\n', ["'window ': unknown key"]),
     "long_key": (f"{GOOD}{'k' * 900}: 1\n", ["kkk", "unknown key"]),
-    "number_as_key": (f"{GOOD}7: 1\n", ["7 is not allowed as a key"]),
-    "yes_as_key": (f"study: x\n{GRID}initial: {{on: {{}}}}\n", ["initial.True is not allowed as a key"]),
+    "number_as_key": (f"{GOOD}7: 1\n", ["7 (line 4) is not allowed as a key"]),
+    "yes_as_key": (f"study: x\n{GRID}initial: {{on: {{}}}}\n", ["on (line 3) is not allowed as a key"]),
     "list_as_key": (f"{GOOD}? [a, b]\n: 1\n", ["(line 4) is not allowed as a key"]),
     "missing": (f"{GRID}{STATES}", ["study: missing"]),
     # Names.
-    "slash": (f"study: a/b\n{GRID}{STATES}", ["study: 'a/b'", "text like"]),
+    "slash": (f"study: a/b\n{GRID}{STATES}", ["study: 'a/b'", "letters, digits"]),
     "parent": (f"study: ..\n{GRID}{STATES}", ["study: '..'"]),
     "here": (f"study: .\n{GRID}{STATES}", ["study: '.'"]),
     "absolute": (f"study: /tmp/x\n{GRID}{STATES}", ["study: '/tmp/x'"]),
     "minus": (f"study: -x\n{GRID}{STATES}", ["study: '-x'"]),
     "space": (f"study: my study\n{GRID}{STATES}", ["study: 'my study'"]),
-    "long_name": (f"study: {'n' * 300}\n{GRID}{STATES}", ["study: 'nnn", "{0,63}"]),
+    "long_name": (f"study: {'n' * 300}\n{GRID}{STATES}", ["study: 'nnn", "at most 64"]),
     "umlaut": (f"study: Größe\n{GRID}{STATES}", ["study: 'Größe'"]),
     "no": (f"study: no\n{GRID}{STATES}", ["study: False"]),
     "line_break": (f'study: "x\\n"\n{GRID}{STATES}', ["study: 'x\\n'"]),
     "shell": (f"study: $(touch made)\n{GRID}{STATES}", ["study: '$(touch made)'"]),
     "state_name": (f"study: x\n{GRID}initial: {{a/b: {{position: [0, 0], velocity: [0, 0]}}}}\n", ["initial: 'a/b'"]),
     # Numbers.
-    "octal": (f"{GOOD}transient: 03000\n", ["03000 (line 4) is not allowed", "decimals"]),
-    "hexadecimal": (f"{GOOD}window: 0x1F\n", ["0x1F (line 4)"]),
-    "sixties": (f"{GOOD}window: 1:30\n", ["'1:30' (line 4)"]),
-    "underline": (f"{GOOD}window: 7_000\n", ["7_000 (line 4)"]),
-    "arabic": (f"{GOOD}window: !!float ٣\n", ["'\\u0663' (line 4)"]),
-    "digits": (f"{GOOD}window: {'9' * 5000}\n", ["999", "(line 4)", "100 characters"]),
-    "not_a_number": (f"{GOOD}v: .nan\n", ["v: nan", "a finite number"]),
+    "octal": (f"{GOOD}transient: 03000\n", ["transient: '03000'", "a number"]),
+    "hexadecimal": (f"{GOOD}window: 0x1F\n", ["window: '0x1F'", "a number"]),
+    "sixties": (f"{GOOD}window: 1:30\n", ["window: '1:30'", "a number"]),
+    "underline": (f"{GOOD}window: 7_000\n", ["window: '7_000'", "a number"]),
+    "not_a_number": (f"{GOOD}v: .nan\n", ["v: nan", "a number"]),
     "infinite": (f"{GOOD}window: .inf\n", ["window: inf", "≤ 1e+09"]),
     "overflow": (f"{GOOD}window: 1.0e+400\n", ["window: inf", "≤ 1e+09"]),
     "huge": (f"{GOOD}window: 1.0e+12\n", ["window: 1000000000000.0", "≤ 1e+09"]),
     "negative": (f"{GOOD}transient: -3000\n", ["transient: -3000", "> 0"]),
     "text_for_number": (f"{GOOD}step: 1e-4\n", ["step: '1e-4'", "1.0e-6"]),
-    "comma": (f"{GOOD}step: 0,001\n", ["step: '0,001'", "a finite number"]),
-    "yes_for_number": (f"{GOOD}v: yes\n", ["v: True", "a finite number"]),
-    "nothing_for_number": (f"{GOOD}v:\n", ["v: None", "a finite number"]),
+    "comma": (f"{GOOD}step: 0,001\n", ["step: '0,001'", "a number"]),
+    "yes_for_number": (f"{GOOD}v: yes\n", ["v: True", "a number"]),
+    "nothing_for_number": (f"{GOOD}v:\n", ["v: None", "a number"]),
     "half_batch": (f"{GOOD}batches: 2.5\n", ["batches: 2.5", "a whole number"]),
     # Grids.
     "no_values": (f"study: x\na: []\n{STATES}", ["a: []", "at least 1"]),
@@ -122,7 +101,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "no_laws": (f"{GOOD}laws: {{}}\n", ["laws: {}", "at least 1"]),
     "list_of_laws": (f"{GOOD}laws: [linearized]\n", ["laws: ['linearized']", "named entries"]),
-    "law_name": (f"{GOOD}laws: {{Mine: {{formula: 1 - a*u}}}}\n", ["laws: 'Mine'", "text like"]),
+    "law_name": (f"{GOOD}laws: {{Mine: {{formula: 1 - a*u}}}}\n", ["laws: 'Mine'", "small letters"]),
     "law_text": (f"{GOOD}laws: {{linearized: 1 - a*u}}\n", ["laws.linearized: '1 - a*u'"]),
     "number_text": (
         f"{GOOD}laws: {{stribeck: {{sigma: small}}}}\n",
@@ -154,9 +133,12 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "pulls": (f"{GOOD}chain: {{pulling: [1, 2]}}\n", ["chain.pulling: 2 numbers for 3 blocks"]),
     "pull_word": (f"{GOOD}chain: {{pulling: all}}\n", ["chain.pulling: 'all'", "neighbours"]),
     "thresholds": (f"{GOOD}chain: {{threshold: [1]}}\n", ["chain.threshold: 1 numbers for 3 blocks"]),
-    "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: 0.0 is not allowed: 1e-6"]),
-    "spring_text": (f"{GOOD}chain: {{coupling: [1, stiff]}}\n", ["chain.coupling[1]: 'stiff'", "a finite number"]),
-    "spring_word": (f"{GOOD}chain: {{coupling: stiff}}\n", ["chain.coupling: 'stiff'", "a finite number or a list"]),
+    "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: 0 is not allowed: a number ≥ 1e-06"]),
+    "spring_text": (f"{GOOD}chain: {{coupling: [1, stiff]}}\n", ["chain.coupling[1]: 'stiff'", "a number"]),
+    "spring_word": (
+        f"{GOOD}chain: {{coupling: stiff}}\n",
+        ["chain.coupling: 'stiff'", "a number ≥ 1e-06 and ≤ 1e+06 or a list"],
+    ),
     "ends": (f"{GOOD}chain: {{ends: closed}}\n", ["chain.ends: 'closed'", "open | ring"]),
     "chain_key": (f"{GOOD}chain: {{blocks: 3}}\n", ["chain.blocks: unknown key", "coupling"]),
     "map_of_no_law": (f"{GOOD}basins: {{a: {{stribeck: [0.1]}}}}\n", ["basins.a.stribeck: unknown key", "linearized"]),

@@ -16,7 +16,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
-from burridge_knopoff.study import Study, load_study, read_schema
+from burridge_knopoff.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
     attractors,
@@ -177,7 +177,7 @@ class SmallStudy:
 
 def run_study(folder: Path, config: Mapping[str, Any]) -> SmallStudy:
     """Run the points of a study into a folder."""
-    study = load_study(config, read_schema(ROOT / "workflow/schemas/config.schema.yaml"), f"{config['study']}.yaml")
+    study = load_study(config, f"{config['study']}.yaml")
     small = SmallStudy(study, folder)
     for _, (law, initial, a) in small.grid:
         _write(small.grid, law, initial, a)

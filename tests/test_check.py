@@ -14,7 +14,7 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study import load_study, read_schema, read_yaml
+from burridge_knopoff.study import load_study, read_yaml
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import mean_distance
 from burridge_knopoff.summaries.points import Grid
@@ -38,8 +38,7 @@ def whole(tmp_path_factory, repository):
     folder = tmp_path_factory.mktemp("study")
     config_file = folder / "small.yaml"
     config_file.write_text(CONFIG)
-    schema = read_schema(repository / "workflow/schemas/config.schema.yaml")
-    study = load_study(yaml.safe_load(CONFIG), schema, "small.yaml")
+    study = load_study(yaml.safe_load(CONFIG), "small.yaml")
     results = folder / "results" / "small"
     grid = Grid.of(results / "points", study.points)
     for _, (law, initial, a) in grid:

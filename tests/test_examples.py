@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study import load_study, read_config, read_schema
+from burridge_knopoff.study import load_study, read_config
 
 
 def events(stiffness, driving, threshold, friction, v, position, end):
@@ -72,7 +72,7 @@ def carlson_langer(a):
 )
 def test_events_are_those_of_scipy(repository, name, model, a, end, least, tolerance):
     file = repository / "config" / "examples" / f"{name}.yaml"
-    study = load_study(read_config(file), read_schema(repository / "workflow/schemas/config.schema.yaml"), str(file))
+    study = load_study(read_config(file), str(file))
     settings = Settings(start="tested", transient=0.0, window=end, events="all", lyapunov_exponents=0)
     state = study.state(study.initial[0])
     found = run(study.model(study.laws[0], a), state, settings)

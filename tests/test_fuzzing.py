@@ -6,7 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from burridge_knopoff.model.fields import Keys
 from burridge_knopoff.study import read_config
+from burridge_knopoff.study.config import CONFIG
 from tests.fuzzing import configs, runs
 from tests.fuzzing.points import Points
 
@@ -39,15 +41,15 @@ def test_the_configs_that_are_changed_are_studies(folder, text):
 
 
 def test_every_key_is_among_those_that_are_changed():
-    def missing(node, schema):
-        for key, item in schema.get("properties", {}).items():
+    def missing(node, keys):
+        for key, field in keys.fields.items():
             if key not in node:
                 yield key
-            elif isinstance(node[key], dict):
-                yield from missing(node[key], item)
+            elif isinstance(field.range, Keys):
+                yield from missing(node[key], field.range)
 
     path = Path(configs.__file__).with_name("every_key.yaml")
-    assert list(missing(read_config(path), configs.SCHEMA)) == []
+    assert list(missing(read_config(path), CONFIG)) == []
 
 
 @settings(max_examples=1000)

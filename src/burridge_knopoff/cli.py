@@ -6,15 +6,21 @@ import argparse
 import os
 import re
 import sys
-from collections.abc import Sequence
-from dataclasses import fields
+from collections.abc import Callable, Sequence
+from typing import Any
 
 # One run is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from burridge_knopoff import __version__
 from burridge_knopoff.laws import LAWS, Law, law_of
-from burridge_knopoff.model.chain import NEIGHBOURS
+from burridge_knopoff.model.chain import NEIGHBOURS, Chain
+from burridge_knopoff.model.fields import REQUIRED, fields_of
+from burridge_knopoff.model.initial import InitialState, initial_state
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.ranges import Either, Number, Several, Whole
+from burridge_knopoff.provenance.command import CHAIN_OPTIONS
+from burridge_knopoff.running.settings import Settings
 
 DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model)."
 
@@ -63,13 +69,9 @@ def _numbers(text: str) -> tuple[float, ...]:
         raise argparse.ArgumentTypeError(f"{text!r} is not allowed: numbers with commas between them") from None
 
 
-def _strength(text: str) -> float | tuple[float, ...]:
-    values = _numbers(text)
+def _strength(text: str) -> str | float | tuple[float, ...]:
+    values = NEIGHBOURS if text == NEIGHBOURS else _numbers(text)
     return values[0] if len(values) == 1 else values
-
-
-def _pulling(text: str) -> str | float | tuple[float, ...]:
-    return text if text == NEIGHBOURS else _strength(text)
 
 
 def _named_number(text: str) -> tuple[str, float]:
@@ -94,7 +96,33 @@ def _name(text: str) -> str:
 
 
 #: Options whose value may begin with a minus, without being a plain number.
-_SIGNED = ("--position", "--velocity", "--formula", *(f"--{key}" for key in ("coupling", "pulling", "threshold")))
+_SIGNED = tuple(f"--{key}" for key in ("formula", *fields_of(InitialState), *CHAIN_OPTIONS))
+
+#: How the text of an option is read, by the range of its setting; any other is a word.
+_READERS: dict[type, Callable[[str], Any]] = {Number: _number, Whole: _count, Several: _numbers, Either: _strength}
+
+#: What stands for the value of an option in the help, if not its name.
+_METAVARS = {
+    "coupling": "K1,K2,...",
+    "pulling": "D1,D2,...",
+    "threshold": "F1,F2,...",
+    "position": "U1,U2,...",
+    "velocity": "U1',U2',...",
+}
+
+
+def _add(group: argparse._ArgumentGroup, kind: type, *names: str) -> None:
+    """Add settings of a class as options."""
+    for name in names:
+        field = fields_of(kind)[name]
+        default = None if field.default is REQUIRED else field.default
+        group.add_argument(
+            f"--{name.replace('_', '-')}",
+            type=_READERS.get(type(field.range), str),
+            default=default,
+            metavar=_METAVARS.get(name),
+            help=field.description if default is None else f"{field.description} (default: %(default)s)",
+        )
 
 
 def _join(arguments: Sequence[str]) -> list[str]:
@@ -136,30 +164,8 @@ def build_parser() -> argparse.ArgumentParser:
     )
     model.add_argument("--law-name", type=_law_name, metavar="NAME", help="name of the law in the file (default: LAW)")
     model.add_argument("--a", required=True, type=_number, help="friction parameter, 0 or more")
-    model.add_argument(
-        "--coupling",
-        type=_strength,
-        default=1.0,
-        metavar="K1,K2,...",
-        help="springs between neighbours, one number or one each (default: %(default)s)",
-    )
-    model.add_argument(
-        "--pulling",
-        type=_pulling,
-        default="neighbours",
-        metavar="D1,D2,...",
-        help="springs to the driver, one number or one each (default: as many as a block has %(default)s)",
-    )
-    model.add_argument(
-        "--threshold",
-        type=_strength,
-        default=1.0,
-        metavar="F1,F2,...",
-        help="static friction, one number or one each (default: %(default)s)",
-    )
-    model.add_argument("--ends", default="open", help="open | ring (default: %(default)s)")
-    model.add_argument("--v", type=_number, default=0.1, help="driver velocity (default: %(default)s)")
-    model.add_argument("--contact", default="one_sided", help="one_sided | symmetric (default: %(default)s)")
+    _add(model, Chain, *CHAIN_OPTIONS)
+    _add(model, Model, "v", "contact")
     state = simulate.add_argument_group("initial state")
     state.add_argument(
         "--initial",
@@ -169,52 +175,13 @@ def build_parser() -> argparse.ArgumentParser:
         help="minus | plus, or a name for the numbers given below (default: %(default)s)",
     )
     state.add_argument("--blocks", type=_count, help="number of blocks N (default: as many as positions)")
-    state.add_argument("--position", type=_numbers, metavar="U1,U2,...", help="initial positions U(0)")
-    state.add_argument("--velocity", type=_numbers, metavar="U1',U2',...", help="initial velocities U'(0)")
-    state.add_argument(
-        "--start",
-        default="moving",
-        help="moving: all blocks slip at tau = 0 | tested: those with spring force <= 1 stick (default: %(default)s)",
-    )
+    _add(state, InitialState, "position", "velocity")
+    _add(state, Settings, "start")
     run = simulate.add_argument_group("run")
-    run.add_argument(
-        "--solver",
-        default="series",
-        help="series | map (where the motion has a closed form) | rk4 (default: %(default)s)",
-    )
-    run.add_argument("--step", type=_number, default=1e-3, help="step of rk4 (default: %(default)s)")
-    run.add_argument("--transient", type=_number, default=3000.0, help="time before the window (default: %(default)s)")
-    run.add_argument("--window", type=_number, default=7000.0, help="averaging time of J (default: %(default)s)")
-    run.add_argument("--batches", type=_count, default=7, help="batches for the error of <J> (default: %(default)s)")
-    run.add_argument(
-        "--lyapunov-exponents", type=_count, default=3, help="Lyapunov exponents, largest first (default: %(default)s)"
-    )
-    run.add_argument(
-        "--lyapunov-alignment",
-        type=_number,
-        default=1000.0,
-        help="time before the window in which their directions settle (default: %(default)s)",
-    )
+    _add(run, Settings, "solver", "step", "transient", "window", "batches", "lyapunov_exponents", "lyapunov_alignment")
     kept = simulate.add_argument_group("what is kept")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
-    kept.add_argument(
-        "--sampling", type=_number, default=5.0, help="interval of the samples of J (default: %(default)s)"
-    )
-    kept.add_argument(
-        "--events",
-        default="window",
-        help="window: states of the last ones | all: of all | none: no events (default: %(default)s)",
-    )
-    kept.add_argument(
-        "--event-window", type=_number, default=1500.0, help="length of the part with states (default: %(default)s)"
-    )
-    kept.add_argument(
-        "--trajectory",
-        type=_number,
-        default=30.0,
-        help="length of the kept last part of the run (default: %(default)s)",
-    )
-    kept.add_argument("--trajectory-sampling", type=_number, default=0.05, help="its interval (default: %(default)s)")
+    _add(kept, Settings, "sampling", "events", "event_window", "trajectory", "trajectory_sampling")
     check = commands.add_parser(
         "check",
         help="look for points that are missing, corrupt, stale or failed",
@@ -261,12 +228,7 @@ def simulated_law(options: argparse.Namespace) -> Law:
 
 def _simulate(options: argparse.Namespace) -> int:
     from burridge_knopoff.dataset.point import write_point
-    from burridge_knopoff.model.chain import Chain
-    from burridge_knopoff.model.initial import initial_state
-    from burridge_knopoff.model.model import Model
-    from burridge_knopoff.provenance.command import CHAIN_OPTIONS
     from burridge_knopoff.provenance.files import check_target
-    from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.simulation import run
 
     try:
@@ -275,7 +237,7 @@ def _simulate(options: argparse.Namespace) -> int:
         blocks = len(state.position) if options.blocks is None else options.blocks
         chain = Chain(blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS})
         model = Model(chain, simulated_law(options), options.v, options.contact)
-        settings = Settings(**{item.name: getattr(options, item.name) for item in fields(Settings)})
+        settings = Settings(**{name: getattr(options, name) for name in fields_of(Settings)})
         trajectory = run(model, state, settings)
         write_point(trajectory, options.out)
     except MemoryError:

@@ -25,7 +25,6 @@ from burridge_knopoff.study import ConfigError
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 
 ROOT = Path(__file__).parents[2]
-SCHEMA = ROOT / "workflow/schemas/claims.schema.yaml"
 GOOD = """
 edge:
   statement: Synchrony ends at 0.08.
@@ -39,7 +38,7 @@ edge:
 def read(tmp_path: Path, text: str) -> list:
     file = tmp_path / "claims.yaml"
     file.write_text(text)
-    return read_claims(file, SCHEMA)
+    return read_claims(file)
 
 
 def test_a_claim_knows_its_judge(tmp_path: Path) -> None:
@@ -63,15 +62,13 @@ def test_a_claim_knows_its_judge(tmp_path: Path) -> None:
         ("claimed: 0.08", "claimed: .nan", "claimed: nan is not allowed"),
         ("loose: 0.01", "loose: 0.001", "loose: 0.001 is not allowed: at least tolerance"),
         (GOOD, "[", "not YAML (line 1)"),
-        (GOOD, "a: &x {b: *x}", "nested too deep"),
         (GOOD, "a: !!python/object:os.system {}", "not YAML (line 1)"),
         (GOOD, "? [a, b]\n: 1", "(line 1) is not allowed as a key"),
         (GOOD, "---\na: 1\n---\nb: 2", "not YAML (line 3)"),
         (GOOD, "a: \0", "not YAML"),
-        (GOOD, "[" * 5000, "nested too deep"),
         (GOOD, "", "is not allowed: named entries"),
         (GOOD, "- a", "is not allowed: named entries"),
-        ("edge:", '"edge\\n":', "is not allowed as a key"),
+        ("edge:", '"edge\\n":', "'edge\\n' is not allowed: small letters"),
         ("edge:", "1:", "is not allowed as a key"),
         ("  place: Fig. 3\n", "", "place: missing"),
         ("figure: orbits", "figure: ../orbits", "figure: '../orbits' is not allowed"),
@@ -107,7 +104,7 @@ regular:
         ("{above: 0}", "{above: 1, to: 1}", "the first end below the last"),
         ("{above: 0}", "{over: 0}", "a.over: unknown key"),
         ("0.9", "90", "loose_share: 90 is not allowed"),
-        ("[minus]", "minus", "initial: 'minus' is not allowed: a list of names"),
+        ("[minus]", "minus", "initial: 'minus' is not allowed: a list"),
         ("[linearized]", "[cubic]", "laws[0]: 'cubic' is not allowed"),
         ("[periodic]", "[]", "kinds: [] is not allowed"),
     ],
@@ -124,15 +121,15 @@ def test_ranges_and_lists_are_checked(tmp_path: Path, old: str, new: str, expect
 
 def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
-        read_claims(tmp_path / "missing.yaml", SCHEMA)
+        read_claims(tmp_path / "missing.yaml")
     (tmp_path / "claims.yaml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ConfigError, match=r"claims.yaml: cannot be read: not UTF-8 text"):
-        read_claims(tmp_path / "claims.yaml", SCHEMA)
+        read_claims(tmp_path / "claims.yaml")
 
 
 @pytest.fixture(scope="module")
 def content() -> dict:
-    return ledger("test", read_claims(ROOT / "config/claims.yaml", SCHEMA), evidence(paper_world()), ["orbits"])
+    return ledger("test", read_claims(ROOT / "config/claims.yaml"), evidence(paper_world()), ["orbits"])
 
 
 def test_json_is_strict_and_whole(content: dict) -> None:
@@ -214,7 +211,7 @@ def test_a_study_without_the_papers_states_is_judged_without_an_error(missing: s
             dataset["initial"].attrs["flag_meanings"] = " ".join(meanings)
         summaries[key] = dataset
     states = {names[name]: state for name, state in CONFIG["initial"].items()}
-    found = ledger("other", read_claims(ROOT / "config/claims.yaml", SCHEMA), evidence(summaries, initial=states), [])
+    found = ledger("other", read_claims(ROOT / "config/claims.yaml"), evidence(summaries, initial=states), [])
     reasons = [claim["reason"] for claim in found["claims"] if claim["verdict"] == NOT_TESTABLE]
     for name in missing:
         assert f"Not testable here: the study has no initial state {name}." in reasons

@@ -14,10 +14,7 @@ from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at, reached
 from tests.claims.worlds import evidence, paper_world
 
 ROOT = Path(__file__).parents[2]
-CLAIMS = {
-    claim.name: claim
-    for claim in read_claims(ROOT / "config/claims.yaml", ROOT / "workflow/schemas/claims.schema.yaml")
-}
+CLAIMS = {claim.name: claim for claim in read_claims(ROOT / "config/claims.yaml")}
 # What no study can judge as yet.
 UNJUDGED = {"phases_decide": "the states of this study differ in positions, not in the phase of an oscillation about"}
 JUDGED = [name for name in CLAIMS if name not in UNJUDGED]

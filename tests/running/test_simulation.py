@@ -8,8 +8,6 @@ from hypothesis import strategies as st
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.model.model import CONTACTS, Model
-from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import simulate
 
 
@@ -206,17 +204,3 @@ def test_bad_input_is_refused_in_one_line(options, words):
         simulate(**options)
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
-
-
-def test_settings_are_the_schema_defaults(repository):
-    from burridge_knopoff.study import read_schema
-    from burridge_knopoff.study.checks import RUN_KEYS
-
-    schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
-    for key, item in schema["chain"]["properties"].items():
-        assert item["default"] == getattr(Chain(3), key), key
-    assert schema["v"]["default"] == Model.v
-    assert schema["contact"]["default"] == Model.contact
-    assert tuple(schema["contact"]["enum"]) == CONTACTS
-    for key in (*RUN_KEYS, "step", "solver"):
-        assert schema[key]["default"] == getattr(Settings(), key), key

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.provenance.command import difference
-from burridge_knopoff.study import ConfigError, all_points, load_study, read_config, read_schema
+from burridge_knopoff.study import ConfigError, all_points, load_study, read_config
 from tests.bad_configs import BAD_FILES
 
 NAN = float("nan")
@@ -78,9 +78,9 @@ BAD = [
     ({"start": "later"}, ["start: 'later'", "moving | tested"]),
     ({"solver": {"linearized": "euler"}}, ["solver.linearized: 'euler'", "series | map | rk4"]),
     ({"solver": "euler"}, ["solver: 'euler'", "series | map | rk4"]),
-    ({"solver": ["map"]}, ["solver: ['map']", "text or named entries"]),
+    ({"solver": ["map"]}, ["solver: ['map']", "series | map | rk4 or named entries"]),
     ({"laws": {"linearized": None}}, ["laws.linearized: None"]),
-    ({"laws": {"a" * 40: {"law": "linearized"}}}, ["laws: 'aaa", "{0,31}"]),
+    ({"laws": {"a" * 40: {"law": "linearized"}}}, ["laws: 'aaa", "at most 32"]),
     ({"laws": {"m": {"formula": "1 - a*u", "name": 1}}}, ["laws.m.name: not a number of a law"]),
     ({"laws": {"m": {"formula": "1 - a*u", "a": 1}}}, ["laws.m.a: not allowed as the name of a number"]),
     ({"laws": {"stribeck": {"self": 1}}}, ["laws.stribeck.self: not a number of this law"]),
@@ -89,7 +89,7 @@ BAD = [
     ({"chain": {"coupling": True}}, ["chain.coupling: True"]),
     ({"chain": {"coupling": []}}, ["chain.coupling: 0 numbers for 2 springs"]),
     ({"chain": {"pulling": [1, NAN, 1]}}, ["chain.pulling[1]: nan"]),
-    ({"chain": {"threshold": 1e7}}, ["chain.threshold: 10000000.0 is not allowed: 1e-6 to 1e6"]),
+    ({"chain": {"threshold": 1e7}}, ["chain.threshold: 10000000.0 is not allowed: a number ≥ 1e-06 and ≤ 1e+06"]),
     ({"solver": {"nonlinear": "map"}}, ["solver.nonlinear: 'map'", "series | rk4"]),
     ({"solver": "map"}, ["solver.nonlinear: 'map'", "no straight line"]),
     ({"transient": 0}, ["transient: 0", "> 0"]),
@@ -116,12 +116,12 @@ BAD = [
     ({"basins": {"pairs": 10**7}}, ["basins.pairs: 10000000", "numbers"]),
     ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "samples"]),
     ({"study": "x\n"}, ["study: 'x\\n'"]),
-    ({"initial": {1: PAIR}}, ["initial.1 is not allowed as a key"]),
+    ({"initial": {1: PAIR}}, ["initial: 1 is not allowed: letters"]),
     ({"sampling": 0}, ["sampling: 0"]),
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"synchronization_threshold": 0}, ["synchronization_threshold: 0"]),
     ({"synchronization_threshold": "1e-6"}, ["synchronization_threshold: '1e-6'", "1.0e-6"]),
-    ({"agreement ": {}}, ["'agreement ' is not allowed as a key"]),
+    ({"agreement ": {}}, ["'agreement ': unknown key"]),
     ({"agreement": []}, ["agreement: []"]),
     ({"lyapunov_exponents": -1}, ["lyapunov_exponents: -1", "≥ 0"]),
     ({"lyapunov_exponents": 2.5}, ["lyapunov_exponents: 2.5", "whole number"]),
@@ -140,8 +140,8 @@ BAD = [
     ({"attractors": {"samples": -1}}, ["attractors.samples: -1"]),
     ({"attractors": {"seed": 0.5}}, ["attractors.seed: 0.5", "whole number"]),
     ({"attractors": {"position": [1.5, -1.5]}}, ["attractors.position: [1.5, -1.5]", "low < high"]),
-    ({"attractors": {"velocity": [-0.1, 0.2]}}, ["attractors.velocity[0]: -0.1"]),
-    ({"attractors": {"velocity": [0.1]}}, ["attractors.velocity: [0.1]", "at least 2"]),
+    ({"attractors": {"velocity": [-0.1, 0.2]}}, ["attractors.velocity: [-0.1, 0.2]", "≥ 0"]),
+    ({"attractors": {"velocity": [0.1]}}, ["attractors.velocity: [0.1]", "[low, high]"]),
     ({"attractors": {"resolution": 0}}, ["attractors.resolution: 0"]),
     ({"attractors": {"time_limit": NAN}}, ["attractors.time_limit: nan"]),
     ({"basins": {"a": {"linearized": [0.0801]}}}, ["basins.a.linearized: 0.0801", "grid"]),
@@ -162,10 +162,10 @@ BAD = [
     ({"chains": {"a": [0.1, 0.1]}}, ["chains.a: 0.1 is listed twice"]),
     ({"chains": {"laws": ["linear"]}}, ["chains.laws[0]: 'linear'", "linearized | nonlinear"]),
     ({"chains": {"samples": 0}}, ["chains.samples: 0", "≥ 1"]),
-    ({"chains": {"samples": 3}}, ["chains.symmetric_samples: 4", "at most chains.samples (3)"]),
+    ({"chains": {"samples": 3}}, ["chains.symmetric_samples: 4", "at most samples (3)"]),
     ({"chains": {"position": [1.0, -1.0]}}, ["chains.position: [1.0, -1.0]", "low < high"]),
-    ({"chains": {"position": [1.0]}}, ["chains.position: [1.0]", "at least 2"]),
-    ({"chains": {"velocity": [-0.1, 0.1]}}, ["chains.velocity[0]: -0.1", "≥ 0"]),
+    ({"chains": {"position": [1.0]}}, ["chains.position: [1.0]", "[low, high]"]),
+    ({"chains": {"velocity": [-0.1, 0.1]}}, ["chains.velocity: [-0.1, 0.1]", "≥ 0"]),
     ({"chains": {"time_limit": 100}}, ["chains.time_limit: 100", "≥ 200"]),
     ({"chains": {"synchronization_distance": 0}}, ["chains.synchronization_distance: 0", "≥ 1e-14"]),
     ({"chains": {"two_blocks": {"a": [{"from": 0.1, "to": 0.2, "step": 0.03}]}}}, ["chains.two_blocks.a[0].step"]),
@@ -177,20 +177,15 @@ BAD = [
 ]
 
 
-@pytest.fixture(scope="module")
-def schema(repository):
-    return read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")
-
-
-def load(schema, **changes):
+def load(**changes):
     config = {"study": "test", "a": [RANGE], "initial": copy.deepcopy(STATES), **changes}
-    return load_study({key: value for key, value in config.items() if value is not None}, schema, "config/test.yaml")
+    return load_study({key: value for key, value in config.items() if value is not None}, "config/test.yaml")
 
 
 @pytest.mark.parametrize(("changes", "words"), BAD)
-def test_bad_configs_get_one_line(schema, changes, words):
+def test_bad_configs_get_one_line(changes, words):
     with pytest.raises(ConfigError) as caught:
-        load(schema, **changes)
+        load(**changes)
     message = str(caught.value)
     assert message.startswith("config/test.yaml: ")
     assert "\n" not in message
@@ -199,12 +194,12 @@ def test_bad_configs_get_one_line(schema, changes, words):
 
 
 @pytest.mark.parametrize("case", [name for name in BAD_FILES if name != "template"])
-def test_bad_files_get_one_line(tmp_path, schema, case):
+def test_bad_files_get_one_line(tmp_path, case):
     content, words = BAD_FILES[case]
     path = tmp_path / "study.yaml"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     with pytest.raises(ConfigError) as caught:
-        load_study(read_config(path), schema, str(path))
+        load_study(read_config(path), str(path))
     message = str(caught.value)
     assert "study.yaml: " in message
     assert "\n" not in message
@@ -229,9 +224,9 @@ def test_a_key_that_stands_twice_is_refused(tmp_path, text, key):
 
 
 @pytest.mark.parametrize("name", ["paper", "smoke"])
-def test_the_shipped_configs_are_valid(repository, schema, name):
+def test_the_shipped_configs_are_valid(repository, name):
     path = repository / "config" / f"{name}.yaml"
-    study = load_study(read_config(path), schema, str(path))
+    study = load_study(read_config(path), str(path))
     assert study.name == name
     if name == "paper":
         assert len(all_points(study)) == 484
@@ -240,20 +235,8 @@ def test_the_shipped_configs_are_valid(repository, schema, name):
         assert study.shown_point == "0.0800"
 
 
-def test_every_key_of_the_schema_is_described(schema):
-    def walk(node, path):
-        for key, item in node.get("properties", {}).items():
-            assert item.get("description"), f"{path}{key}"
-            walk(item, f"{path}{key}.")
-            if item.get("type") == "object" and "properties" in item:
-                assert item["additionalProperties"] is False
-
-    walk(schema, "")
-    assert schema["additionalProperties"] is False
-
-
-def test_lists_and_several_ranges(schema):
-    study = load(schema, a=[0.2, {"from": 0.08, "to": 0.1, "step": 0.01}, 0.095, {"from": 0, "to": 0, "step": 1}])
+def test_lists_and_several_ranges():
+    study = load(a=[0.2, {"from": 0.08, "to": 0.1, "step": 0.01}, 0.095, {"from": 0, "to": 0, "step": 1}])
     assert list(study.grid) == ["0.0000", "0.0800", "0.0900", "0.0950", "0.1000", "0.2000"]
     assert list(study.grid.values()) == [0.0, 0.08, 0.09, 0.095, 0.1, 0.2]
 
@@ -266,8 +249,8 @@ FOUR_LAWS = {
 }
 
 
-def test_laws_in_the_order_of_the_config(schema):
-    study = load(schema, laws=FOUR_LAWS, a=[0.02, 0.05, 0.08, 3], basins={"a": {"cl": []}}, figures={"law": "cl"})
+def test_laws_in_the_order_of_the_config():
+    study = load(laws=FOUR_LAWS, a=[0.02, 0.05, 0.08, 3], basins={"a": {"cl": []}}, figures={"law": "cl"})
     assert study.laws == ("nonlinear", "linearized", "cl", "soft")
     assert [point[0] for point in all_points(study)[::8]] == list(study.laws)
     assert study.config["solver"] == dict.fromkeys(study.laws, "series")
@@ -282,15 +265,15 @@ def test_laws_in_the_order_of_the_config(schema):
     assert float(study.model("cl", 0.3).law(0.0)) == 0.99
 
 
-def test_the_chain_and_the_driver_of_a_model(schema):
+def test_the_chain_and_the_driver_of_a_model():
     chain = {"coupling": [1, 2, 3], "pulling": 0.5, "threshold": [1, 2, 1], "ends": "ring"}
-    model = load(schema, chain=chain, v=0.2, contact="symmetric").model("nonlinear", 0.08)
+    model = load(chain=chain, v=0.2, contact="symmetric").model("nonlinear", 0.08)
     assert model.chain == Chain(3, (1.0, 2.0, 3.0), 0.5, (1.0, 2.0, 1.0), "ring")
     assert (model.v, model.contact, model.a) == (0.2, "symmetric", 0.08)
 
 
-def test_command_of_a_point(schema):
-    study = load(schema, solver={"linearized": "map", "nonlinear": "rk4"}, step=0.01, lyapunov_alignment=250)
+def test_command_of_a_point():
+    study = load(solver={"linearized": "map", "nonlinear": "rk4"}, step=0.01, lyapunov_alignment=250)
     assert "--solver map" in study.command("linearized", "plus", "0.0800")
     options = study.command("nonlinear", "plus", "0.0800")
     assert "--a 0.08 " in options
@@ -302,8 +285,8 @@ def test_command_of_a_point(schema):
         study.command("linearized", "plus", "0.0801")
 
 
-def test_a_command_leaves_defaults_out(schema):
-    study = load(schema, laws=FOUR_LAWS)
+def test_a_command_leaves_defaults_out():
+    study = load(laws=FOUR_LAWS)
     start = "--a 0.08 --initial plus --position=0.989,-0.993,-0.991 --velocity=0.099,0.1012,0.1023"
     assert study.command("nonlinear", "plus", "0.0800") == f"bk simulate --law nonlinear {start}"
     soft = f"bk simulate --law stribeck --law-name soft --number eta=0.1 {start}"
@@ -311,13 +294,13 @@ def test_a_command_leaves_defaults_out(schema):
     formula = "'--formula=(1 - sigma)/(1 + a*u/(1 - sigma))' --law-name cl --number sigma=0.01"
     assert study.command("cl", "plus", "0.0800") == f"bk simulate {formula} {start}"
     chain = {"coupling": [1, 2, 3], "pulling": 0.5, "threshold": [1, 2, 1], "ends": "ring"}
-    command = load(schema, chain=chain, v=0.2).command("nonlinear", "plus", "0.0800")
+    command = load(chain=chain, v=0.2).command("nonlinear", "plus", "0.0800")
     options = "--coupling 1.0,2.0,3.0 --pulling 0.5 --threshold 1.0,2.0,1.0 --ends ring --v 0.2"
     assert f"--a 0.08 {options} --initial plus" in command
 
 
-def test_where_commands_differ(schema):
-    study = load(schema, laws={**FOUR_LAWS, "other": {"formula": "1/(1 + a*u)**n", "n": 2}}, a=[0.05, 0.08])
+def test_where_commands_differ():
+    study = load(laws={**FOUR_LAWS, "other": {"formula": "1/(1 + a*u)**n", "n": 2}}, a=[0.05, 0.08])
     commands = {law: study.command(law, "plus", "0.0800") for law in study.laws}
     assert difference(commands["cl"], commands["cl"].replace("=0.01", "=0.02")) == (
         "--number sigma 0.01 instead of --number sigma 0.02"
@@ -334,9 +317,9 @@ def test_where_commands_differ(schema):
     assert difference("bk 'simulate", "bk simulate") == "`bk 'simulate` instead of `bk simulate`"
 
 
-def test_command_of_another_solver(schema):
+def test_command_of_another_solver():
     solver = {"linearized": "map", "nonlinear": "rk4"}
-    study = load(schema, solvers={"step": 0.02}, step=0.01, solver=solver, window=500)
+    study = load(solvers={"step": 0.02}, step=0.01, solver=solver, window=500)
     assert study.other_solvers("linearized") == ["series", "rk4"]
     assert study.other_solvers("nonlinear") == ["series"]
     own = study.command("linearized", "plus", "0.0800").split()
@@ -364,15 +347,15 @@ def test_command_of_another_solver(schema):
         ({"a": [1.9, 2.5], "solvers": {"a": [1.9, 2.5]}}, ["rk4"], ["rk4"]),
     ],
 )
-def test_every_solver_that_knows_a_law_is_compared(schema, changes, linearized, nonlinear):
-    study = load(schema, **changes)
+def test_every_solver_that_knows_a_law_is_compared(changes, linearized, nonlinear):
+    study = load(**changes)
     assert study.other_solvers("linearized") == linearized
     assert study.other_solvers("nonlinear") == nonlinear
 
 
-def test_a_thousand_values_are_checked_fast(schema):
+def test_a_thousand_values_are_checked_fast():
     begin = time.process_time()
-    load(schema, laws=FOUR_LAWS, a=[{"from": 0, "to": 0.999, "step": 0.001}])
+    load(laws=FOUR_LAWS, a=[{"from": 0, "to": 0.999, "step": 0.001}])
     assert time.process_time() - begin < 5.0
 
 
@@ -386,8 +369,8 @@ def test_a_thousand_values_are_checked_fast(schema):
         ({"a": [0.01, 0.1, 0.3], "solvers": {"a": [0.3, 0.01]}}, [0.01, 0.3]),
     ],
 )
-def test_where_solvers_are_compared(schema, changes, expected):
-    assert load(schema, **changes).config["solvers"]["a"] == expected
+def test_where_solvers_are_compared(changes, expected):
+    assert load(**changes).config["solvers"]["a"] == expected
 
 
 @given(st.integers(0, 1000), st.integers(1, 50), st.sampled_from(["0.001", "0.0025", "0.0001", "0.0005"]))

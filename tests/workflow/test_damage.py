@@ -17,7 +17,7 @@ from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.seal import BadFile, identity, seal
-from burridge_knopoff.study import load_study, read_schema
+from burridge_knopoff.study import load_study
 from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
 from tests.workflow.conftest import TINY
@@ -94,7 +94,7 @@ DAMAGES = {
 def grids(repository):
     """A function from a folder of results to the grid of its points at a = 0.2, and that of other solvers."""
     config = yaml.safe_load(TINY)
-    study = load_study(config, read_schema(repository / "workflow/schemas/config.schema.yaml"), "study.yaml")
+    study = load_study(config, "study.yaml")
     points = {**study.points, "a": {"0.2000": 0.2}}
     return lambda results: Grid.of(results / "points", points)
 

@@ -29,7 +29,6 @@ from burridge_knopoff.study import (
     all_points,
     load_study,
     read_config,
-    read_schema,
     read_yaml,
 )
 from burridge_knopoff.study.model import MODEL_KEYS
@@ -52,16 +51,12 @@ OVERRIDES = workflow.config_settings.config
 
 try:
     CLAIMS_FILE = ROOT / "config/claims.yaml"
-    read_claims(CLAIMS_FILE, ROOT / "workflow/schemas/claims.schema.yaml")
+    read_claims(CLAIMS_FILE)
     CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
     GIVEN = read_config(CONFIG_FILE)
     update_config(GIVEN, OVERRIDES)
-    STUDY = load_study(
-        GIVEN,
-        read_schema(ROOT / "workflow/schemas/config.schema.yaml"),
-        display_path(CONFIG_FILE),
-    )
+    STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
     RESULTS = f"results/{STUDY.name}"
     # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
     check_folder(os.path.abspath(".snakemake"))

@@ -17,13 +17,14 @@ import numpy as np
 from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
+from burridge_knopoff.model import ranges
+from burridge_knopoff.model.fields import FOLLOWS, Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text, Whole, refusal
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.provenance.software import provenance
-from burridge_knopoff.study.message import ConfigError
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.study.study import check_names, check_schema
-from burridge_knopoff.study.yaml_file import read_schema, read_yaml
+from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 
 TOPICS = {
     "synchronization": synchronization,
@@ -35,6 +36,59 @@ TOPICS = {
 }
 
 _RANGE = {"from": "first", "to": "last", "above": "above", "below": "below"}
+
+
+class _Arguments(ranges.Range):
+    """The arguments of a judge, which `_parameter` checks."""
+
+    def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
+        return dict(value) if isinstance(value, Mapping) else None
+
+    def __str__(self) -> str:
+        return "named entries"
+
+
+_WORDS = Text("words", r"(?s:.*\S.*)")
+#: The file: claims by name.
+CLAIMS = Named(
+    Text("small letters, digits and _, a letter first", "[a-z][a-z0-9_]{0,63}"),
+    Keys(
+        {
+            "statement": Field(_WORDS, "what the paper states, in our own words"),
+            "place": Field(_WORDS, "where it stands in the paper"),
+            "judge": Field(
+                Text(f"topic.function, the topic one of {', '.join(TOPICS)}", rf"({'|'.join(TOPICS)})\.[a-z_]+"),
+                "the function that judges it",
+            ),
+            "parameters": Field(_Arguments(), "its arguments"),
+            "figure": Field(
+                Text("small letters, digits and _", "[a-z][a-z0-9_]*"), "the figure of the study that shows it"
+            ),
+        }
+    ),
+    1,
+)
+
+_NUMBER, _NAME, _SHARE = Number(-ranges.HUGE, ranges.HUGE), Text("one name"), Number(0.0, 1.0, above=True)
+#: Parameters of judges by name, and by their type if they are not among these.
+_BY_NAME: Mapping[str, ranges.Range] = {
+    "a": Keys({name: Field(_NUMBER, "one end", FOLLOWS) for name in _RANGE}),
+    "laws": Several(OneOf(PAPER_LAWS), 1, distinct=True),
+    "law": OneOf(PAPER_LAWS),
+    "tolerance": Number(0.0, ranges.HUGE),
+    **dict.fromkeys(("loose", "much"), Number(0.0, ranges.HUGE, above=True)),
+    **dict.fromkeys(("share", "loose_share"), _SHARE),
+    "kinds": Several(OneOf(("synchronized", "periodic", "quasiperiodic", "chaotic")), 1),
+    "coefficients": Several(_NUMBER, 3, 3),
+}
+_BY_TYPE: Mapping[Any, ranges.Range] = {
+    str: _NAME,
+    int: Whole(1, 10**9),
+    float: _NUMBER,
+    Sequence[str]: Several(_NAME),
+    tuple[str, str]: Several(_NAME, 2, 2),
+    Sequence[float]: Several(_NUMBER),
+}
 
 
 @dataclass(frozen=True)
@@ -54,70 +108,63 @@ class Claim:
     figure: str
 
 
-def read_claims(path: str | Path, schema: str | Path) -> list[Claim]:
+def read_claims(path: str | Path) -> list[Claim]:
     """Return the claims in a YAML file, in its order.
 
-    Raises ConfigError, one line, for what the schema forbids, for a judge that does not exist, and for parameters that
-    are not its.
+    Raises ConfigError, one line: file, key, value, what is allowed.
     """
-    file = display_path(path)
     content = read_yaml(path)
-    check_names(content, file)
-    check_schema(content, read_schema(schema), file)
-    return claims_of(content, file)
+    try:
+        return claims_of(content)
+    except ValueError as error:
+        raise ConfigError(f"{display_path(path)}: {error}") from error
 
 
-def claims_of(content: Mapping[str, Any], file: str = "claims") -> list[Claim]:
-    """Return the claims in the content of such a file; raises ConfigError for what the schema cannot forbid."""
-    return [_claim(name, item, f"{file}: {name}") for name, item in content.items()]
+def claims_of(content: Mapping[str, Any]) -> list[Claim]:
+    """Return the claims in the content of such a file; raises ValueError, one line: key, value, what is allowed."""
+    return [_claim(name, item) for name, item in CLAIMS.form(content, "").items()]
 
 
-def _claim(name: str, item: Mapping[str, Any], place: str) -> Claim:
+def _claim(name: str, item: Mapping[str, Any]) -> Claim:
     topic, function = item["judge"].split(".")
     judges = _judges(topic)
     if function not in judges:
-        raise ConfigError(f"{place}.judge: {item['judge']!r} is not allowed: one of {', '.join(judges)} of {topic}")
+        raise refusal(f"{name}.judge", item["judge"], f"one of {', '.join(judges)} of {topic}")
     parameters = dict(item["parameters"])
     expected = get_type_hints(judges[function])
     del expected["evidence"], expected["return"]
+    place = f"{name}.parameters"
     for key in parameters:
         if key not in expected:
-            raise ConfigError(f"{place}.parameters.{key}: unknown key; allowed here: {', '.join(expected)}")
+            raise ValueError(f"{place}.{key}: unknown key; allowed here: {', '.join(expected)}")
     for key, kind in expected.items():
         if key not in parameters:
-            raise ConfigError(f"{place}.parameters.{key}: missing; needed by {item['judge']}")
-        parameters[key] = _parameter(parameters[key], kind, f"{place}.parameters.{key}")
+            raise ValueError(f"{place}.{key}: missing; needed by {item['judge']}")
+        parameters[key] = _parameter(key, parameters[key], kind, f"{place}.{key}")
     for state in np.atleast_1d(parameters.get("initial", [])):
         if state not in PAPER_STATES:
-            raise ConfigError(f"{place}.parameters.initial: {state!s} is not allowed: {' | '.join(PAPER_STATES)}")
+            raise ValueError(f"{place}.initial: {state!s} is not allowed: {' | '.join(PAPER_STATES)}")
     if parameters.get("loose", np.inf) < parameters.get("tolerance", 0.0):
-        raise ConfigError(f"{place}.parameters.loose: {parameters['loose']!r} is not allowed: at least tolerance")
+        raise refusal(f"{place}.loose", parameters["loose"], "at least tolerance")
     statement, where = (" ".join(item[key].split()) for key in ("statement", "place"))
     return Claim(name, statement, where, topic, judges[function], parameters, item["figure"])
 
 
-def _parameter(value: Any, kind: Any, place: str) -> Any:
+def _parameter(key: str, value: Any, kind: Any, place: str) -> Any:
     """Return a parameter as the judge takes it, whose annotation is `kind`."""
-    if kind is Range:
-        if not value or ("from" in value and "above" in value) or ("to" in value and "below" in value):
-            raise ConfigError(f"{place}: {value!r} is not allowed: at least one end, and one of each side")
-        ends = Range(**{_RANGE[key]: float(number) for key, number in value.items()})
-        if ends.empty:
-            raise ConfigError(f"{place}: {value!r} is not allowed: the first end below the last")
-        return ends
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    right, allowed = {
-        str: (isinstance(value, str), "one name"),
-        bool: (isinstance(value, bool), "true | false"),
-        int: (number and value == int(value) and value > 0, "a whole number > 0"),
-        float: (number, "a number"),
-        Sequence[str]: (isinstance(value, list), "a list of names"),
-        tuple[str, str]: (isinstance(value, list) and len(value) == 2, "two names"),
-        Sequence[float]: (isinstance(value, list), "a list of numbers"),
-    }[kind]
-    if not right:
-        raise ConfigError(f"{place}: {value!r} is not allowed: {allowed}")
-    return int(value) if kind is int else value
+    if kind is bool:
+        if not isinstance(value, bool):
+            raise refusal(place, value, "true | false")
+        return value
+    value = _BY_NAME.get(key, _BY_TYPE.get(kind, _NUMBER)).form(value, place)
+    if kind is not Range:
+        return value
+    if not value or ("from" in value and "above" in value) or ("to" in value and "below" in value):
+        raise refusal(place, value, "at least one end, and one of each side")
+    ends = Range(**{_RANGE[name]: number for name, number in value.items()})
+    if ends.empty:
+        raise refusal(place, value, "the first end below the last")
+    return ends
 
 
 def _judges(topic: str) -> dict[str, Callable[..., Verdict]]:

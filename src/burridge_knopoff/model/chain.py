@@ -6,8 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
+
+from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
 
 MAXIMUM_BLOCKS = 1024
 ENDS = ("open", "ring")
@@ -15,21 +19,16 @@ NEIGHBOURS = "neighbours"
 
 #: A strength or a threshold: one number for all, or one each.
 Numbers = float | Sequence[float]
+_STRENGTH = Number(1e-6, 1e6)
+_STRENGTHS = Either((_STRENGTH, Several(_STRENGTH)))
 
 
 @dataclass(frozen=True)
 class Chain:
     """N blocks of equal mass in a row, or in a ring.
 
-    blocks : N
-    coupling : strength of the springs between neighbours, one number or one a spring: N − 1 with open ends, N in a
-        ring,
-        whose last spring joins the last block to the first
-    pulling : strength D of the springs to the driver, one number or one a block; `neighbours`, as in the paper, makes
-        it
-        the number of a block's neighbours
-    threshold : static friction of the blocks, one number or one each; a block slips against threshold · Φ
-    ends : open or ring
+    There are N − 1 springs with open ends, and N in a ring, whose last spring joins the last block to the first. A
+    block slips against threshold · Φ.
 
     The spring force on block i is s_i = D_i vτ − (K U)_i with K the graph Laplacian of the springs plus diag(D), so
     that K·1 = D. With the defaults N = 3 is the paper's chain (Eq. 2), N = 2 the two-block train model that it cites.
@@ -37,39 +36,27 @@ class Chain:
     Raises ValueError for a number of blocks, of springs, or a strength that is not allowed.
     """
 
-    blocks: int = 3
-    coupling: Numbers = 1.0
-    pulling: Numbers | str = NEIGHBOURS
-    threshold: Numbers = 1.0
-    ends: str = "open"
+    blocks: Annotated[int, Whole(2, MAXIMUM_BLOCKS), "number of blocks N"] = 3
+    coupling: Annotated[Numbers, _STRENGTHS, "springs between neighbours, one number or one each"] = 1.0
+    pulling: Annotated[
+        Numbers | str,
+        Either((OneOf((NEIGHBOURS,)), *_STRENGTHS.ranges)),
+        "springs to the driver, one number or one a block; neighbours: as many as a block has, as in the paper",
+    ] = NEIGHBOURS
+    threshold: Annotated[Numbers, _STRENGTHS, "static friction, one number or one a block"] = 1.0
+    ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is the neighbour of the first"] = "open"
 
     def __post_init__(self) -> None:
-        if isinstance(self.blocks, bool) or not isinstance(self.blocks, int):
-            raise ValueError(f"blocks: {self.blocks!r} is not a whole number")
-        if not 2 <= self.blocks <= MAXIMUM_BLOCKS:
-            raise ValueError(f"blocks: {self.blocks} is not allowed: 2 to {MAXIMUM_BLOCKS}")
-        if self.ends not in ENDS:
-            raise ValueError(f"chain.ends: {self.ends!r} is not allowed: {' | '.join(ENDS)}")
+        check_fields(self, "chain.")
         springs = self.blocks - (self.ends == "open")
-        self._check("coupling", springs, f"{springs} springs")
-        self._check("threshold", self.blocks, f"{self.blocks} blocks")
-        if not isinstance(self.pulling, str) or self.pulling != NEIGHBOURS:
-            self._check("pulling", self.blocks, f"{self.blocks} blocks")
-
-    def _check(self, key: str, count: int, of: str) -> None:
-        value = getattr(self, key)
-        several = isinstance(value, Sequence | np.ndarray) and not isinstance(value, str)
-        if several and len(value) != count:
-            raise ValueError(f"chain.{key}: {len(value)} numbers for {of}: one number, or one each")
-        for item in value if several else [value]:
-            is_number = isinstance(item, int | float | np.number) and not isinstance(item, bool)
-            if isinstance(item, str):
-                allowed = f"numbers{f' or {NEIGHBOURS}' * (key == 'pulling')}"
-                raise ValueError(f"chain.{key}: {item!r} is not allowed: {allowed}")
-            if not is_number or not 1e-6 <= item <= 1e6:
-                shown = float(item) if is_number and abs(item) < 1e300 else item
-                raise ValueError(f"chain.{key}: {shown!r} is not allowed: 1e-6 to 1e6")
-        object.__setattr__(self, key, tuple(float(item) for item in value) if several else float(value))
+        for key, count, of in (
+            ("coupling", springs, "springs"),
+            ("pulling", self.blocks, "blocks"),
+            ("threshold", self.blocks, "blocks"),
+        ):
+            value = getattr(self, key)
+            if isinstance(value, tuple) and len(value) != count:
+                raise ValueError(f"chain.{key}: {len(value)} numbers for {count} {of}: one number, or one each")
 
     @cached_property
     def thresholds(self) -> np.ndarray:

@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
-import numpy as np
+from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
+from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.ranges import Number, Several
+
+COORDINATE = Number(-1e6, 1e6)
+_ONE_A_BLOCK = Several(COORDINATE, 2, MAXIMUM_BLOCKS)
 
 
 @dataclass(frozen=True)
 class InitialState:
     """Positions U(0) and velocities U'(0), one number a block, under a name.
 
-    Raises ValueError where the numbers are not finite or do not match in count.
+    Raises ValueError, one line, for anything out of range, and where they do not match in count.
     """
 
     name: str
-    position: tuple[float, ...]
-    velocity: tuple[float, ...]
+    position: Annotated[tuple[float, ...], _ONE_A_BLOCK, "initial positions U(0)"]
+    velocity: Annotated[tuple[float, ...], _ONE_A_BLOCK, "initial velocities U'(0)"]
 
     def __post_init__(self) -> None:
-        for key in ("position", "velocity"):
-            values = tuple(getattr(self, key))
-            for value in values:
-                number = isinstance(value, int | float | np.floating | np.integer) and not isinstance(value, bool)
-                if not number or not -1e6 <= value <= 1e6:
-                    raise ValueError(f"{key}: {value!r} is not allowed: finite numbers within ±1e6")
-            object.__setattr__(self, key, tuple(float(value) for value in values))
+        check_fields(self)
         if len(self.velocity) != len(self.position):
             raise ValueError(
                 f"velocity: {len(self.velocity)} numbers for {len(self.position)} positions; one a block is needed"

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.laws.law import FASTEST
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.ranges import Number, OneOf
 
 CONTACTS = ("one_sided", "symmetric")
 STARTS = ("moving", "tested")
+#: What they mean.
+START = "moving: every block slips at tau = 0 | tested: those with spring force at most threshold stick there"
 
 
 @dataclass(frozen=True)
@@ -21,26 +26,24 @@ class Model:
     """A chain under a friction law, drawn at a velocity.
 
     chain, law : see `Chain` and `laws`
-    v : velocity of the driver
-    contact : one_sided (a stuck block holds against any pull below its threshold) or symmetric (it holds while |s| is
-        below it, and slips backward beyond)
 
     Raises ValueError, one line, for anything out of range.
     """
 
     chain: Chain
     law: Law
-    v: float = 0.1
-    contact: str = "one_sided"
+    v: Annotated[float, Number(1e-6, 1e3), "velocity of the driver"] = 0.1
+    contact: Annotated[
+        str,
+        OneOf(CONTACTS),
+        "one_sided: a stuck block holds against any pull below its threshold | "
+        "symmetric: it holds while |s| is below it, and slips backward beyond",
+    ] = "one_sided"
 
     def __post_init__(self) -> None:
-        if isinstance(self.v, bool) or not isinstance(self.v, int | float | np.number) or not 1e-6 <= self.v <= 1e3:
-            raise ValueError(f"v: {self.v!r} is not allowed: 1e-06 to 1000")
-        object.__setattr__(self, "v", float(self.v))
+        check_fields(self)
         if self.v > FASTEST and not self.law.tape.is_analytic(0.0, self.v):
             raise ValueError(f"v: {self.v!r} is not allowed: the law {self.law.name} is not analytic up to that speed")
-        if self.contact not in CONTACTS:
-            raise ValueError(f"contact: {self.contact!r} is not allowed: {' | '.join(CONTACTS)}")
 
     @property
     def blocks(self) -> int:
@@ -76,7 +79,7 @@ class Model:
     def begin(self, initial: InitialState, start: str = "moving") -> Instant:
         """Return the state at τ = 0 of a run from an initial state.
 
-        start : moving (every block slips) or tested (a block whose spring force is at most its threshold starts stuck)
+        start : moving or tested, see START
 
         Raises ValueError where the state does not fit the chain, or slips backward under one-sided contact.
         """

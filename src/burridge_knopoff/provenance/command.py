@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Sequence
-from dataclasses import fields
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.laws import LAWS, Law
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 
@@ -15,17 +16,15 @@ if TYPE_CHECKING:
     from burridge_knopoff.running.settings import Settings
 
 #: Options of the chain, and the field of `Chain` that each is.
-CHAIN_OPTIONS = ("coupling", "pulling", "threshold", "ends")
+CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
 
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
     """Return the command that makes this run again, quoted for a shell; what has its default is left out."""
     words = ["bk", "simulate", *_law(model.law), "--a", repr(model.law.a)]
-    for part, keys in ((model.chain, CHAIN_OPTIONS), (model, ("v", "contact"))):
-        words += _changed(part, keys)
-    words += ["--initial", initial.name]
-    words += [f"--{key}={_text(getattr(initial, key))}" for key in ("position", "velocity")]
-    words += _changed(settings, [item.name for item in fields(settings)])
+    words += [*_changed(model.chain), *_changed(model), "--initial", initial.name]
+    words += [f"--{key}={_text(getattr(initial, key))}" for key in fields_of(InitialState)]
+    words += _changed(settings)
     return shlex.join(words)
 
 
@@ -41,11 +40,11 @@ def _law(law: Law) -> Iterator[str]:
             yield from ("--number", f"{key}={value!r}")
 
 
-def _changed(part: Any, keys: Sequence[str]) -> Iterator[str]:
-    defaults = {item.name: item.default for item in fields(part)}
-    for key in keys:
+def _changed(part: Any) -> Iterator[str]:
+    for key, field in fields_of(type(part)).items():
         value = getattr(part, key)
-        if value != defaults[key]:
+        # The number of blocks is that of positions.
+        if value != field.default and key != "blocks":
             yield from (f"--{key.replace('_', '-')}", _text(value))
 
 

@@ -20,7 +20,7 @@ from burridge_knopoff.study import Study, all_points
 #: Distributions whose versions the report states.
 LIBRARIES = (
     *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
-    *("jsonschema", "pyyaml", "jinja2", "plotly", "pillow"),
+    *("pyyaml", "jinja2", "plotly", "pillow"),
 )
 
 

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
-from burridge_knopoff.model.model import STARTS
+from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.model import START, STARTS
+from burridge_knopoff.model.ranges import Number, OneOf, Whole
 
 SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")
+
+#: The longest time that a setting may ask for.
+LONGEST = 1e9
+DURATION = Number(0.0, LONGEST)
+INTERVAL = Number(1e-6, LONGEST)
 
 #: Numbers that a run keeps of one kind at most: 800 MB.
 MOST_NUMBERS = 1e8
@@ -24,51 +32,44 @@ MOST_STEPS = 1e10
 class Settings:
     """How a run begins, how it is computed, and what is kept of it; times in units of 1/ω.
 
-    start : moving (every block slips at τ = 0) or tested (the stick rule is applied at τ = 0)
-    solver : series, map (closed form, where the model has one) or rk4
-    step : step of rk4
-    transient, window : J is averaged over [transient, transient + window]
-    batches : number of equal batches of the window for the error of ⟨J⟩
-    sampling : interval between samples of J, from τ = 0
-    trajectory, trajectory_sampling : length and interval of the last part of the run kept as positions and velocities
-    events : which events are kept: window (all of them, those of the last event_window time units of the window with
-        the states of all blocks), all (the whole run with states) or none
-    lyapunov_exponents : how many Lyapunov exponents are computed, the largest first; NaN under rk4
-    lyapunov_alignment : time before the window from which the perturbations turn into their directions
-
     Raises ValueError, one line, for anything out of range.
     """
 
-    start: str = "moving"
-    solver: str = "series"
-    step: float = 1e-3
-    transient: float = 3000.0
-    window: float = 7000.0
-    batches: int = 7
-    sampling: float = 5.0
-    trajectory: float = 30.0
-    trajectory_sampling: float = 0.05
-    events: str = "window"
-    event_window: float = 1500.0
-    lyapunov_exponents: int = 3
-    lyapunov_alignment: float = 1000.0
+    start: Annotated[str, OneOf(STARTS), START] = "moving"
+    solver: Annotated[str, OneOf(SOLVERS), "series, map (where the motion has a closed form) or rk4"] = "series"
+    step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
+    transient: Annotated[float, DURATION, "time before the averaging window"] = 3000.0
+    window: Annotated[float, Number(1e-3, LONGEST), "time over which J is averaged"] = 7000.0
+    batches: Annotated[
+        int,
+        Whole(2, 10_000),
+        "equal batches of the window for the standard error of <J>; each should last 1000 or more in chaos",
+    ] = 7
+    sampling: Annotated[float, INTERVAL, "interval of the samples of J"] = 5.0
+    trajectory: Annotated[
+        float, DURATION, "length of the last part of the run of which positions and velocities are kept"
+    ] = 30.0
+    trajectory_sampling: Annotated[float, INTERVAL, "interval of those positions and velocities"] = 0.05
+    events: Annotated[
+        str,
+        OneOf(EVENTS),
+        "window: all events, those of the last event_window with the states of all blocks | all: all with states | "
+        "none: no events",
+    ] = "window"
+    event_window: Annotated[
+        float, DURATION, "length of the last part of the window whose events are kept with states"
+    ] = 1500.0
+    lyapunov_exponents: Annotated[
+        int,
+        Whole(0, 2 * MAXIMUM_BLOCKS),
+        "Lyapunov exponents, the largest first, at most two a block; rk4 computes none",
+    ] = 3
+    lyapunov_alignment: Annotated[
+        float, DURATION, "time before the window in which perturbations turn into the directions that grow most"
+    ] = 1000.0
 
     def __post_init__(self) -> None:
-        for key, allowed in (("start", STARTS), ("solver", SOLVERS), ("events", EVENTS)):
-            if getattr(self, key) not in allowed:
-                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: {' | '.join(allowed)}")
-        _check_range("step", self.step, 1e-9, 10.0)
-        _check_range("transient", self.transient, 0.0, 1e9)
-        _check_range("window", self.window, 1e-3, 1e9)
-        _check_range("event_window", self.event_window, 0.0, 1e9)
-        _check_range("lyapunov_alignment", self.lyapunov_alignment, 0.0, 1e9)
-        _check_range("sampling", self.sampling, 1e-6, 1e9)
-        _check_range("trajectory", self.trajectory, 0.0, 1e9)
-        _check_range("trajectory_sampling", self.trajectory_sampling, 1e-6, 1e9)
-        for key, low, high in (("batches", 2, 10_000), ("lyapunov_exponents", 0, 2 * MAXIMUM_BLOCKS)):
-            count = getattr(self, key)
-            if isinstance(count, bool) or not isinstance(count, int) or not low <= count <= high:
-                raise ValueError(f"{key}: {count!r} is not allowed: {low} to {high}")
+        check_fields(self)
         for key, samples in (
             ("sampling", self.duration / self.sampling),
             ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
@@ -110,8 +111,3 @@ class Settings:
     def duration(self) -> float:
         """End of the run."""
         return self.transient + self.window
-
-
-def _check_range(key: str, value: float, low: float, high: float) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-        raise ValueError(f"{key}: {value!r} is not allowed: {low:g} to {high:g}")

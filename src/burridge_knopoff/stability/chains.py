@@ -15,14 +15,12 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import STARTS, Instant, Model
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.checks import LONGEST, check_count, check_number, interval
-from burridge_knopoff.stability.sampling import sampled_states
-from burridge_knopoff.stability.settings import POSITIONS, VELOCITIES
+from burridge_knopoff.stability.settings import SAMPLE, WATCH, Sample, Watch
 
 OUTCOMES = {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}
 UNDETERMINED, NOT_SYNCHRONIZED, SYNCHRONIZED = OUTCOMES
@@ -43,32 +41,6 @@ RENEWAL = 10.0
 # Time for a perturbation to turn into the direction that grows most, where the motion itself has settled.
 ALIGNMENT = 200.0
 BATCHES = 5
-
-
-@dataclass(frozen=True)
-class Watch:
-    """How long a state is watched and when it counts as synchronized.
-
-    time_limit : a state that has not synchronized by then has not; looked at each INTERVAL
-    synchronization_distance : mirror distance at which the motion has synchronized, if its perturbations shrink
-    pair_distance : a pair of a motion that is not synchronized counts as synchronized below this
-
-    Raises ValueError, one line, for anything out of range.
-    """
-
-    time_limit: float = 10_000.0
-    synchronization_distance: float = 1e-12
-    pair_distance: float = 1e-6
-
-    def __post_init__(self) -> None:
-        check_number("time_limit", self.time_limit, 200.0, LONGEST)
-        check_number("synchronization_distance", self.synchronization_distance, 1e-14, 1e-3)
-        check_number("pair_distance", self.pair_distance, 0.0, 1.0, above=True)
-
-    @property
-    def quarter(self) -> float:
-        """A quarter of the time limit."""
-        return 0.25 * self.time_limit
 
 
 @dataclass(frozen=True)
@@ -108,7 +80,7 @@ def symmetrized(state: Instant) -> Instant:
     return Instant(0.5 * (state.position + state.position[::-1]), np.where(stuck, 0.0, velocity), stuck)
 
 
-def watch_state(runner: Runner, start: Instant, watch: Watch = Watch()) -> Fate:
+def watch_state(runner: Runner, start: Instant, watch: Watch = WATCH) -> Fate:
     """Watch a state until it has synchronized or the time limit is over.
 
     runner : `Runner(model)`, for any number of states
@@ -147,7 +119,7 @@ def watch_state(runner: Runner, start: Instant, watch: Watch = Watch()) -> Fate:
 
 
 def transverse_exponent(
-    model: Model, state: Instant, alignment: float = ALIGNMENT, window: float = Watch().quarter
+    model: Model, state: Instant, alignment: float = ALIGNMENT, window: float = WATCH.quarter
 ) -> tuple[float, float]:
     """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
 
@@ -184,39 +156,8 @@ def transverse_exponent(
     return float(rate.mean()), float(rate.std(ddof=1) / math.sqrt(BATCHES))
 
 
-@dataclass(frozen=True)
-class Sample:
-    """Which initial states are watched: `samples` of them in a box, drawn with a seed, under a convention of start.
-
-    position, velocity : (low, high) of every U_i(0) and every U_i'(0)
-    symmetric_samples : from how many of them, made symmetric, symmetric motion begins
-
-    Raises ValueError, one line, for anything out of range.
-    """
-
-    samples: int = 40
-    seed: int = 1
-    position: Sequence[float] = POSITIONS
-    velocity: Sequence[float] = VELOCITIES
-    symmetric_samples: int = 4
-    start: str = "moving"
-
-    def __post_init__(self) -> None:
-        check_count("samples", self.samples, 1, 100_000)
-        check_count("seed", self.seed, 0, 2**32 - 1)
-        object.__setattr__(self, "position", interval("position", self.position))
-        object.__setattr__(self, "velocity", interval("velocity", self.velocity, least=0.0))
-        check_count("symmetric_samples", self.symmetric_samples, 0, self.samples)
-        if self.start not in STARTS:
-            raise ValueError(f"start: {self.start!r} is not allowed: {' | '.join(STARTS)}")
-
-    def initial(self, blocks: int) -> list[InitialState]:
-        """Return the initial states of a chain of that many blocks."""
-        return sampled_states(blocks, self.samples, self.position, self.velocity, self.seed)
-
-
 def watch_chain(
-    models: Sequence[Model], grid: Sequence[float], sample: Sample = Sample(), watch: Watch = Watch()
+    models: Sequence[Model], grid: Sequence[float], sample: Sample = SAMPLE, watch: Watch = WATCH
 ) -> dict[str, np.ndarray]:
     """Watch all sampled states of a chain under each law at each a of a grid.
 

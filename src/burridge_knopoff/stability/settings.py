@@ -1,45 +1,56 @@
-"""What the searches and maps of this room are told; fields and defaults are those of a study's config."""
+"""What the searches, maps and chains of this room are told; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.stability.checks import LONGEST, check_count, check_number, interval
+from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.initial import COORDINATE, PAPER_STATES, InitialState
+from burridge_knopoff.model.model import START, STARTS
+from burridge_knopoff.model.ranges import Interval, Number, OneOf, Whole
+from burridge_knopoff.running.settings import LONGEST
 
 #: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
 POSITIONS = (-1.5, 1.5)
 VELOCITIES = (0.0, 0.2)
+
+POSITION = Interval(COORDINATE)
+VELOCITY = Interval(Number(0.0, 1e6))
+SEED = Whole(0, 2**32 - 1)
+SAMPLES = Whole(1, 100_000)
+SHARE = Number(0.0, 1.0)
+#: Above 0.
+TIME = Number(0.0, LONGEST, above=True)
+TOLERANCE = Number(0.0, 1.0, above=True)
+ERRORS = Number(0.0, 100.0)
 
 
 @dataclass(frozen=True)
 class MotionSettings:
     """How kinds of motion are told: the config's section `motion`, and its synchronization_threshold.
 
-    zero_exponent : an exponent of this modulus at most counts as 0
-    chaotic_exponent : a motion is chaotic if its largest exponent is above this
-    standard_errors : an exponent of this many standard errors at most counts as 0 as well
-    period_tolerance : a motion is periodic if its section points repeat within this
-    longest_period : section points up to which a repetition is looked for
-    synchronization_threshold : the end blocks move as one where ⟨J⟩ is below this
-
     Raises ValueError, one line, for anything out of range.
     """
 
-    zero_exponent: float = 5e-4
-    chaotic_exponent: float = 1e-3
-    standard_errors: float = 3.0
-    period_tolerance: float = 1e-6
-    longest_period: int = 60
-    synchronization_threshold: float = 1e-6
+    zero_exponent: Annotated[float, SHARE, "a Lyapunov exponent of this modulus at most counts as 0"] = 5e-4
+    chaotic_exponent: Annotated[
+        float, SHARE, "a motion is chaotic if its largest exponent is above this and not 0 within its errors"
+    ] = 1e-3
+    standard_errors: Annotated[
+        float, ERRORS, "an exponent of this many standard errors at most counts as 0 as well"
+    ] = 3.0
+    period_tolerance: Annotated[
+        float,
+        TOLERANCE,
+        "a motion is periodic if its section points W' repeat within this, or if its second exponent is negative",
+    ] = 1e-6
+    longest_period: Annotated[int, Whole(1, 1000), "section points up to which a repetition is looked for"] = 60
+    synchronization_threshold: Annotated[float, TOLERANCE, "the end blocks move as one where <J> is below this"] = 1e-6
 
     def __post_init__(self) -> None:
-        for key, most in (("zero_exponent", 1.0), ("chaotic_exponent", 1.0), ("standard_errors", 100.0)):
-            check_number(key, getattr(self, key), 0.0, most)
-        for key in ("period_tolerance", "synchronization_threshold"):
-            check_number(key, getattr(self, key), 0.0, 1.0, above=True)
-        check_count("longest_period", self.longest_period, 1, 1000)
+        check_fields(self)
 
 
 #: The defaults of a study.
@@ -50,37 +61,37 @@ MOTION = MotionSettings()
 class SearchSettings:
     """How attractors are looked for, told apart and matched along a: the config's section `attractors`.
 
-    samples : initial states that are drawn at each a, besides those that are given
-    seed : of all random numbers
-    position, velocity : (low, high) of every U_i(0) and every U_i'(0) that is drawn
-    transient : after which a motion may count as settled
-    window : in which a settled motion is observed
-    time_limit : by which a trajectory has to reach a known attractor; else it is undetermined
-    resolution : distance in positions and velocities, for v = 0.1, below which attractors are not told apart
-    pushes : random pushes that an attractor has to survive for its radius to count
-
     Raises ValueError, one line, for anything out of range.
     """
 
-    samples: int = 200
-    seed: int = 1
-    position: Sequence[float] = POSITIONS
-    velocity: Sequence[float] = VELOCITIES
-    transient: float = 3000.0
-    window: float = 3000.0
-    time_limit: float = 20_000.0
-    resolution: float = 1e-3
-    pushes: int = 16
+    samples: Annotated[
+        int,
+        Whole(0, 1_000_000),
+        "initial states sampled at each a, besides those of the study; the basin fractions come from them",
+    ] = 200
+    seed: Annotated[int, SEED, "seed of all random numbers of this stage"] = 1
+    position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
+    velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
+    transient: Annotated[
+        float, TIME, "time after which a motion may count as settled; it grows where a motion settles slowly"
+    ] = 3000.0
+    window: Annotated[
+        float, TIME, "time for which a settled motion is observed; it grows where a motion settles slowly"
+    ] = 3000.0
+    time_limit: Annotated[
+        float, TIME, "time by which a trajectory has to reach a known attractor; else it is undetermined"
+    ] = 20_000.0
+    resolution: Annotated[
+        float,
+        Number(1e-6, 0.1),
+        "distance in positions and velocities below which attractors are not told apart, for v = 0.1; it scales with v",
+    ] = 1e-3
+    pushes: Annotated[
+        int, Whole(4, 10_000), "random pushes that an attractor has to survive for its radius to count"
+    ] = 16
 
     def __post_init__(self) -> None:
-        check_count("samples", self.samples, 0, 1_000_000)
-        check_count("seed", self.seed, 0, 2**32 - 1)
-        object.__setattr__(self, "position", interval("position", self.position))
-        object.__setattr__(self, "velocity", interval("velocity", self.velocity, least=0.0))
-        for key in ("transient", "window", "time_limit"):
-            check_number(key, getattr(self, key), 0.0, LONGEST, above=True)
-        check_number("resolution", self.resolution, 1e-6, 0.1)
-        check_count("pushes", self.pushes, 4, 10_000)
+        check_fields(self)
 
 
 #: The defaults of a study.
@@ -91,28 +102,93 @@ SEARCH = SearchSettings()
 class BasinSettings:
     """A map of basins over U_1(0) and U_N(0): the config's section `basins`, without the values of a.
 
-    pixels : along each axis
     initial : the state that gives all other positions and velocities
-    first_position, last_position : ranges (low, high) of U_1(0) and U_N(0)
-    pairs : pairs of near states, at each of five separations, for the uncertainty exponent
-    tiles : bands of rows that a map is made in
-    threads : of the labelling; they change no label
 
     Raises ValueError, one line, for anything out of range.
     """
 
-    pixels: int = 256
+    pixels: Annotated[int, Whole(1, 16_384), "pixels of a map along each axis"] = 256
     initial: InitialState = PAPER_STATES["minus"]
-    first_position: Sequence[float] = POSITIONS
-    last_position: Sequence[float] = POSITIONS
-    pairs: int = 4000
-    tiles: int = 2
-    threads: int = 1
+    first_position: Annotated[Sequence[float], POSITION, "range of U_1(0)"] = POSITIONS
+    last_position: Annotated[Sequence[float], POSITION, "range of U_N(0)"] = POSITIONS
+    pairs: Annotated[
+        int,
+        Whole(0, 10_000_000),
+        "pairs of near states of the plane, at each of five separations, for the uncertainty exponent",
+    ] = 4000
+    tiles: Annotated[int, Whole(1, 16_384), "bands of rows of a map, each a job, at most as many as pixels"] = 2
+    threads: Annotated[int, Whole(1, 1024), "threads of each of these jobs; they change no label"] = 1
 
     def __post_init__(self) -> None:
-        check_count("pixels", self.pixels, 1, 16_384)
-        for key in ("first_position", "last_position"):
-            object.__setattr__(self, key, interval(key, getattr(self, key)))
-        check_count("pairs", self.pairs, 0, 10_000_000)
-        check_count("tiles", self.tiles, 1, self.pixels)
-        check_count("threads", self.threads, 1, 1024)
+        check_fields(self)
+        if self.tiles > self.pixels:
+            raise ValueError(f"tiles: {self.tiles} is not allowed: at most the {self.pixels} rows of a map")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Which initial states are watched: `samples` of them in a box, drawn with a seed, under a convention of start.
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    samples: Annotated[int, SAMPLES, "initial states sampled for each number of blocks, uniform in a box"] = 40
+    seed: Annotated[int, SEED, "seed of the sample; the first states of a larger sample are those of a smaller one"] = 1
+    position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
+    velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
+    symmetric_samples: Annotated[
+        int,
+        Whole(0, 100_000),
+        "how many of them, made mirror-symmetric, begin the motion whose transverse exponent is computed",
+    ] = 4
+    start: Annotated[str, OneOf(STARTS), START] = "moving"
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if self.symmetric_samples > self.samples:
+            raise ValueError(
+                f"symmetric_samples: {self.symmetric_samples} is not allowed: at most samples ({self.samples})"
+            )
+
+    def initial(self, blocks: int) -> list[InitialState]:
+        """Return the initial states of a chain of that many blocks."""
+        # Here, as whoever reads a config should not wait for SciPy.
+        from burridge_knopoff.stability.sampling import sampled_states
+
+        return sampled_states(blocks, self.samples, self.position, self.velocity, self.seed)
+
+
+#: The defaults of a study.
+SAMPLE = Sample()
+
+
+@dataclass(frozen=True)
+class Watch:
+    """How long a state is watched and when it counts as synchronized.
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    time_limit: Annotated[
+        float, Number(200.0, LONGEST), "time by which a state must have synchronized; it is looked at every 20"
+    ] = 10_000.0
+    synchronization_distance: Annotated[
+        float,
+        Number(1e-14, 1e-3),
+        "mirror distance at which a motion has synchronized, if its transverse exponent is negative",
+    ] = 1e-12
+    pair_distance: Annotated[
+        float, TOLERANCE, "a pair of a motion that is not synchronized counts as synchronized below this"
+    ] = 1e-6
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    @property
+    def quarter(self) -> float:
+        """A quarter of the time limit."""
+        return 0.25 * self.time_limit
+
+
+#: The defaults of a study.
+WATCH = Watch()

@@ -1,23 +1,22 @@
-"""The configuration of a study."""
+"""A study: its config, and what follows from it."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-__all__ = ["ConfigError", "Study", "all_points", "load_study", "read_config", "read_schema", "read_yaml"]
+__all__ = ["ConfigError", "Study", "all_points", "load_study", "read_config", "read_yaml"]
 
 if TYPE_CHECKING:
-    from burridge_knopoff.study.message import ConfigError
     from burridge_knopoff.study.study import Study, all_points, load_study
-    from burridge_knopoff.study.yaml_file import read_config, read_schema, read_yaml
+    from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 
 
 def __getattr__(name: str) -> object:
-    # Resolved on first use: what makes a summary needs config.model only, and must not depend on how configs are read.
+    # Resolved on first use: what makes a summary needs study.model only, and must not depend on how configs are read.
     if name in __all__:
         from importlib import import_module
 
-        for home in ("message", "study", "yaml_file"):
+        for home in ("yaml_file", "study"):
             module = import_module(f"burridge_knopoff.study.{home}")
             if name in vars(module):
                 value = globals()[name] = getattr(module, name)

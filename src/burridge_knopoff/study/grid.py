@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from itertools import pairwise
 from typing import Any
-
-from burridge_knopoff.study.message import ConfigError
 
 #: Values of a list, and points of a study: Snakemake takes minutes to plan so many jobs.
 MAXIMUM_POINTS = 100_000
 
 
-def grid_of(config: Mapping[str, Any], file: str) -> dict[str, float]:
-    """Return {name: value}, ascending; every value the double nearest to its decimal."""
+def grid_of(items: Sequence[Any], digits: int) -> dict[str, float]:
+    """Return {name: value}, ascending; every value the double nearest to its decimal.
+
+    items : the config's `a`; digits : its `a_digits`
+    Raises ValueError as `values_of` does, and for values that share a name.
+    """
     grid: dict[str, float] = {}
-    for value in values_of(config["a"], f"{file}: a"):
-        name = f"{value:.{config['a_digits']}f}"
+    for value in values_of(items, "a"):
+        name = f"{value:.{digits}f}"
         if name in grid:
-            raise ConfigError(
-                f"{file}: a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "
+            raise ValueError(
+                f"a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "
                 "values that differ within a_digits decimals are needed"
             )
         grid[name] = value
@@ -28,32 +30,32 @@ def grid_of(config: Mapping[str, Any], file: str) -> dict[str, float]:
 
 
 def values_of(items: Sequence[Any], place: str) -> list[float]:
-    """Return the numbers and the values of the ranges in a list, ascending; none may be there twice."""
+    """Return the numbers and the values of the ranges in a list, ascending.
+
+    Raises ValueError, one line that begins with the place, if there are too many, or one twice.
+    """
     values: list[float] = []
     for position, item in enumerate(items):
         # Adding 0 turns -0.0 into 0.0.
         values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{place}[{position}]")
         if len(values) > MAXIMUM_POINTS:
-            raise ConfigError(f"{place}: more than {MAXIMUM_POINTS} values; at most that many are allowed")
+            raise ValueError(f"{place}: more than {MAXIMUM_POINTS} values; at most that many are allowed")
     values.sort()
     for value, following in pairwise(values):
         if value == following:
-            raise ConfigError(f"{place}: {value!r} is listed twice, as a number or by two ranges; once is allowed")
+            raise ValueError(f"{place}: {value!r} is listed twice, as a number or by two ranges; once is allowed")
     return values
 
 
 def _range(item: Mapping[str, float], place: str) -> list[float]:
-    try:
-        first, last, step = (Decimal(repr(item[key])) for key in ("from", "to", "step"))
-    except InvalidOperation as error:
-        raise ConfigError(f"{place}: {dict(item)!r} is not allowed: finite numbers") from error
+    first, last, step = (Decimal(repr(item[key])) for key in ("from", "to", "step"))
     if last < first:
-        raise ConfigError(f"{place}.to: {item['to']!r} is not allowed: at least from ({item['from']!r})")
+        raise ValueError(f"{place}.to: {item['to']!r} is not allowed: at least from ({item['from']!r})")
     count = (last - first) / step
     if count >= MAXIMUM_POINTS:
-        raise ConfigError(f"{place}.step: {item['step']!r} is not allowed: at most {MAXIMUM_POINTS} values in a range")
+        raise ValueError(f"{place}.step: {item['step']!r} is not allowed: at most {MAXIMUM_POINTS} values in a range")
     if count != int(count):
-        raise ConfigError(
+        raise ValueError(
             f"{place}.step: {item['step']!r} is not allowed: it does not divide the range "
             f"{item['from']!r} to {item['to']!r}"
         )

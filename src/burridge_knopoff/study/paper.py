@@ -8,6 +8,9 @@ PAPER_V = 0.1
 PAPER_TRANSIENT = 3000.0
 PAPER_WINDOW = 7000.0
 
+#: The friction parameter of its figures of single runs (Figs. 5, 6 and 7).
+PAPER_A = 0.08
+
 #: Where the basins are mapped if a study does not say: synchrony with and without rivals, and beyond its loss. Other
 #: laws are mapped where the first of these is.
 PAPER_BASINS = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}

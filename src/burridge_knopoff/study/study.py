@@ -1,37 +1,25 @@
-"""The configuration of a study: validated against the schema, with defaults filled in, and turned into grid points."""
+"""A study: its config with all defaults, its grid, and what both say about its runs."""
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
-from burridge_knopoff.study.checks import (
-    check_beginnings,
-    check_boxes,
-    check_chains,
-    check_runs,
-    check_states,
-    fill_basins,
-    fill_compared,
-    run_settings,
-)
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, Sample, SearchSettings, Watch
+from burridge_knopoff.study import rules
+from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.grid import grid_of
-from burridge_knopoff.study.message import ConfigError, explain, shown
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
-from burridge_knopoff.study.models import check_chain_laws, check_models, fill_laws, fill_solver
-from burridge_knopoff.study.size import check_size
+from burridge_knopoff.study.paper import PAPER_A
+from burridge_knopoff.study.yaml_file import ConfigError
 
-LARGEST = 1e300
-
-#: The friction parameter of the paper's figures of single runs (Figs. 5, 6 and 7).
-PAPER_A = 0.08
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -148,13 +136,41 @@ class Study:
             raise ConfigError(f"a{a}: not a point of study {self.name}: a is not in its grid")
         return self.grid[a]
 
+    @property
+    def motion(self) -> MotionSettings:
+        """How kinds of motion are told."""
+        threshold = self.config["synchronization_threshold"]
+        return MotionSettings(**self.config["motion"], synchronization_threshold=threshold)
+
+    @property
+    def search(self) -> SearchSettings:
+        """How attractors are looked for."""
+        return SearchSettings(**self.config["attractors"])
+
+    @property
+    def basins(self) -> BasinSettings:
+        """The maps of basins."""
+        section = {key: value for key, value in self.config["basins"].items() if key not in ("a", "initial")}
+        return BasinSettings(initial=self.state(self.config["basins"]["initial"]), **section)
+
+    @property
+    def sample(self) -> Sample:
+        """The initial states of longer chains."""
+        return _settings_of(Sample, {**self.config, **self.config["chains"]})
+
+    @property
+    def watch(self) -> Watch:
+        """How long these are watched."""
+        threshold = self.config["synchronization_threshold"]
+        return _settings_of(Watch, {**self.config["chains"], "pair_distance": threshold})
+
     def settings(self, law: str, solver: str | None = None) -> Settings:
         """Return the settings of the runs under a law.
 
         solver : another one than that of the study's points
         Raises ConfigError if it is not another one that knows the law.
         """
-        config = dict(self.config)
+        config = {**self.config, "solver": solver or self.config["solver"][law]}
         if solver is not None:
             if solver not in self.other_solvers(law):
                 allowed = " | ".join(self.other_solvers(law))
@@ -162,7 +178,10 @@ class Study:
             config["step"] = config["solvers"]["step"]
             if solver == "rk4":
                 config["lyapunov_exponents"] = 0
-        return run_settings(config, solver or config["solver"][law])
+        if config["solver"] != "rk4":
+            # It is no setting of another solver, whose points it must not remake.
+            del config["step"]
+        return _settings_of(Settings, config)
 
     def state(self, initial: str) -> InitialState:
         """Return an initial state of the study by its name."""
@@ -187,99 +206,52 @@ class Study:
         }
 
 
-def load_study(config: Mapping[str, Any], schema: Mapping[str, Any], file: str) -> Study:
-    """Validate a config against its schema and the rules that a schema cannot state.
+def load_study(config: Mapping[str, Any], file: str) -> Study:
+    """Give a config its defaults, and hold it against its ranges and against the rules between its keys.
 
     file : name of the config file, for messages
-    Raises ConfigError.
+    Raises ConfigError, one line: file, key, value, what is allowed.
     """
-    check_names(config, file)
-    filled = _with_defaults(copy.deepcopy(dict(config)), schema)
-    check_schema(filled, schema, file)
-    grid = grid_of(filled, file)
+    try:
+        return _study(config)
+    except ValueError as error:
+        raise ConfigError(f"{file}: {error}") from error
+
+
+def _study(config: Mapping[str, Any]) -> Study:
+    filled = _lists(CONFIG.form(config, ""))
+    # Of the ranges in it only the record of the study tells.
+    filled["a"] = config["a"]
+    grid = grid_of(filled["a"], filled["a_digits"])
     values = list(grid.values())
-    check_states(filled, file)
-    check_chains(filled, file)
-    fill_laws(filled, file)
     study = Study(filled, grid)
-    check_models(filled, values, study.blocks, file)
-    check_chain_laws(filled, file)
-    check_beginnings(filled, study.model(study.laws[0], next(iter(grid.values()))), file)
-    fill_solver(filled, values, study.blocks, file)
-    check_runs(filled, file)
-    check_boxes(filled, file)
-    fill_basins(filled, set(values), file)
-    shown = filled["figures"].get("a")
-    if shown is not None and shown not in values:
-        raise ConfigError(f"{file}: figures.a: {shown!r} is not allowed: a value of the grid")
-    fill_compared(filled, set(values), study.shown_a, file)
-    check_size(filled, grid, file)
-    return Study(_with_numbers(filled, schema), grid)
+    rules.fill_states(filled)
+    rules.fill_chains(filled)
+    rules.fill_laws(filled)
+    rules.check_models(filled, values, study.blocks)
+    rules.fill_solver(filled, values, study.blocks)
+    for law in study.laws:
+        study.settings(law).check_blocks(study.blocks)
+    rules.fill_basins(filled, set(values))
+    with rules.under("basins."):
+        _ = study.basins
+    with rules.under("chains."):
+        _ = study.sample
+    rules.fill_compared(filled, set(values), study.shown_a)
+    rules.check_size(filled, len(grid), study.blocks)
+    return study
 
 
-def _with_defaults(config: Any, schema: Mapping[str, Any]) -> Any:
-    """Return a config with defaults, its keys in the order of the schema: in what order a file has them is nothing."""
-    if not isinstance(config, dict):
-        return config
-    filled = {}
-    for key, item in schema.get("properties", {}).items():
-        if key in config or "default" in item:
-            filled[key] = _with_defaults(copy.deepcopy(config.get(key, item.get("default"))), item)
-    return {**filled, **{key: value for key, value in config.items() if key not in filled}}
+def _settings_of(kind: type[_T], config: Mapping[str, Any]) -> _T:
+    """Return the settings of a class that a config has under the same names."""
+    return kind(**{name: config[name] for name in fields_of(kind) if name in config})
 
 
-def _with_numbers(config: Any, schema: Mapping[str, Any]) -> Any:
-    """Return a valid config with every number that need not be whole as a double: 100 and 100.0 are one."""
-    if isinstance(config, dict):
-        other = schema.get("additionalProperties")
-        items = schema.get("properties", {})
-        return {key: _with_numbers(value, items.get(key, other or {})) for key, value in config.items()}
-    if isinstance(config, list):
-        return [_with_numbers(value, schema.get("items", {})) for value in config]
-    is_number = isinstance(config, int) and not isinstance(config, bool)
-    return float(config) if is_number and "number" in _types(schema) else config
-
-
-def _types(schema: Mapping[str, Any]) -> list[str]:
-    types = schema.get("type", [])
-    return [types] if isinstance(types, str) else types
-
-
-@cache
-def _validator_class() -> Any:
-    import jsonschema
-
-    def number(checker: Any, value: Any) -> bool:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        return is_number and -LARGEST <= value <= LARGEST
-
-    def integer(checker: Any, value: Any) -> bool:
-        return isinstance(value, int) and number(checker, value)
-
-    base = jsonschema.Draft202012Validator
-    checker = base.TYPE_CHECKER.redefine("number", number).redefine("integer", integer)
-    return jsonschema.validators.extend(base, type_checker=checker)
-
-
-def check_schema(config: Any, schema: Mapping[str, Any], file: str) -> None:
-    """Raise ConfigError, one line, for the first place at which the content of a file breaks its schema."""
-    errors = sorted(_validator_class()(schema).iter_errors(config), key=lambda error: [str(key) for key in error.path])
-    if not errors:
-        return
-    raise ConfigError(f"{file}: {explain(errors[0])}")
-
-
-def check_names(config: Any, file: str, place: str = "") -> None:
-    """Raise ConfigError for keys that are not text, and for line breaks at an end, which a pattern does not see."""
-    if isinstance(config, Mapping):
-        for key, value in config.items():
-            if not isinstance(key, str) or key != key.strip():
-                raise ConfigError(
-                    f"{file}: {place}{ascii(key)[:60]} is not allowed as a key: text without spaces around it"
-                )
-            check_names(value, file, f"{place}{shown(key)}.")
-    if place == "study." and isinstance(config, str) and config != config.strip():
-        raise ConfigError(f"{file}: study: {config!r} is not allowed: text without spaces or line breaks around it")
+def _lists(value: Any) -> Any:
+    """Return values as YAML has them, lists for tuples."""
+    if isinstance(value, dict):
+        return {key: _lists(item) for key, item in value.items()}
+    return [_lists(item) for item in value] if isinstance(value, tuple) else value
 
 
 def all_points(study: Study) -> list[tuple[str, str, str]]:

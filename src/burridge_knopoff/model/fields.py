@@ -1,0 +1,81 @@
+"""Fields: settings with their ranges, defaults and descriptions, from which all else about them is made.
+
+A setting is a field of a dataclass whose type is annotated with a range and a description:
+
+    step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
+
+That line is all that Python, the options of `bk simulate`, the config of a study and the tables of config/README.md
+know of it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+from burridge_knopoff.model.ranges import Range, joined
+
+#: The default of a field that needs a value, and of one that follows from others if it is left out.
+REQUIRED, FOLLOWS = object(), object()
+
+
+@dataclass(eq=False, repr=False)
+class Field:
+    """A setting: its range, what it means, and its default."""
+
+    range: Range
+    description: str
+    default: Any = REQUIRED
+
+
+@dataclass(eq=False, repr=False)
+class Keys(Range):
+    """Fields by name: a mapping without others; its form has all defaults, in the order of the fields."""
+
+    fields: Mapping[str, Field]
+
+    def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
+        if not isinstance(value, Mapping):
+            return None
+        for name in value:
+            if name not in self.fields:
+                raise ValueError(f"{joined(key, name)}: unknown key; allowed here: {', '.join(sorted(self.fields))}")
+        values = {}
+        for name, field in self.fields.items():
+            given = value.get(name, field.default)
+            if given is REQUIRED:
+                raise ValueError(f"{joined(key, name)}: missing; needed: {field.description}")
+            if given is not FOLLOWS:
+                values[name] = field.range.form(given, joined(key, name))
+        return values
+
+    def __str__(self) -> str:
+        return f"{{{', '.join(self.fields)}}}"
+
+
+_KNOWN: dict[type, Mapping[str, Field]] = {}
+
+
+def fields_of(kind: type) -> Mapping[str, Field]:
+    """Return the settings of a dataclass by name: those of its fields that have a range."""
+    if kind not in _KNOWN:
+        hints, found = get_type_hints(kind, include_extras=True), {}
+        for item in dataclasses.fields(kind):
+            if get_origin(hints[item.name]) is Annotated:
+                _, allowed, description = get_args(hints[item.name])
+                default = REQUIRED if item.default is dataclasses.MISSING else item.default
+                found[item.name] = Field(allowed, description, default)
+        _KNOWN[kind] = found
+    return _KNOWN[kind]
+
+
+def check_fields(settings: Any, place: str = "") -> None:
+    """Give the settings of a new dataclass their form: 3 becomes 3.0, a list a tuple.
+
+    place : stands before their names in messages
+    Raises ValueError, one line, for anything out of range.
+    """
+    for name, field in fields_of(type(settings)).items():
+        object.__setattr__(settings, name, field.range.form(getattr(settings, name), place + name))

@@ -1,0 +1,183 @@
+"""Ranges: what a setting may be. Each gives a value the one form of settings, or refuses it, and says itself in words.
+
+The form of 3 is 3.0 where a number need not be whole, that of a list is a tuple, and none has the types of numpy. A
+refusal is a ValueError of one line: key, value, what is allowed; the key is that of the part at fault, as
+`initial.minus.position[1]`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+#: A limit that is none: numbers have to be finite.
+HUGE = 1e300
+
+
+class Range:
+    """What a setting may be; `str(range)` says it."""
+
+    def form(self, value: Any, key: str) -> Any:
+        """Return a value in its form; raises ValueError, one line, if it is not allowed."""
+        fitting = self._fit(value, key)
+        if fitting is None:
+            raise refusal(key, value, self)
+        return fitting
+
+    def _fit(self, value: Any, key: str) -> Any:
+        """Return a value in its form, None if it does not fit; raises ValueError for a part of it that does not."""
+        raise NotImplementedError
+
+
+@dataclass(eq=False, repr=False)
+class Number(Range):
+    """A number from `least` to `most`, or, with `above`, more than `least`; True and False are none."""
+
+    least: float
+    most: float
+    above: bool = False
+
+    def _fit(self, value: Any, key: str) -> float | None:
+        is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+        fits = is_number and self.least <= value <= self.most and not (self.above and value == self.least)
+        return float(value) if fits else None
+
+    def __str__(self) -> str:
+        limits = [f"{'>' if self.above else '≥'} {self.least:g}"] if self.least > -HUGE else []
+        limits += [f"≤ {self.most:g}"] if self.most < HUGE else []
+        return f"a {'' if limits else 'finite '}number {' and '.join(limits)}".rstrip()
+
+
+@dataclass(eq=False, repr=False)
+class Whole(Range):
+    """A whole number from `least` to `most`; 7.0 is none."""
+
+    least: int
+    most: int
+
+    def _fit(self, value: Any, key: str) -> int | None:
+        is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+        return int(value) if is_whole and self.least <= value <= self.most else None
+
+    def __str__(self) -> str:
+        return f"a whole number ≥ {self.least} and ≤ {self.most}"
+
+
+@dataclass(eq=False, repr=False)
+class OneOf(Range):
+    """One of some words."""
+
+    words: tuple[str, ...]
+
+    def _fit(self, value: Any, key: str) -> str | None:
+        return value if isinstance(value, str) and value in self.words else None
+
+    def __str__(self) -> str:
+        return " | ".join(self.words)
+
+
+@dataclass(eq=False, repr=False)
+class Text(Range):
+    """A text that matches a pattern as a whole; the words say it."""
+
+    words: str = "text"
+    pattern: str = r"(?s:.*)"
+
+    def _fit(self, value: Any, key: str) -> str | None:
+        return value if isinstance(value, str) and re.fullmatch(self.pattern, value) else None
+
+    def __str__(self) -> str:
+        return self.words
+
+
+@dataclass(eq=False, repr=False)
+class Several(Range):
+    """A list of values, at least and at most so many; `distinct` if none may stand twice."""
+
+    each: Range
+    least: int = 0
+    most: int = 10**9
+    distinct: bool = False
+
+    def _fit(self, value: Any, key: str) -> tuple[Any, ...] | None:
+        if not isinstance(value, list | tuple | np.ndarray):
+            return None
+        items = tuple(self.each.form(item, f"{key}[{i}]") for i, item in enumerate(value))
+        fits = self.least <= len(items) <= self.most and not (self.distinct and len(set(items)) < len(items))
+        return items if fits else None
+
+    def __str__(self) -> str:
+        limits = [f"at least {self.least}"] if self.least else []
+        limits += [f"at most {self.most}"] if self.most < 10**9 else []
+        limits += ["each value once"] if self.distinct else []
+        return f"a list ({'; '.join([*limits, f'each {self.each}'])})"
+
+
+@dataclass(eq=False, repr=False)
+class Interval(Range):
+    """An interval [low, high] with low < high, both within the same limits."""
+
+    ends: Number
+
+    def _fit(self, value: Any, key: str) -> tuple[float, float] | None:
+        try:
+            low, high = Several(self.ends, 2, 2).form(value, key)
+        except ValueError:
+            return None
+        return (low, high) if low < high else None
+
+    def __str__(self) -> str:
+        return f"[low, high] with low < high, each {self.ends}"
+
+
+@dataclass(eq=False, repr=False)
+class Named(Range):
+    """Values by names, at least so many."""
+
+    name: Range
+    each: Range
+    least: int = 0
+
+    def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
+        if not isinstance(value, Mapping) or len(value) < self.least:
+            return None
+        return {self.name.form(name, key): self.each.form(item, joined(key, name)) for name, item in value.items()}
+
+    def __str__(self) -> str:
+        limits = [f"at least {self.least}"] if self.least else []
+        return f"named entries ({'; '.join([*limits, f'each {self.each}'])})"
+
+
+@dataclass(eq=False, repr=False)
+class Either(Range):
+    """A value in one of several ranges."""
+
+    ranges: tuple[Range, ...]
+
+    def _fit(self, value: Any, key: str) -> Any:
+        fitting = (item._fit(value, key) for item in self.ranges)
+        return next((form for form in fitting if form is not None), None)
+
+    def __str__(self) -> str:
+        return " or ".join(map(str, self.ranges))
+
+
+def joined(key: str, name: Any) -> str:
+    """Return the key of an entry: a name that is not plain words is quoted, in ASCII, and a long one is cut."""
+    shown = name if isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", name) else ascii(name)
+    return f"{key}.{_cut(shown)}" if key else _cut(shown)
+
+
+def refusal(key: str, value: Any, allowed: object) -> ValueError:
+    """Return the error of a value that is not allowed: key, value, what is."""
+    hint = isinstance(value, str) and re.fullmatch(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+", value)
+    words = " (YAML takes this for text: write it with a point and a sign, like 1.0e-6)" if hint else ""
+    return ValueError(f"{key}{': ' if key else ''}{_cut(repr(value))} is not allowed: {allowed}{words}")
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:57]}..."

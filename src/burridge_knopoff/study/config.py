@@ -1,0 +1,169 @@
+"""The config of a study: every key with its range, default and description.
+
+Most are the settings of the library under the same names; what stands here is what only a study has, and how the
+settings are put together. `CONFIG.form` gives a config its defaults or refuses it; rules.py holds its keys against each
+other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
+from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.ranges import HUGE, Either, Named, Number, OneOf, Range, Several, Text, Whole, joined
+from burridge_knopoff.running.settings import SOLVERS, Settings
+from burridge_knopoff.stability.settings import (
+    ERRORS,
+    SAMPLES,
+    SHARE,
+    TIME,
+    BasinSettings,
+    MotionSettings,
+    Sample,
+    SearchSettings,
+    Watch,
+)
+from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS
+
+NUMBER = Number(-HUGE, HUGE)
+A = Number(0.0, 100.0)
+#: Values from, from + step, … to; see `grid.values_of`.
+STEPS = Keys(
+    {
+        "from": Field(A, "first value"),
+        "to": Field(A, "last value"),
+        "step": Field(Number(0.0, 100.0, above=True), "distance of two values; it divides the range"),
+    }
+)
+VALUES = Several(Either((A, STEPS)), 1)
+SOME_VALUES = Several(A, 0, 100, distinct=True)
+
+STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first", "[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
+STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
+LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
+
+
+class LawKeys(Range):
+    """The description of a law: `law`, or `formula`, and numbers by any other names."""
+
+    def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
+        if not isinstance(value, Mapping):
+            return None
+        kinds = {"law": Text(), "formula": Text()}
+        return {name: kinds.get(name, NUMBER).form(item, joined(key, name)) for name, item in value.items()}
+
+    def __str__(self) -> str:
+        return "law or formula, and numbers"
+
+
+def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
+    """Return the settings of a class, without some and with others in the place of some."""
+    return {name: other.get(name, field) for name, field in fields_of(kind).items() if name not in without}
+
+
+def _section(fields: Mapping[str, Field]) -> Field:
+    return Field(Keys(fields), "", {})
+
+
+_SETTINGS, _SAMPLE = fields_of(Settings), fields_of(Sample)
+_STATE = {name: replace(field, default=FOLLOWS) for name, field in fields_of(InitialState).items()}
+_SOLVER = OneOf(SOLVERS)
+
+AGREEMENT = {
+    "relative_tolerance": Field(
+        SHARE,
+        "a law agrees with the first one if its motion is of the same kind and <J> differs by no more than this share "
+        "of the larger one, …",
+        0.1,
+    ),
+    "standard_errors": Field(
+        ERRORS, "… or by no more than this many standard errors, or than synchronization_threshold", 3.0
+    ),
+}
+COMPARED = {
+    "a": Field(
+        replace(SOME_VALUES, least=1),
+        "values of the grid at which all other solvers that know a law simulate its points once more; without it those "
+        f"of {', '.join(map(str, PAPER_COMPARED))} that are in the grid, else figures.a",
+        FOLLOWS,
+    ),
+    "step": replace(_SETTINGS["step"], description="step of rk4 there", default=0.0025),
+}
+FIGURES = {
+    "a": Field(A, f"value of the grid that figures of single runs show; without it the nearest to {PAPER_A}", FOLLOWS),
+    "law": Field(Text(), "and their friction law; without it the first of the study", FOLLOWS),
+}
+BASINS = {
+    "a": Field(
+        Named(Text(), SOME_VALUES),
+        "values of the grid with a map of basins, for each law; without it those that are in the grid of "
+        + "; ".join(f"{law}: {', '.join(map(str, values))}" for law, values in PAPER_BASINS.items()),
+        {},
+    ),
+    "pixels": fields_of(BasinSettings)["pixels"],
+    "initial": Field(
+        Text(),
+        "initial state that gives all other positions and velocities; without it the first of the study",
+        FOLLOWS,
+    ),
+    **_part(BasinSettings, "pixels"),
+}
+TWO_BLOCKS = {
+    "a": Field(
+        VALUES, "friction parameters at which two blocks are compared", [{"from": 0.005, "to": 0.4, "step": 0.005}]
+    ),
+    "samples": Field(SAMPLES, "initial states from which they are compared", 8),
+}
+CHAINS = {
+    "blocks": Field(Several(Whole(2, 64), 1, distinct=True), "numbers of blocks", list(range(2, 11))),
+    "a": Field(VALUES, "friction parameters", [0.005, {"from": 0.01, "to": 0.16, "step": 0.01}, 0.18, 0.2, 0.25, 0.3]),
+    "laws": Field(
+        Several(Text(), 1, distinct=True), "friction laws, of those of the study; without it the first", FOLLOWS
+    ),
+    "samples": _SAMPLE["samples"],
+    "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
+    **{key: _SAMPLE[key] for key in ("seed", "position", "velocity")},
+    **_part(Watch, "pair_distance"),
+    "two_blocks": _section(TWO_BLOCKS),
+}
+
+CONFIG = Keys(
+    {
+        "study": Field(STUDY_NAME, "its name, and the name of its folder under results/"),
+        "a": Field(VALUES, "the friction parameters, in any order; a range includes both ends, and step divides it"),
+        "a_digits": Field(Whole(1, 15), "decimals of a in file names", 4),
+        "initial": Field(
+            Named(STATE_NAME, Keys(_STATE), 1),
+            "named initial states, each with position U(0) and velocity U'(0), one number a block, for 2 to "
+            f"{MAXIMUM_BLOCKS} blocks; minus: {{}} and plus: {{}} are the paper's and need no numbers",
+        ),
+        "laws": Field(
+            Named(LAW_NAME, LawKeys(), 1), "friction laws by name; see below", {law: {} for law in PAPER_LAWS}
+        ),
+        "chain": _section(_part(Chain, "blocks")),
+        **_part(Model),
+        **_part(
+            Settings,
+            solver=Field(
+                Either((_SOLVER, Named(LAW_NAME, _SOLVER))),
+                f"{_SETTINGS['solver'].description}; for all laws, or as {{linearized: map}} for some",
+                _SETTINGS["solver"].default,
+            ),
+            transient=replace(_SETTINGS["transient"], range=TIME),
+            events=Field(OneOf(("window", "all")), _SETTINGS["events"].description.partition(" | none")[0], "window"),
+        ),
+        "synchronization_threshold": fields_of(MotionSettings)["synchronization_threshold"],
+        "motion": _section(_part(MotionSettings, "synchronization_threshold")),
+        "agreement": _section(AGREEMENT),
+        "solvers": _section(COMPARED),
+        "figures": _section(FIGURES),
+        "attractors": _section(_part(SearchSettings)),
+        "basins": _section(BASINS),
+        "chains": _section(CHAINS),
+    }
+)

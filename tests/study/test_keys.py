@@ -1,0 +1,16 @@
+"""config/README.md has every key of a config, as the code that reads one has it."""
+
+import importlib.util
+import re
+
+
+def test_the_tables_of_keys_are_those_of_the_code(repository):
+    spec = importlib.util.spec_from_file_location("keys", repository / "docs" / "keys.py")
+    keys = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(keys)
+    text = keys.PAGE.read_text()
+    assert keys.refreshed(text) == text, "run python docs/keys.py"
+    rows = re.findall(r"^\| `([a-z_.]+)` \|.*\|.*\|.*\|$", text, re.MULTILINE)
+    assert set(keys.fields()) == set(rows)
+    assert all(field.description for field in keys.fields().values())
+    assert keys.refreshed(text.replace("| 7000.0 |", "| 700.0 |")) == text
