@@ -9,7 +9,7 @@ import xarray as xr
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
-from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.job_log import SILENT
 from snakemake_logger_plugin_study.closing import closing_lines, elapsed
 
@@ -61,7 +61,7 @@ def test_a_whole_study(results):
     counts = {"holds": 1, "holds loosely": 0, "depends on convention": 1, "fails": 10, "not testable": 0}
     (results / "summary" / "claims.json").write_text(json.dumps({"counts": counts, "claims": claims}))
     write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 3, 0, 1, 3])
-    write_flags(results / "summary" / "lyapunov.nc", "kind", KINDS, [-1, 3, 0, -1, 2])
+    write_flags(results / "summary" / "lyapunov.nc", "kind", MotionKind, [-1, 3, 0, -1, 2])
     made = [str(results / path) for path in ("points/a.nc", "points/b.nc", "summary/claims.json", "report.html")]
     wanted = [*summaries(results), str(results / "report.html")]
     assert closing_lines(results, 312.0, success=True, made=made, wanted=wanted) == [
@@ -79,7 +79,7 @@ def test_a_whole_study(results):
 
 def test_all_points_completed(results):
     write_flags(results / "summary" / "mean_distance.nc", "status", STATUSES, [0, 0])
-    write_flags(results / "summary" / "lyapunov.nc", "kind", KINDS, [3, 2])
+    write_flags(results / "summary" / "lyapunov.nc", "kind", MotionKind, [3, 2])
     lines = closing_lines(results, 1.0, success=True, made=[], wanted=summaries(results)[1:])
     assert lines == ["study paper: done in 1 s", "made: nothing", "points: all 2 completed"]
 

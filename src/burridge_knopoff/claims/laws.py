@@ -19,10 +19,15 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
 )
-from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
+from burridge_knopoff.stability.motion import MotionKind
 
 # What the paper calls a result, of each kind of motion.
-_RESULT = {SYNCHRONIZED: "synchrony", PERIODIC: "regular", QUASIPERIODIC: "regular", CHAOTIC: "chaos"}
+_RESULT = {
+    MotionKind.SYNCHRONIZED: "synchrony",
+    MotionKind.PERIODIC: "regular",
+    MotionKind.QUASIPERIODIC: "regular",
+    MotionKind.CHAOTIC: "chaos",
+}
 
 
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
@@ -104,9 +109,9 @@ def solutions_agree(
             )
             within = bool((np.abs(difference) <= allowed)[there].all())
             kinds = evidence.at(runs, value)["kind"].values
-            if np.isnan(kinds).any() or (kinds == UNDETERMINED).any() or not there.any():
+            if np.isnan(kinds).any() or (kinds == MotionKind.UNDETERMINED).any() or not there.any():
                 continue
-            laws = len({_RESULT[int(kind)] for kind in kinds}) == 1
+            laws = len({_RESULT[MotionKind(kind)] for kind in kinds}) == 1
             solved.append(within)
             compared.append(laws)
             largest = float(np.abs(difference[there]).max())

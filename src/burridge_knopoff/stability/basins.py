@@ -11,16 +11,14 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.attractors import FILLING
-from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, label_together, spread
-from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
+from burridge_knopoff.stability.attractor import Attractor, Symmetry, spread
+from burridge_knopoff.stability.labels import UNDETERMINED, label_together
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import measure
+from burridge_knopoff.stability.tuning import TUNING
 
-CLOSED = (SYNCHRONIZED, PERIODIC)
-
-# Difference of ⟨J⟩ beyond its errors that an attractor may show when it is followed once more.
-SAME_MEAN = 1e-3
+CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +50,11 @@ def known_attractors(
         velocity = one["velocity"].values
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         closed = one["kind"].item() in CLOSED
-        window = settings.window * (1 if closed else FILLING)
+        window = settings.window * (1 if closed else TUNING.filling)
         steady = measure(model, start, settings.transient, window, motion)
         if steady is None:
             raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
-        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + SAME_MEAN * model.scale
+        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + TUNING.same_mean * model.scale
         if abs(steady.mean_distance - one["mean_distance"].item()) > error:
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "
@@ -66,9 +64,9 @@ def known_attractors(
         slow = bool(one["slow"].item())
         if slow:
             steady = spread(model, steady, settings)
-        elif one["symmetry"].item() == SYMMETRIC:
+        elif one["symmetry"].item() == Symmetry.SYMMETRIC:
             steady = steady.symmetrized()
-        fixed = (one["symmetry"].item(), int(slot), one["radius"].item(), slow, one["close_returns"].item())
+        fixed = (Symmetry(one["symmetry"].item()), int(slot), one["radius"].item(), slow, one["close_returns"].item())
         attractors.append(Attractor(steady, *fixed))
     return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
 

@@ -25,7 +25,15 @@ from burridge_knopoff.model.model import Instant
 from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import ALL, SYMMETRIC, Orbit, OrbitError, after, find_orbit, solve
+from burridge_knopoff.stability.orbit import (
+    ALL_DIRECTIONS,
+    SYMMETRIC_DIRECTIONS,
+    Orbit,
+    OrbitError,
+    after,
+    find_orbit,
+    solve,
+)
 from burridge_knopoff.stability.transition import TOLERANCE, apart
 
 # Rounding of positions, which g carries divided by the asymmetry.
@@ -52,7 +60,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
 
     def constrained(a: float) -> tuple[Instant, float]:
         near = family.at(a)
-        return solve(near.model, apart(near.reference, asymmetry), near.period, SYMMETRIC)
+        return solve(near.model, apart(near.reference, asymmetry), near.period, SYMMETRIC_DIRECTIONS)
 
     def reduced(a: float) -> float:
         if not abs(a - critical) < FARTHEST * critical:
@@ -69,7 +77,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {critical!r}")
     a = float(found.root)
     state, period = constrained(a)
-    return find_orbit(family.model_at(a), state, period, ALL)
+    return find_orbit(family.model_at(a), state, period, ALL_DIRECTIONS)
 
 
 def leading_modulus(orbit: Orbit) -> float:

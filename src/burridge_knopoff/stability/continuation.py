@@ -14,16 +14,15 @@ from scipy.optimize import linear_sum_assignment
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.stability.attractor import Attractor, Symmetry, pushed
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.labels import SYNCHRONIZED, UNDETERMINED, Attractor, pushed
+from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
+from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 #: ⟨J⟩ and which blocks stick, on a branch at one a; and {branch: {position of a in the grid: that}}.
 BranchPoint = tuple[float, tuple[bool, ...]]
 BranchCurves = Mapping[int, dict[int, BranchPoint]]
-
-# Size of the seeded push that takes a state off an unstable symmetry, as part of the resolution.
-PUSH = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,19 +51,20 @@ def continue_attractors(
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
+    tuning: Tuning = TUNING,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
-    settings, motion, starts, start : see `find_attractors`
+    settings, motion, starts, start, tuning : see `find_attractors`
 
     Raises ValueError if an initial state does not fit the models.
     """
     generator = np.random.default_rng(settings.seed)
-    searches = [Search(model, settings, motion) for model in models]
+    searches = [Search(model, settings, motion, tuning) for model in models]
     begun = [search.starts(starts, start) for search in searches]
 
     def seeds(search: Search) -> list[Instant]:
-        size = PUSH * search.resolution
+        size = tuning.symmetry_push * search.resolution
         return [pushed(attractor.motion.instant(), size, generator) for attractor in search.attractors]
 
     labels = []
@@ -114,14 +114,14 @@ def branches(
         single = [i for i, attractor in enumerate(here) if attractor.partner >= i]
         for i in sorted(single, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
             before = UNDETERMINED
-            if k and here[i].symmetry != SYNCHRONIZED:
+            if k and here[i].symmetry != Symmetry.SYNCHRONIZED:
                 before = int(downward[k][i])
             if before != UNDETERMINED:
                 back = int(upward[k - 1][before])
-                same_kind = attractors[k - 1][before].symmetry != SYNCHRONIZED
+                same_kind = attractors[k - 1][before].symmetry != Symmetry.SYNCHRONIZED
                 if not same_kind or back not in (i, here[i].partner) or branch_of[k - 1][before] in branch:
                     before = UNDETERMINED
-            if here[i].symmetry == SYNCHRONIZED:
+            if here[i].symmetry == Symmetry.SYNCHRONIZED:
                 branch[i] = 0
             elif before != UNDETERMINED:
                 branch[i] = branch_of[k - 1][before]

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
+
 import numpy as np
 
 from burridge_knopoff.stability.settings import MotionSettings
 
-#: Kinds of motion; `synchronized` is the periodic motion in which the end blocks move as one.
-KINDS = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
-UNDETERMINED, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = KINDS
+
+class MotionKind(IntEnum):
+    """Kinds of motion, numbered as in netCDF files; SYNCHRONIZED is periodic, with end blocks that move as one."""
+
+    UNDETERMINED = -1
+    SYNCHRONIZED = 0
+    PERIODIC = 1
+    QUASIPERIODIC = 2
+    CHAOTIC = 3
+
 
 # Error, in units of the least exponent of chaos, up to which exponents tell a kind.
 LARGEST_ERROR = 3.0
@@ -49,15 +58,15 @@ def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSett
     return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * error)
 
 
-def closed_kind(mean_distance: float, settings: MotionSettings) -> int:
+def closed_kind(mean_distance: float, settings: MotionSettings) -> MotionKind:
     """Return the kind of a closed orbit with that ⟨J⟩."""
-    return SYNCHRONIZED if mean_distance < settings.synchronization_threshold else PERIODIC
+    return MotionKind.SYNCHRONIZED if mean_distance < settings.synchronization_threshold else MotionKind.PERIODIC
 
 
 def motion_kind(
     mean_distance: float, period: int, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
-) -> int:
-    """Return the kind of motion of a completed run, a key of KINDS.
+) -> MotionKind:
+    """Return the kind of motion of a completed run.
 
     mean_distance : ⟨J⟩; the end blocks move as one where it is below the synchronization threshold
     period : of the section points, 0 if they do not repeat
@@ -70,15 +79,19 @@ def motion_kind(
     """
     known = np.flatnonzero(~np.isnan(exponent))
     if len(known) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]):
-        return CHAOTIC
+        return MotionKind.CHAOTIC
     zero = zero_exponents(exponent, error, settings)
     if len(known) and not zero[0]:
-        return UNDETERMINED
+        return MotionKind.UNDETERMINED
     if period:
         return closed_kind(mean_distance, settings)
     # An error beyond the threshold of chaos tells nothing from nothing, as where chaos ends within the window.
     if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
-        return UNDETERMINED
+        return MotionKind.UNDETERMINED
     if len(known) > 1 and not zero[1]:
         return closed_kind(mean_distance, settings)
-    return QUASIPERIODIC if len(known) > 1 and exponent[0] <= settings.chaotic_exponent else UNDETERMINED
+    return (
+        MotionKind.QUASIPERIODIC
+        if len(known) > 1 and exponent[0] <= settings.chaotic_exponent
+        else MotionKind.UNDETERMINED
+    )
