@@ -153,7 +153,7 @@ def onset_of_chaos(
 
 
 def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
-    """Judge whether the largest Lyapunov exponent cannot be told from 0 at all a of a range.
+    """Judge whether the largest Lyapunov exponent is 0 within its error at all a of a range.
 
     By the study's own thresholds: `motion.zero_exponent` and `motion.standard_errors`.
     """

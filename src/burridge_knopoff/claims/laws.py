@@ -62,7 +62,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     evidence.check_runs()
     found = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
     agrees = found["agrees"].transpose("state", "a").values
-    # One state that parts them is enough; that none does takes all states.
+    # One state that parts them is enough; to say that none does, all have to be known.
     known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
     if not known.any():
         raise NotTestableError(f"the laws could not be compared for two blocks with {a}")

@@ -82,7 +82,7 @@ class SearchedPolynomial(Polynomial):
     def first_root(self, length: cython.double) -> cython.double:
         """Return the first t in [0, length] at which the polynomial becomes negative, or -1.0 if it never does.
 
-        The value at 0 must not be negative by more than rounding: a negative one is answered with 0.
+        The value at 0 must not be negative by more than rounding: for a negative one 0 is returned.
         """
         n: cython.Py_ssize_t
         k: cython.Py_ssize_t

@@ -2,7 +2,7 @@
 
 J = sqrt(d² + d'²) with d = U_N − U_1 is analytic wherever it is not 0. Gauss-Legendre quadrature with m nodes errs by
 about the Legendre coefficient of degree 2m; those fall geometrically, so the last two that the nodes still resolve,
-squared over the first, tell the error. A panel that fails is halved: near a close approach J is |z| of a complex
+squared over the first, estimate the error. A panel that fails is halved: near a close approach J is |z| of a complex
 polynomial with a root near the real axis, and the halving closes in on it.
 
 Reference: L. N. Trefethen, "Is Gauss quadrature better than Clenshaw-Curtis?", SIAM Rev. 50 (2008) 67-87.

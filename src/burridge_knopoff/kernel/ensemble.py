@@ -34,7 +34,7 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     vec,
 )
 
-# Label of a trajectory that comes close to nothing.
+# Label of a trajectory that comes close to no cloud.
 UNDETERMINED = -1
 
 

@@ -28,7 +28,7 @@ from cython.cimports.burridge_knopoff.kernel.series import Series
 from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
 from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 
-# Without events, perturbations are still to be kept apart now and then.
+# Longest time over which perturbations are followed at once: without events, too, they have to be kept apart.
 LONGEST_FOLLOW = 4.0
 
 

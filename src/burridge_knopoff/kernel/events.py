@@ -1,4 +1,4 @@
-"""Stops and starts: how they are carried out, kept, and told from an accumulation of events."""
+"""Stops and starts: how they are carried out and kept, and when there are so many that they accumulate."""
 
 import cython
 from cython.cimports.burridge_knopoff.kernel.record import Record

@@ -1,9 +1,9 @@
 """Lyapunov exponents from perturbations that are orthonormalised again and again.
 
 While m blocks are stuck at once, their m velocity perturbations are 0, so that at least as many exponents are −∞ as
-blocks are ever stuck at the same time. More are where a stuck block parts a chain whose parts lose perturbations one
-after the other. Vectors that are lost are dropped, and the growth of the others is collected batch by batch; a batch
-begins and ends with the first orthonormalisation after its edge.
+blocks are ever stuck at the same time. There are more where a stuck block divides the chain into parts that lose
+perturbations one after the other. Vectors that are lost are dropped, and the growth of the others is collected batch by
+batch; a batch begins and ends with the first orthonormalisation after its edge.
 
 Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
 """
@@ -75,7 +75,7 @@ class Exponents:
         self.most_stuck = self.tangent.blocks
 
     def begin_within(self, state: State, clock: cython.double, length: cython.double) -> None:
-        """Let the perturbations start now if their time comes within a piece of this length."""
+        """Start the perturbations now if their time comes within a piece of this length."""
         if self.running or clock + length <= self.start_time:
             return
         self.running = True
@@ -185,7 +185,7 @@ class Exponents:
                 for c in range(self.alive):
                     self._collect(c)
             else:
-                # What was stuck in the transient only costs no exponent of the window.
+                # Blocks that were stuck only in the transient cost no exponent of the window.
                 self._seed(state, self.alive)
             self.batch += 1
             self.batch_start = clock

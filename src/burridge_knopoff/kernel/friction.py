@@ -89,7 +89,7 @@ class Friction:
         self.number = np.zeros(len(operations) + 1)
         self.at_rest = self.at(0.0)
         if abs(self.at_rest - 1.0) < ROUNDING:
-            # As friction at rest is 1: rounding must not make a block start with an acceleration.
+            # Exactly 1: rounding must not give a block an acceleration at its start.
             self.at_rest = 1.0
 
     def at(self, speed: cython.double) -> cython.double:

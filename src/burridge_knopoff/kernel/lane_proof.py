@@ -37,7 +37,7 @@ SIMULTANEOUS = 1e-14
 class LaneProof:
     """The work space of a proof for series of the given order.
 
-    `cut` is the share of the way on which no gap has a root, 1 if that is all of it; `failed` tells where a stuck block
+    `cut` is the share of the way on which no gap has a root, 1 if that is all of it; `failed` marks where a stuck block
     may start backward on the way.
     """
 

@@ -3,8 +3,8 @@
 What decides about an event is a polynomial g for each block, positive until the event: its speed while it slips, or
 how far its spring force is from its threshold while it sticks. A root t* is guessed and refined by Halley's method, and
 then it is proved that no g has one before: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*) q(t), is
-bounded from below (see `bounds`). Where the proof fails the exhaustive search of `bernstein` decides. So an event can
-be found late only by what rounding hides.
+bounded from below (see `bounds`). Where the proof fails the exhaustive search of `bernstein` decides. So an event is
+found late only by as much as rounding hides.
 
 Where the sum of all positions W changes its sign is found on the way, in a lane behind those of the blocks: it moves no
 event, and costs next to nothing.

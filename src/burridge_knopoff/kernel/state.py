@@ -19,7 +19,7 @@ from cython.cimports.burridge_knopoff.kernel.springs import Springs
 from cython.cimports.burridge_knopoff.kernel.vector import Vectors
 
 # Times closer than this are one instant: velocities and spring forces carry rounding of about this size, so that the
-# order of two such events cannot be told.
+# order of two such events is not known.
 COINCIDENCE = 1e-14
 
 # A block that has slipped for less than this keeps the acceleration that was carried along since its start, which

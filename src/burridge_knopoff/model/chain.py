@@ -23,11 +23,9 @@ class Chain:
 
     blocks : N
     coupling : strength of the springs between neighbours, one number or one a spring: N − 1 with open ends, N in a
-        ring,
-        whose last spring joins the last block to the first
+        ring, whose last spring joins the last block to the first
     pulling : strength D of the springs to the driver, one number or one a block; `neighbours`, as in the paper, makes
-        it
-        the number of a block's neighbours
+        it the number of a block's neighbours
     threshold : static friction of the blocks, one number or one each; a block slips against threshold · Φ
     ends : open or ring
 

@@ -10,7 +10,9 @@ import numpy as np
 
 @dataclass(frozen=True)
 class InitialState:
-    """Positions U(0) and velocities U'(0), one number a block, under a name.
+    """Positions U(0) and velocities U'(0), one number a block, under a name: what a person chooses.
+
+    It says neither which blocks stick nor where uniform sliding is: `Model.begin` makes an `Instant` of it.
 
     Raises ValueError where the numbers are not finite or do not match in count.
     """

@@ -27,7 +27,7 @@ class Symmetry(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Attractor:
-    """A settled motion with what tells it from others.
+    """A settled motion with what distinguishes it from others.
 
     symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric, as
         all are in a chain that is not its own mirror image
@@ -64,7 +64,7 @@ def pushed(start: Instant, size: float, generator: np.random.Generator) -> Insta
 def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning: Tuning = TUNING) -> SteadyMotion:
     """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
 
-    Near a resonance the motion on a torus is locked, or nearly so, to orbits that attract next to nothing. The torus
+    Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
     itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
     """
     generator = np.random.default_rng(settings.seed)

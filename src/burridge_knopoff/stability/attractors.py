@@ -1,4 +1,7 @@
-"""The attractors of one model: found from initial states, and told apart by their returns."""
+"""The search for the attractors of one model, from initial states; docs/attractors.md shows it as a diagram.
+
+`continuation` follows them along a, `basins` maps what they attract, and `summaries.attractors` writes them to a file.
+"""
 
 from __future__ import annotations
 
@@ -37,14 +40,15 @@ def find_attractors(
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index among them that each initial state reaches.
 
-    settings : how they are looked for, and how many initial states are drawn; motion : how kinds of motion are told
+    settings : how they are looked for, and how many initial states are drawn; motion : how kinds of motion are
+        told apart
     starts : initial states besides those that are drawn
     start : moving or tested, see `Model.begin`
     tuning : what the search decides by itself
 
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
-    nothing that settles. What no state reaches is not found, and a motion on which the first block never stops is not
-    told: attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
+    nothing that settles. What no state reaches is not found, nor is a motion on which the first block never stops:
+    attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
     """
     search = Search(model, settings, motion, tuning)
     labels = search.labels(search.starts(starts, start))
@@ -109,7 +113,7 @@ class Search:
         return labels
 
     def _single(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
-        """Tell whether states that are ascribed to chaotic sets come there: a few are followed."""
+        """Follow a few states that are ascribed to chaotic attractors; tell whether they lead to nothing new."""
         known = len(self.attractors)
         for index, attractor in enumerate(self.attractors):
             if attractor.slow or attractor.motion.kind != MotionKind.CHAOTIC:
@@ -119,10 +123,10 @@ class Search:
         return len(self.attractors) == known
 
     def _verified(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
-        """Follow the first states until they are much closer to the attractors that they are ascribed to; tell if all are.
+        """Follow the first states until they are much closer to their attractors; tell whether all get there.
 
-        If one settles elsewhere, something that was not known lies within the radius: it is known then, and the radius
-        of the attractor that the state was ascribed to is halved.
+        If one settles elsewhere, an attractor that was not known lies within the radius: it is known then, and the
+        radius of the one that the state was ascribed to is halved.
         """
         starts, labels = starts[: self.tuning.verified], labels[: self.tuning.verified]
         narrow = [replace(item, radius=recovered(item.motion, item.radius, self.tuning)) for item in self.attractors]
@@ -208,7 +212,7 @@ class Search:
         new = [replace(item, close_returns=close_returns(found, self.tolerance, tuning)) for item in new]
         if self._accept(new, tuning.smallest_radius):
             return True
-        # Synchrony that does not attract is unstable. Other motion may lie on one set that does as a whole.
+        # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole.
         if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
             return False
         symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
@@ -220,7 +224,7 @@ class Search:
         before = list(self.attractors)
         self.attractors = [*before, *new]
         self.attractors = bounded(self.model, self.attractors, self.tolerance, self.tuning)
-        # A slow set in which an attractor is known already is none of its own.
+        # A slow set that contains a known attractor is not another one.
         overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance, self.tuning)
         radius = 0.0
         if not overlapping:
@@ -256,7 +260,7 @@ class Search:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
-        # What has not settled by now drifts slowly along a set; whether the set attracts, pushes will tell.
+        # What has not settled by now drifts slowly along a set; pushes will show whether the set attracts.
         return found if found is not None and found.drift <= tuning.loose_drift * resolution else None
 
     def _symmetric(self, found: Returns) -> bool:

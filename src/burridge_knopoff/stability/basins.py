@@ -1,4 +1,7 @@
-"""Basins of attraction: which attractor each state of a plane of initial states reaches."""
+"""Basins of attraction: which attractor each state of a plane of initial states reaches.
+
+`summaries.basins` makes maps of them and `figures.basins` draws these.
+"""
 
 from __future__ import annotations
 
@@ -53,13 +56,16 @@ def known_attractors(
         window = settings.window * (1 if closed else TUNING.filling)
         steady = measure(model, start, settings.transient, window, motion)
         if steady is None:
-            raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
+            raise ValueError(
+                f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} is not an attractor: its "
+                "motion does not complete, or the first block hardly ever stops"
+            )
         error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + TUNING.same_mean * model.scale
         if abs(steady.mean_distance - one["mean_distance"].item()) > error:
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "
                 f"{steady.mean_distance:.5f} now and {one['mean_distance'].item():.5f} in the file: motion that does "
-                "not last is no attractor to map basins of; leave this a out of basins"
+                "not last has no basin; leave this a out of basins"
             )
         slow = bool(one["slow"].item())
         if slow:
@@ -86,9 +92,9 @@ def label_states(
     attractors : as `find_attractors` returns them
     position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
     time_limit : by which a state has to reach one of them
-    threads : trajectories are shared out among so many; each is followed alone, so that no label depends on them
+    threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
 
-    A label is the index of an attractor, or −1 where none is reached: everywhere, if there is none.
+    A label is the index of an attractor, or −1 where none is reached.
     """
     stuck = model.starts_stuck(position, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)

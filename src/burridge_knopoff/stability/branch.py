@@ -53,7 +53,7 @@ SWEEP_TIME = 20_000.0
 
 
 def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
-    """Return the orbit of a given small asymmetry that branches off at a_c; its model tells at which a it exists.
+    """Return the orbit of a given small asymmetry that branches off at a_c; its model has the a at which it exists.
 
     Raises OrbitError if it is not found.
     """
@@ -118,7 +118,7 @@ def sweep(family: Family, values: np.ndarray) -> np.ndarray:
     """Return |x_1 − x_3| (while both stick) after a run at each a in turn, shape (n,).
 
     Each run goes on from the last one, with a small asymmetry added; the first begins near the synchronized orbit. NaN
-    from where blocks 1 and 3 do not stick at once any more.
+    from the a on at which blocks 1 and 3 no longer stick at the same time.
     """
     found = np.full(len(values), np.nan)
     state = family.at(float(values[0])).reference
@@ -141,4 +141,4 @@ def _settled(family: Family, a: float, state: Instant) -> Instant:
         now = runner.instant()
         if now.stuck[0] and now.stuck[2]:
             return now
-    raise OrbitError(f"a = {a!r}: blocks 1 and 3 do not stick at once any more")
+    raise OrbitError(f"a = {a!r}: blocks 1 and 3 no longer stick at the same time")

@@ -24,7 +24,7 @@ def check_count(key: str, value: int, low: int, high: int) -> None:
 
 
 def interval(key: str, value: Sequence[float], least: float = -1e6) -> tuple[float, float]:
-    """Return an interval (low, high) as a tuple; raises ValueError if it is none, or not within least and 1e6."""
+    """Return an interval (low, high) as a tuple; raises ValueError if it is not one, or not from least to 1e6."""
     numbers = [float(item) for item in value if isinstance(item, int | float) and math.isfinite(item)]
     if len(numbers) != len(value) or len(numbers) != 2 or not least <= numbers[0] < numbers[1] <= 1e6:
         raise ValueError(f"{key}: {value!r} is not allowed: [low, high] with low < high, from {least:g} to 1e+06")

@@ -1,7 +1,7 @@
 """Attractors matched along a: what each one turns into when a is stepped up or down, and the branches that this makes.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
-Chaos 33 (2023) 073151, whose continuation by seeding from the attractors of the parameter before this is.
+Chaos 33 (2023) 073151: the search at each parameter begins from the attractors at the one before.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def branches(
 
     Attractors of neighbouring a are on one branch if each, or its mirror image, is reached from the other. The two of a
     mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images have side 0.
-    The synchronized attractor is branch 0 wherever it is and nothing else is: what it turns into where it loses its
+    Branch 0 is the synchronized attractor, wherever it exists, and nothing else: what it turns into where it loses its
     stability is another branch. Other branches are numbered from 1 in the order of their first a, and of ⟨J⟩ there.
     """
     branch_of: list[np.ndarray] = []
@@ -145,7 +145,7 @@ def _orientation(attractor: Attractor) -> int:
 
 
 def same_numbers(first: BranchCurves, second: BranchCurves, tolerance: float, largest: int) -> dict[int, int]:
-    """Return new numbers for the branches of another law than the first: what both laws have carries one number.
+    """Return new numbers for the branches of a second law: a branch that both laws have keeps one number.
 
     Branches are paired so that as many values of a as possible lie on both of a pair, with ⟨J⟩ equal within the
     tolerance and the same blocks sticking. The synchronized branch is 0 in both; what has no partner is numbered on

@@ -1,4 +1,4 @@
-"""What kind of motion a run ended in, told from its Lyapunov exponents and its section points."""
+"""The kind of motion that a run ended in, from its Lyapunov exponents and its section points."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class MotionKind(IntEnum):
     CHAOTIC = 3
 
 
-# Error, in units of the least exponent of chaos, up to which exponents tell a kind.
+# Largest error of an exponent, in units of `chaotic_exponent`, with which exponents decide the kind.
 LARGEST_ERROR = 3.0
 
-# A sequence has a period if it is seen this many times at least.
+# A period counts if the sequence shows it at least this many times.
 REPETITIONS = 3
 
 
@@ -41,7 +41,7 @@ def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
 
 
 def section_closed(section: np.ndarray, tolerance: float) -> bool:
-    """Tell whether section points W' repeat after however many: almost each has another one within the tolerance.
+    """Tell whether section points W' repeat, however long the period: almost all have another within the tolerance.
 
     section : shape (n,); its second half is judged
     """
@@ -54,7 +54,7 @@ def section_closed(section: np.ndarray, tolerance: float) -> bool:
 
 
 def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
-    """Return which exponents, of these standard errors, cannot be told from 0; all of shape (n,)."""
+    """Return which exponents, of these standard errors, cannot be distinguished from 0; all of shape (n,)."""
     return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * error)
 
 
@@ -74,8 +74,8 @@ def motion_kind(
 
     Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
     that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
-    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined, among it what is
-    above `chaotic_exponent` and not above its error.
+    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined, even a largest
+    exponent above `chaotic_exponent` if it is within its error.
     """
     known = np.flatnonzero(~np.isnan(exponent))
     if len(known) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]):
@@ -85,7 +85,7 @@ def motion_kind(
         return MotionKind.UNDETERMINED
     if period:
         return closed_kind(mean_distance, settings)
-    # An error beyond the threshold of chaos tells nothing from nothing, as where chaos ends within the window.
+    # Errors beyond the threshold of chaos, as where chaos ends within the window, leave the kind open.
     if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
         return MotionKind.UNDETERMINED
     if len(known) > 1 and not zero[1]:

@@ -1,10 +1,10 @@
 """Periodic orbits on which the outer blocks of three stick once a period, as fixed points of the return map.
 
-An orbit is held by its state in the middle of the time in which blocks 1 and 3 both stick, the reference instant. Their
-stops and starts are far from either end of a period, so that the flow over a fixed time is smooth there. The unknowns
-are the positions, the velocity of block 2 where it slips, and the period T; the equations are φ_T(z) = z and a phase
-condition, that corrections are perpendicular to the flow. Powell's hybrid of Newton's method solves them with the
-Jacobian from the tangent dynamics of the kernel. Stability of the orbit plays no part.
+An orbit is represented by its state in the middle of the time in which blocks 1 and 3 both stick, the reference
+instant. Their stops and starts are far from either end of a period, so that the flow over a fixed time is smooth there.
+The unknowns are the positions, the velocity of block 2 where it slips, and the period T; the equations are φ_T(z) = z
+and a phase condition, that corrections are perpendicular to the flow. Powell's hybrid of Newton's method solves them
+with the Jacobian from the tangent dynamics of the kernel. Stability of the orbit plays no part.
 
 The synchronized orbit is the mirror-symmetric one, on which blocks 1 and 3 move alike.
 """

@@ -21,7 +21,7 @@ from burridge_knopoff.stability.tuning import TUNING, Tuning
 BATCHES = 6
 EXPONENTS = 3
 
-# Velocity that is rounding.
+# A velocity of this modulus is rounding.
 STANDING = 1e-14
 
 
@@ -143,7 +143,8 @@ def measure(
 
     transient : in which the perturbations turn into the directions of the exponents
 
-    An exponent that only its error keeps from telling chaos from motion on a torus is measured in a longer window.
+    Where only the error of the largest exponent leaves open whether the motion is chaotic, it is measured in a longer
+    window.
     """
     found = _measure(model, start, transient, window, settings, tuning)
     if found is None or found.kind not in (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED):
@@ -187,7 +188,7 @@ def _measure(
     mean = trajectory.mean_distance if model.chain.is_mirror_symmetric else math.inf
     kind = motion_kind(mean, period, exponent, error, settings)
     if kind in (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED) and found.closed(settings.period_tolerance):
-        # A weakly attracting orbit of a long period: its exponent cannot be told from 0, but its returns repeat.
+        # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
     stopped = trajectory.event_block[trajectory.event_kind == 0]
     return SteadyMotion(

@@ -18,7 +18,7 @@ class Tuning:
     #: Longest transient and window, in those of the settings, of a motion that is still settling: four doublings.
     patience: int = 16
     #: Drift, in resolutions, with which a motion that has not settled by then may still show a set: it creeps along it,
-    #: and whether the set attracts is for pushes to tell.
+    #: and pushes show whether the set attracts.
     loose_drift: float = 10.0
     #: Closed orbits drift by less than the resolution over this once they have settled, since they attract
     #: exponentially; other sets fill up so slowly that the resolution itself must do.
@@ -29,8 +29,8 @@ class Tuning:
     #: Transients that chaos has to last for, from one state: at the default settings about 100 000 time units, ten
     #: times as long as a run of the paper.
     lasting: int = 33
-    #: A window that has to tell weak chaos from motion on a torus is this many times longer: an exponent of 0.001 is
-    #: then beyond its error.
+    #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
+    #: 0.001 is then beyond its error.
     longer_window: float = 20.0
 
     # When two sets of returns are one.

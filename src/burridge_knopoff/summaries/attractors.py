@@ -1,4 +1,7 @@
-"""The attractors of both laws against a: features, branches, sweeps, basin fractions, and what each run reached."""
+"""The attractors of each law against a, as `stability.continuation` finds them, as a file.
+
+Features, branches, sweeps, basin fractions, and what each initial state reaches.
+"""
 
 from __future__ import annotations
 
@@ -86,8 +89,8 @@ def one_law(
     """Find and match the attractors of one law along a.
 
     model : under that law, at any a; grid : values of a, ascending
-    initial : states whose attractor is told under each convention, and from which attractors are looked for
-    settings : of the search; motion : how kinds of motion are told; start : convention for the drawn states
+    initial : states from which attractors are looked for, and whose own is found under each convention
+    settings : of the search; motion : how kinds of motion are told apart; start : convention for the drawn states
     """
     models = [model.at(a) for a in grid]
     found = continue_attractors(models, settings, motion, starts=initial, start=start)

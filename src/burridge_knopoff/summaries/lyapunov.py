@@ -1,4 +1,4 @@
-"""Lyapunov exponents over (law, initial, a), and the kind of motion that they and the section points tell."""
+"""Lyapunov exponents over (law, initial, a), and the kind of motion that they and the section points show."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ from burridge_knopoff.summaries.judgement import Answer, judge
 
 BLOCKS = 2
 
-# Enough to tell the kinds of motion.
+# Enough to tell the kinds of motion apart.
 EXPONENTS = 2
 
 _RUN = ("law", "state", "a")
@@ -77,7 +77,7 @@ def summarize(
     """Run two blocks from each initial state at each a of an ascending grid under each law, and compare.
 
     models : one of two blocks for each law, at any a; each other law is compared with the first one
-    settings : of the runs, see `run_settings`; motion : how kinds of motion are told
+    settings : of the runs, see `run_settings`; motion : how kinds of motion are told apart
     agreement : the config's section of that name
     """
     laws = [model.law.name for model in models]
@@ -131,7 +131,7 @@ def summarize(
 
 
 def _fill_run(values: Mapping[str, np.ndarray], k: int, trajectory: Trajectory, motion: MotionSettings) -> None:
-    """Fill in what a run tells, at that a of the grid."""
+    """Fill in what a run shows, at that a of the grid."""
     section = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
     period = section_period(section, motion.period_tolerance, motion.longest_period)
     mean = trajectory.mean_distance
