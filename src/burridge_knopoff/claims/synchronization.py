@@ -70,8 +70,9 @@ def edge_of_synchrony(
 ) -> Verdict:
     """Judge the least or the largest a at which an initial state synchronizes, under both laws.
 
-    It lies between two neighbours of the grid, a = 0 left out. Synchrony is judged by the attractor reached: near
-    its loss a run is too short to get there. Where the synchronized orbit loses stability between them, that a_c is the edge.
+    It lies between two neighbours of the grid, a = 0 left out. Synchrony is judged by the attractor reached:
+    near its loss a run is too short to get there. Where the synchronized orbit loses stability between them, a_c is the
+    edge.
     """
     evidence.check_state(initial)
     attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))

@@ -118,7 +118,7 @@ def finite_difference_multiplier(orbit: Orbit) -> float:
 
 
 def critical_a_error(family: Family, a: float) -> float:
-    """Return by how much a_c changes if finite differences replace the tangent map; NaN where the orbit is lost nearby."""
+    """Return by how much a_c changes if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
     orbit = family.at(a)
     try:
         low, high = (transverse_multiplier(family.at(a + side * SLOPE_STEP)) for side in (-1, 1))
