@@ -8,9 +8,10 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
-from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, UNDETERMINED
+from burridge_knopoff.stability.motion import MotionKind
 from tests.claims.worlds import Summaries
 
+UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC = MotionKind
 ONE_OF_MANY = 0.03
 Alteration = Callable[[Summaries], None]
 

@@ -7,10 +7,12 @@ import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
 from tests.grids import PAPER_MODELS
 from tests.sections import MOTION
+
+_, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = MotionKind
 
 # Fine where the paper's edges of synchrony are.
 A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in range(1, 61))]))

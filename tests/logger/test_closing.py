@@ -9,7 +9,7 @@ import xarray as xr
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
-from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.job_log import SILENT
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally
@@ -33,7 +33,7 @@ def write(summary, claims=None, statuses=None, kinds=None):
         (summary / "claims.json").write_text(json.dumps(claims))
     for name, variable, meanings, values in (
         ("mean_distance.nc", "status", STATUSES, statuses),
-        ("lyapunov.nc", "kind", KINDS, kinds),
+        ("lyapunov.nc", "kind", MotionKind, kinds),
     ):
         if values is not None:
             dataset = xr.Dataset({variable: ("a", np.array(values, dtype="i1"), flag("i1", meanings))})

@@ -8,15 +8,16 @@ import pytest
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Instant
+from burridge_knopoff.stability.attractor import Attractor, Symmetry
 from burridge_knopoff.stability.attractors import Search, find_attractors
 from burridge_knopoff.stability.continuation import branches, same_numbers
-from burridge_knopoff.stability.labels import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, Attractor, label
-from burridge_knopoff.stability.motion import CHAOTIC, QUASIPERIODIC
-from burridge_knopoff.stability.motion import SYNCHRONIZED as KIND_SYNCHRONIZED
+from burridge_knopoff.stability.labels import label
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states, sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import distance, is_near, least_distance, lies_on, measure, visit
 
+SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, pushes=8)
 
 
@@ -213,13 +214,13 @@ def test_weak_chaos_is_told_from_a_torus():
     weak = model(a=0.1325)
     steady = measure(weak, weak.begin(PAPER_STATES["minus"]), 20_000.0, 3000.0, MOTION)
     run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
-    assert steady.kind == CHAOTIC
+    assert steady.kind == MotionKind.CHAOTIC
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
     assert steady.exponent[0] == pytest.approx(run.lyapunov_exponent[0], abs=6e-4)
     assert abs(steady.mean_distance - run.mean_distance) < 2e-4
     torus = model(a=0.05)
     steady = measure(torus, torus.begin(PAPER_STATES["plus"]), 20_000.0, 3000.0, MOTION)
-    assert steady.kind == QUASIPERIODIC
+    assert steady.kind == MotionKind.QUASIPERIODIC
 
 
 @pytest.mark.parametrize(
@@ -261,7 +262,7 @@ def test_synchrony_of_a_long_period_is_synchrony():
     as_one = [item for item in attractors if item.symmetry == SYNCHRONIZED]
     assert len(as_one) == 1
     assert as_one[0].motion.section_period == 0
-    assert as_one[0].motion.kind == KIND_SYNCHRONIZED
+    assert as_one[0].motion.kind == MotionKind.SYNCHRONIZED
 
 
 def test_a_bound_changes_no_distance_within_it():

@@ -14,9 +14,7 @@ from burridge_knopoff.model.model import Instant
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.chains import (
     INTERVAL,
-    NOT_SYNCHRONIZED,
-    SYNCHRONIZED,
-    UNDETERMINED,
+    Outcome,
     Sample,
     Watch,
     pair_distances,
@@ -26,6 +24,7 @@ from burridge_knopoff.stability.chains import (
     watch_state,
 )
 
+UNDETERMINED, NOT_SYNCHRONIZED, SYNCHRONIZED = Outcome
 V = 0.1
 SAMPLE = Sample(samples=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=2)
 

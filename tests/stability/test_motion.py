@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.stability.motion import (
-    CHAOTIC,
-    PERIODIC,
-    QUASIPERIODIC,
-    SYNCHRONIZED,
-    UNDETERMINED,
+    MotionKind,
     motion_kind,
     section_closed,
     section_period,
 )
 from burridge_knopoff.stability.settings import MOTION
+
+UNDETERMINED, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = MotionKind
 
 
 @pytest.mark.parametrize("period", [1, 2, 3, 7, 40])

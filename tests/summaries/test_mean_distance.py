@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.running.simulation import run, simulate
-from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries import lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
 from tests.grids import grid_of
@@ -69,4 +69,4 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     assert found.values.ravel().tolist() == [synchronized]
     assert ("comment" in found.attrs) == (not synchronized)
     kind = lyapunov.summarize(grid, 3, 1e-6, MOTION)["kind"]
-    assert kind.item() == (SYNCHRONIZED if synchronized else PERIODIC)
+    assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)

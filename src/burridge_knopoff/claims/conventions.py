@@ -29,8 +29,8 @@ def under_conventions(
 
     own : verdict of the study's own runs
     exceptions : where the claim does not hold under the study's own convention
-    judge : takes the attractors with what the initial states reach under one convention; returns verdict and figures,
-        or "" for the verdict if nothing is known
+    judge : takes the attractors with what the initial states reach under one convention; returns the verdict and the
+        numbers behind it as text, or "" for the verdict if nothing is known
 
     A claim depends on convention if it holds, at least loosely, under one and fails under another.
     """
@@ -39,13 +39,13 @@ def under_conventions(
         for name, attractors in evidence.conventions():
             if name == evidence.own_convention:
                 continue
-            found, figures = judge(attractors)
+            found, numbers = judge(attractors)
             if found:
                 verdicts[name] = found
             else:
                 unknown.append(name)
             if found and found != own:
-                others.append(f"{name}: {found} ({figures})")
+                others.append(f"{name}: {found} ({numbers})")
     if unknown:
         others.append(f"not judged under {' and '.join(unknown)}")
     fails = [verdict == FAILS for verdict in verdicts.values()]
@@ -69,7 +69,7 @@ def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tu
 
 
 def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:
-    """Return (the worst verdict by shares, the shares as text); ("", "") if there is none."""
+    """Return (the worst verdict by shares, the shares as text); ("", "") if there are none."""
     if not shares:
         return "", ""
     return worst(by_share(share, loose) for share in shares.values()), shares_text(shares)

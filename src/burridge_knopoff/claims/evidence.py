@@ -1,4 +1,4 @@
-"""The summaries and the setting of a study, as the judges of claims ask for them."""
+"""The summaries and the setting of a study, in the form in which the judges of claims need them."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Evidence:
         return len(next(iter(self.config["initial"].values()))["position"])
 
     def summary(self, name: str) -> xarray.Dataset:
-        """Return a summary, of other laws than the paper's nothing; raises NotTestableError if the study has none."""
+        """Return a summary, for the paper's laws only; raises NotTestableError if the study has none."""
         if name not in self.summaries:
             raise NotTestableError(f"the study has no summary {name}.nc")
         dataset = self.summaries[name]
@@ -87,7 +87,7 @@ class Evidence:
     def compared(self, dataset: xarray.Dataset) -> xarray.Dataset:
         """Return the comparison of the paper's laws with each other from a summary that compares with the first law.
 
-        Raises NotTestableError if the first law of the study is none of the two.
+        Raises NotTestableError if the first law of the study is neither of them.
         """
         first = next(iter(self.config["laws"]))
         if first not in PAPER_LAWS:

@@ -20,7 +20,7 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
     """Judge whether more than one attractor exists at each a of a range, so that history can decide, under both laws.
 
     An attractor counts if sampled states or initial states of the study reach it; mirror images count once.
-    samples : that one attractor is the only one takes at least so many sampled states
+    samples : sampled states that it takes at least to say that there is only one attractor
     """
     attractors = evidence.choose(evidence.own_attractors(), a)
     shares, measured, single = {}, [], []
@@ -106,7 +106,7 @@ def _outcomes_differ(one: xarray.DataArray, other: xarray.DataArray) -> float | 
 
 
 def phases_decide(evidence: Evidence) -> Verdict:
-    """Raise NotTestableError for every study: none tells the phases of oscillations about uniform sliding apart."""
+    """Raise NotTestableError: no study distinguishes the phases of oscillations about uniform sliding."""
     raise NotTestableError(
         "the states of this study differ in positions, not in the phase of an oscillation about uniform sliding"
     )

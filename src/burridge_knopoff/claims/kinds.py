@@ -22,12 +22,7 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.stability.motion import (
-    CHAOTIC,
-    KINDS,
-    PERIODIC,
-    QUASIPERIODIC,
-    SYNCHRONIZED,
-    UNDETERMINED,
+    MotionKind,
     zero_exponents,
 )
 from burridge_knopoff.stability.settings import MotionSettings
@@ -40,11 +35,11 @@ if TYPE_CHECKING:
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
     """Return (a, kind of motion) of the runs from a state; one still on its way to synchrony counts as there."""
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
-    kind = np.nan_to_num(runs["kind"].values, nan=UNDETERMINED).astype(int)
+    kind = np.nan_to_num(runs["kind"].values, nan=MotionKind.UNDETERMINED).astype(int)
     if "attractors" in evidence.summaries:
         attractors = evidence.choose(evidence.own_attractors(), a)
         known, branch = reached(attractors, initial, law, "branch")
-        kind[(kind == PERIODIC) & known & (branch == 0)] = SYNCHRONIZED
+        kind[(kind == MotionKind.PERIODIC) & known & (branch == 0)] = MotionKind.SYNCHRONIZED
     return runs["a"].values, kind
 
 
@@ -55,13 +50,13 @@ def all_of_kind(
 
     kinds : meanings of `kind`: synchronized, periodic, quasiperiodic, chaotic
     """
-    allowed = [number for number, name in KINDS.items() if name in kinds]
+    allowed = [int(kind) for kind in MotionKind if kind.name.lower() in kinds]
     what = " or ".join(kinds)
     shares, measured, exceptions = {}, [], []
     for law in laws:
         for state in initial:
             grid, kind = _kinds(evidence, state, law, a)
-            known = kind != UNDETERMINED
+            known = kind != MotionKind.UNDETERMINED
             if not known.any():
                 raise NotTestableError(f"no kind of motion is known from {state} under the {law} law with {a}")
             right = np.isin(kind, allowed)
@@ -72,7 +67,7 @@ def all_of_kind(
                 exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
     if "attractors" in evidence.summaries:
         attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
-        known = (attractors["branch"] >= 0).values & (attractors["kind"].values != UNDETERMINED)
+        known = (attractors["branch"] >= 0).values & (attractors["kind"].values != MotionKind.UNDETERMINED)
         if known.any():
             share = float(np.isin(attractors["kind"].values, allowed)[known].mean())
             measured.append(Measured(f"share of all attractors with {what} motion", share))
@@ -82,7 +77,7 @@ def all_of_kind(
         for law in laws:
             for state in initial:
                 known, kind = reached(evidence.choose(attractors, a), state, law, "kind")
-                known &= kind != UNDETERMINED
+                known &= kind != MotionKind.UNDETERMINED
                 if known.any():
                     found[f"{law}, {state}"] = float(np.isin(kind, allowed)[known].mean())
         return judge_shares(found, loose_share)
@@ -98,14 +93,14 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
     for law in PAPER_LAWS:
         for state in initial:
             grid, kind = _kinds(evidence, state, law, a)
-            periodic = np.isin(kind, (SYNCHRONIZED, PERIODIC))
+            periodic = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC))
             if not periodic.any():
                 continue
             name = f"{law}, {state}"
-            shares[name] = float((kind == SYNCHRONIZED)[periodic].mean())
+            shares[name] = float((kind == MotionKind.SYNCHRONIZED)[periodic].mean())
             measured.append(Measured(f"share of periodic runs that are synchronized, {name}", shares[name]))
             if shares[name] < 1.0:
-                exceptions.append(f"periodic without synchrony {at_values(grid, kind == PERIODIC)} ({name})")
+                exceptions.append(f"periodic without synchrony {at_values(grid, kind == MotionKind.PERIODIC)} ({name})")
     if not shares:
         raise NotTestableError(f"no run is periodic with {a}")
     verdict, text = judge_shares(shares, loose_share)
@@ -128,8 +123,10 @@ def onset_of_chaos(
     for law in PAPER_LAWS:
         there = attractors["branch"].sel(law=law).values >= 0
         kind = attractors["kind"].sel(law=law).values
-        chaotic = (there & (kind == CHAOTIC)).any(axis=1)
-        regular = there.any(axis=1) & ~(there & np.isin(kind, (CHAOTIC, UNDETERMINED))).any(axis=1)
+        chaotic = (there & (kind == MotionKind.CHAOTIC)).any(axis=1)
+        regular = there.any(axis=1) & ~(there & np.isin(kind, (MotionKind.CHAOTIC, MotionKind.UNDETERMINED))).any(
+            axis=1
+        )
         known = int(np.argmin(regular)) if not regular.all() else len(grid)
         low = grid[known - 1] if known else 0.0
         high = grid[np.argmax(chaotic)] if chaotic.any() else np.inf
@@ -144,8 +141,8 @@ def onset_of_chaos(
     for state in initial:
         for law in PAPER_LAWS:
             values, kind = _kinds(evidence, state, law, Range())
-            if (kind == CHAOTIC).any():
-                first = values[np.argmax(kind == CHAOTIC)]
+            if (kind == MotionKind.CHAOTIC).any():
+                first = values[np.argmax(kind == MotionKind.CHAOTIC)]
                 measured.append(Measured(f"least a with a chaotic run, {law}, {state}", float(first)))
     for law in PAPER_LAWS:
         critical, error = evidence.critical_a(law)
@@ -156,7 +153,7 @@ def onset_of_chaos(
 
 
 def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
-    """Judge whether the largest Lyapunov exponent cannot be told from 0 at all a of a range.
+    """Judge whether the largest Lyapunov exponent is 0 within its error at all a of a range.
 
     By the study's own thresholds: `motion.zero_exponent` and `motion.standard_errors`.
     """
@@ -188,17 +185,17 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
     runs = evidence.choose(evidence.of_state("lyapunov", initial), Range(above=0.0))
     for law in laws:
         run = evidence.at(runs, at).sel(law=law)
-        kind = UNDETERMINED if np.isnan(run["kind"].item()) else int(run["kind"].item())
-        if kind == UNDETERMINED:
+        kind = MotionKind.UNDETERMINED if np.isnan(run["kind"].item()) else int(run["kind"].item())
+        if kind == MotionKind.UNDETERMINED:
             raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is not known")
-        verdicts.append(HOLDS if kind in (QUASIPERIODIC, CHAOTIC) else FAILS)
+        verdicts.append(HOLDS if kind in (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC) else FAILS)
         period = int(run["section_period"].item())
         measured.append(Measured(f"section points in a period, 0 if there is none, {law}", float(period)))
         if run.sizes.get("exponent", 0) > 1:
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
-        texts.append(f"{KINDS[kind]}{f' with {period} section points' if period else ''} ({law})")
-        others = np.isin(runs["kind"].sel(law=law).values, (QUASIPERIODIC, CHAOTIC))
+        texts.append(f"{MotionKind(kind).name.lower()}{f' with {period} section points' if period else ''} ({law})")
+        others = np.isin(runs["kind"].sel(law=law).values, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
         if others.any():
             elsewhere.append(f"aperiodic {at_values(runs['a'].values, others)} ({law})")
 
@@ -206,12 +203,14 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
         found = {}
         for law in laws:
             known, kind = reached(attractors.sel(a=[at]), initial, law, "kind")
-            if known[0] and kind[0] != UNDETERMINED:
+            if known[0] and kind[0] != MotionKind.UNDETERMINED:
                 found[law] = int(kind[0])
         if not found:
             return "", ""
-        verdict = worst(HOLDS if kind in (QUASIPERIODIC, CHAOTIC) else FAILS for kind in found.values())
-        return verdict, ", ".join(f"{KINDS[kind]} {law}" for law, kind in found.items())
+        verdict = worst(
+            HOLDS if kind in (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC) else FAILS for kind in found.values()
+        )
+        return verdict, ", ".join(f"{MotionKind(kind).name.lower()} {law}" for law, kind in found.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {' and '.join(texts)}."
     return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, labels)
@@ -225,7 +224,7 @@ def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loos
     grid, kind = _kinds(evidence, initial, law, a)
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     period = runs["section_period"].values
-    known = (period > 0) | np.isin(kind, (QUASIPERIODIC, CHAOTIC))
+    known = (period > 0) | np.isin(kind, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
     if not known.any():
         raise NotTestableError(f"no section of a run from {initial} is known with {a}")
     one = period == 1

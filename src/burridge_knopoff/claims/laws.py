@@ -19,10 +19,15 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
 )
-from burridge_knopoff.stability.motion import CHAOTIC, PERIODIC, QUASIPERIODIC, SYNCHRONIZED, UNDETERMINED
+from burridge_knopoff.stability.motion import MotionKind
 
 # What the paper calls a result, of each kind of motion.
-_RESULT = {SYNCHRONIZED: "synchrony", PERIODIC: "regular", QUASIPERIODIC: "regular", CHAOTIC: "chaos"}
+_RESULT = {
+    MotionKind.SYNCHRONIZED: "synchrony",
+    MotionKind.PERIODIC: "regular",
+    MotionKind.QUASIPERIODIC: "regular",
+    MotionKind.CHAOTIC: "chaos",
+}
 
 
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
@@ -57,7 +62,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     evidence.check_runs()
     found = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
     agrees = found["agrees"].transpose("state", "a").values
-    # One state that parts them is enough; that none does takes all states.
+    # One state that parts them is enough; to say that none does, all have to be known.
     known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
     if not known.any():
         raise NotTestableError(f"the laws could not be compared for two blocks with {a}")
@@ -104,9 +109,9 @@ def solutions_agree(
             )
             within = bool((np.abs(difference) <= allowed)[there].all())
             kinds = evidence.at(runs, value)["kind"].values
-            if np.isnan(kinds).any() or (kinds == UNDETERMINED).any() or not there.any():
+            if np.isnan(kinds).any() or (kinds == MotionKind.UNDETERMINED).any() or not there.any():
                 continue
-            laws = len({_RESULT[int(kind)] for kind in kinds}) == 1
+            laws = len({_RESULT[MotionKind(kind)] for kind in kinds}) == 1
             solved.append(within)
             compared.append(laws)
             largest = float(np.abs(difference[there]).max())

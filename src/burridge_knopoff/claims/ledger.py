@@ -231,7 +231,7 @@ def as_json(content: Mapping[str, Any]) -> str:
 
 
 def as_csv(content: Mapping[str, Any]) -> str:
-    """Return the ledger as CSV, a line for each measured figure; a claim without figures has one line."""
+    """Return the ledger as CSV, a line for each measured number; a claim without numbers has one line."""
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     texts = ("name", "topic", "statement", "place", "verdict", "own")

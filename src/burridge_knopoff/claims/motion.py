@@ -83,7 +83,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
         f"Some block stops again and again in {shares_text(shares)} of the attractors with {a}; every block in "
         f"{shares_text(all_stop)}."
     )
-    changes = "" if min(all_stop.values()) == 1.0 else "of every single block it does not hold"
+    changes = "" if min(all_stop.values()) == 1.0 else "it does not hold of every single block"
     return Verdict(worst(by_share(share, 0.9) for share in shares.values()), reason, measured, changes)
 
 

@@ -70,8 +70,9 @@ def edge_of_synchrony(
 ) -> Verdict:
     """Judge the least or the largest a at which an initial state synchronizes, under both laws.
 
-    It lies between two neighbours of the grid, a = 0 left out. The attractor reached tells synchrony, since near its
-    loss it takes longer than a run. Where the synchronized orbit loses stability between them, that a_c is the edge.
+    It lies between two neighbours of the grid, a = 0 left out. Synchrony is judged by the attractor reached:
+    near its loss a run is too short to get there. Where the synchronized orbit loses stability between them, a_c is the
+    edge.
     """
     evidence.check_state(initial)
     attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
@@ -165,10 +166,10 @@ def distance_vanishes(
         for height, value in zip(runs["level"].values, runs["settling_time"].values, strict=True)
     ]
     settled = float(runs["settling_time"].sel(level=level).item())
-    text = f"from τ = {settled:g} on" if np.isfinite(settled) else "not till the end of the run"
+    text = f"is below {level:g} from τ = {settled:g} on" if np.isfinite(settled) else f"does not stay below {level:g}"
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
     return Verdict(
         verdict,
-        f"J from {initial} at a = {at:g} ({law}) is below {level:g} {text}; claimed is τ = {by:g}.",
+        f"J from {initial} at a = {at:g} ({law}) {text}; claimed is τ = {by:g}.",
         measured,
     )

@@ -1,4 +1,4 @@
-"""Verdicts, the figures that they rest on, and the rules that turn figures into verdicts."""
+"""Verdicts, the numbers that they rest on, and the rules that turn numbers into verdicts."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class NotTestableError(Exception):
 
 @dataclass(frozen=True)
 class Measured:
-    """A figure that a verdict rests on, with its error where it has one."""
+    """A number that a verdict rests on, with its error where it has one."""
 
     quantity: str
     value: float
@@ -48,7 +48,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a claim is worth: the verdict, why, the measured figures, and where it would be another.
+    """What a claim is worth: the verdict, why, the measured numbers, and where the verdict would be another.
 
     changes : ranges of a, or conventions, for which the verdict changes; empty where there is none
     conventions : verdict under each convention «contact, start», where the claim can be judged under each

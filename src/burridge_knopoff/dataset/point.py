@@ -23,7 +23,7 @@ from burridge_knopoff.running.trajectory import Trajectory
 if TYPE_CHECKING:
     import xarray
 
-STATUS_FLAG = flag("i1", {int(status): status.name.lower() for status in Status if status >= Status.COMPLETED})
+STATUS_FLAG = flag("i1", [status for status in Status if status >= Status.COMPLETED])
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 _V = Variable

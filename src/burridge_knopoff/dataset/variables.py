@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,8 +37,10 @@ class Variable:
         return attributes
 
 
-def flag(dtype: str, meanings: Mapping[int, str]) -> dict[str, Any]:
-    """Return the CF attributes of a flag variable."""
+def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[str, Any]:
+    """Return the CF attributes of a flag variable, from an enumeration, or from {number: meaning}."""
+    if not isinstance(meanings, Mapping):
+        meanings = {int(item): item.name.lower() for item in meanings}
     return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
 
 

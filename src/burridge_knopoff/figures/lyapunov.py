@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.style import cells, label_panels, new_figure, page_width, styled
-from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Lyapunov exponents"
 CATEGORY = "Synchronization"
@@ -68,7 +68,9 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     panels[0].legend(loc="upper left", bbox_to_anchor=(0.0, 0.93))
     shown = sorted({int(kind) for kind in np.unique(lyapunov["kind"].values)})
     figure.legend(
-        handles=[Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=KINDS[kind]) for kind in shown],
+        handles=[
+            Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).name.lower()) for kind in shown
+        ],
         loc="outside lower center",
         ncols=len(shown),
     )

@@ -57,6 +57,16 @@ class SearchedPolynomial(Polynomial):
     After a search `lowest` and `highest` are bounds of the polynomial over that interval.
     """
 
+    bernstein: cython.double[:, ::1]
+    weight: cython.double[:, :, ::1]
+    left: cython.double[::1]
+    right: cython.double[::1]
+    power: cython.double[::1]
+    term: cython.double[::1]
+    length: cython.double
+    lowest: cython.double
+    highest: cython.double
+
     def __init__(self, capacity: int) -> None:
         super().__init__(capacity)
         self.bernstein = np.zeros((MAXIMUM_DEPTH + 2, len(self.coefficient)))
@@ -69,10 +79,10 @@ class SearchedPolynomial(Polynomial):
         self.lowest = 0.0
         self.highest = 0.0
 
-    def first_root(self, length):
+    def first_root(self, length: cython.double) -> cython.double:
         """Return the first t in [0, length] at which the polynomial becomes negative, or -1.0 if it never does.
 
-        The value at 0 must not be negative by more than rounding: a negative one is answered with 0.
+        The value at 0 must not be negative by more than rounding: for a negative one 0 is returned.
         """
         n: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -119,7 +129,7 @@ class SearchedPolynomial(Polynomial):
                 top += 1
         return -1.0
 
-    def maximum(self, length, floor):
+    def maximum(self, length: cython.double, floor: cython.double) -> cython.double:
         """Return the larger of floor and the maximum over [0, length]."""
         n: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -172,7 +182,7 @@ class SearchedPolynomial(Polynomial):
                 top += 1
         return floor
 
-    def _measure(self, length):
+    def _measure(self, length: cython.double) -> None:
         """Take the powers of an interval's length: even and odd ones apart, as each waits for the last."""
         k: cython.Py_ssize_t
         square: cython.double = length * length
@@ -189,7 +199,7 @@ class SearchedPolynomial(Polynomial):
         if self.capacity % 2 == 0:
             self.power[self.capacity] = even
 
-    def _scale(self, length):
+    def _scale(self, length: cython.double) -> cython.Py_ssize_t:
         """Put the terms at t = length into the first Bernstein row; return the degree that matters there.
 
         `lowest` and `highest` become bounds of the polynomial over [0, length]: the sums of its negative and of its
@@ -214,7 +224,7 @@ class SearchedPolynomial(Polynomial):
             n -= 1
         return n
 
-    def _concave(self, degree):
+    def _concave(self, degree: cython.Py_ssize_t) -> cython.bint:
         """Tell whether the polynomial that was scaled is known to bend downward everywhere in the interval."""
         k: cython.Py_ssize_t
         bend: cython.double = 2.0 * self.bernstein[0, 2]
@@ -222,7 +232,7 @@ class SearchedPolynomial(Polynomial):
             bend += max(0.0, k * (k - 1.0) * self.bernstein[0, k])
         return degree >= 2 and bend < 0.0
 
-    def _bound(self, degree):
+    def _bound(self, degree: cython.Py_ssize_t) -> None:
         """Tighten `lowest` and `highest` by the Bernstein coefficients of the first terms and the sum of the others.
 
         Far cheaper than all coefficients, and enough wherever the polynomial keeps clear of 0.
@@ -244,7 +254,7 @@ class SearchedPolynomial(Polynomial):
         self.lowest = max(self.lowest, least - rest)
         self.highest = min(self.highest, largest + rest)
 
-    def _convert(self, row, degree):
+    def _convert(self, row: cython.Py_ssize_t, degree: cython.Py_ssize_t) -> None:
         """Turn the scaled terms in a row into Bernstein coefficients, eight at a time."""
         first: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -263,7 +273,7 @@ class SearchedPolynomial(Polynomial):
             for j in range(8):
                 self.bernstein[row, first + j] = total[j]
 
-    def _split(self, top, degree):
+    def _split(self, top: cython.Py_ssize_t, degree: cython.Py_ssize_t) -> None:
         """Halve the interval in row top: its right half stays there, its left half goes to row top + 1."""
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -276,7 +286,7 @@ class SearchedPolynomial(Polynomial):
             for k in range(degree - j):
                 self.bernstein[top, k] = 0.5 * (self.bernstein[top, k] + self.bernstein[top, k + 1])
 
-    def _root_between(self, top, degree):
+    def _root_between(self, top: cython.Py_ssize_t, degree: cython.Py_ssize_t) -> cython.double:
         """Return the only root in the interval of row top, where the sign falls: Halley's method kept in a bracket."""
         _iteration: cython.int
         t: cython.double
@@ -312,7 +322,7 @@ class SearchedPolynomial(Polynomial):
                 return t
         return t
 
-    def _peak_between(self, low, high):
+    def _peak_between(self, low: cython.double, high: cython.double) -> cython.double:
         """Return the maximum in [low, high], where the derivative changes its sign from + to − at most once."""
         _iteration: cython.int
         t: cython.double = 0.5 * (low + high)

@@ -17,6 +17,7 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     least,
     less,
     magnitude,
+    mask,
     select,
     splat,
     vec,
@@ -29,6 +30,18 @@ class Bounds:
     scaled, quotient : the terms of a polynomial at the end of the interval, and those of another that may stand for it
     lowest, highest : bounds; fall : how fast the polynomials of one column fall at least, everywhere
     """
+
+    scaled: Vectors
+    quotient: Vectors
+    corner: Vectors
+    lowest: Vectors
+    highest: Vectors
+    fall: Vectors
+    lowest_table: cython.double[::1]
+    highest_table: cython.double[::1]
+    fall_table: cython.double[::1]
+    power: cython.double[::1]
+    inverse_binomial: cython.double[::1]
 
     def __init__(self, columns: int) -> None:
         self.scaled = Vectors(ORDER + 1)
@@ -43,7 +56,7 @@ class Bounds:
         self.power = np.zeros(ORDER + 4)
         self.inverse_binomial = np.array([1.0 / math.comb(LOW, k) for k in range(LOW + 1)])
 
-    def measure(self, length):
+    def measure(self, length: cython.double) -> None:
         """Take the powers of an interval's length: four chains of products, as each waits for the last."""
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -59,13 +72,13 @@ class Bounds:
                 self.power[k + j] = power[j]
                 power[j] *= square
 
-    def scale(self, terms, stride):
+    def scale(self, terms: cython.pointer[cython.const[vec]], stride: cython.Py_ssize_t) -> None:
         """Take terms, one in `stride` vectors, at the end of the interval that was measured."""
         k: cython.Py_ssize_t
         for k in range(ORDER + 1):
             self.scaled.at[k] = terms[k * stride] * self.power[k]
 
-    def bound(self, column, near):
+    def bound(self, column: cython.Py_ssize_t, near: mask) -> None:
         """Bound the quotients where `near` says so, else the polynomials; their first coefficients go to `corner`."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -95,7 +108,7 @@ class Bounds:
         self.lowest.at[column] = low
         self.highest.at[column] = high
 
-    def guess(self, length):
+    def guess(self, length: cython.double) -> vec:
         """Return where the control polygons of the last bounds first fall through 0; UNKNOWN where they do not."""
         k: cython.Py_ssize_t
         corner: cython.pointer[vec] = self.corner.at
@@ -109,7 +122,7 @@ class Bounds:
             )
         return guess
 
-    def steepness(self, length):
+    def steepness(self, length: cython.double) -> None:
         """Take how fast the polynomials that were bounded last, as they are, fall at least in an interval this long."""
         k: cython.Py_ssize_t
         per_time: cython.double = 1.0 / length

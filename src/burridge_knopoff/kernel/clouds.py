@@ -4,6 +4,8 @@ The points of a cloud are sorted along the coordinate in which it is widest and 
 box. A box that is too far off has no close point, to the last bit: rounding keeps the order of differences.
 """
 
+from collections.abc import Sequence
+
 import cython
 import numpy as np
 
@@ -18,7 +20,17 @@ class Clouds:
     radius : one for each cloud
     """
 
-    def __init__(self, clouds, width: int, radius) -> None:
+    count: cython.Py_ssize_t
+    width: cython.Py_ssize_t
+    point: cython.double[:, ::1]
+    low: cython.double[:, ::1]
+    high: cython.double[:, ::1]
+    first: cython.Py_ssize_t[::1]
+    first_group: cython.Py_ssize_t[::1]
+    sorted_by: cython.Py_ssize_t[::1]
+    radius: cython.double[::1]
+
+    def __init__(self, clouds: Sequence[np.ndarray], width: int, radius: Sequence[float]) -> None:
         self.count = len(clouds)
         self.width = width
         points, lows, highs, axes = [np.zeros((0, width))], [np.zeros((0, width))], [np.zeros((0, width))], []
@@ -43,7 +55,7 @@ class Clouds:
         """Do the work of `near` from Python."""
         return bool(self.near(cloud, np.array(state, dtype=float)))
 
-    def near(self, cloud, state):
+    def near(self, cloud: cython.Py_ssize_t, state: cython.double[::1]) -> cython.bint:
         """Tell whether a state, shape (width,), is within the radius of a point of the cloud."""
         k: cython.Py_ssize_t
         middle: cython.Py_ssize_t
@@ -71,7 +83,14 @@ class Clouds:
             group += 1
         return False
 
-    def _close(self, low, high, k, state, radius):
+    def _close(
+        self,
+        low: cython.double[:, ::1],
+        high: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+        state: cython.double[::1],
+        radius: cython.double,
+    ) -> cython.bint:
         """Tell whether a state is within the radius of the k-th box."""
         i: cython.Py_ssize_t
         for i in range(1, self.width):

@@ -2,7 +2,7 @@
 
 J = sqrt(d² + d'²) with d = U_N − U_1 is analytic wherever it is not 0. Gauss-Legendre quadrature with m nodes errs by
 about the Legendre coefficient of degree 2m; those fall geometrically, so the last two that the nodes still resolve,
-squared over the first, tell the error. A panel that fails is halved: near a close approach J is |z| of a complex
+squared over the first, estimate the error. A panel that fails is halved: near a close approach J is |z| of a complex
 polynomial with a root near the real axis, and the halving closes in on it.
 
 Reference: L. N. Trefethen, "Is Gauss quadrature better than Clenshaw-Curtis?", SIAM Rev. 50 (2008) 67-87.
@@ -12,7 +12,7 @@ from functools import cache
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.piece import ORDER
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER, Piece
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, root, splat, sum_of_eight, vec
 from cython.cimports.libc.math import sqrt
 
@@ -56,6 +56,20 @@ class Distance:
     apart : d in uniform sliding; positions are relative to it
     """
 
+    degree: cython.Py_ssize_t
+    apart: cython.double
+    position: cython.double[::1]
+    velocity: cython.double[::1]
+    node: cython.double[::1]
+    weight: cython.double[::1]
+    last: cython.double[::1]
+    previous: cython.double[::1]
+    nodes: Vectors
+    value_at_node: Vectors
+    values: cython.double[::1]
+    resting: cython.bint
+    short: cython.bint
+
     def __init__(self, order: int, apart: float) -> None:
         self.degree = 0
         self.apart = apart
@@ -73,7 +87,7 @@ class Distance:
         self.resting = False
         self.short = order <= 3
 
-    def load(self, piece):
+    def load(self, piece: Piece) -> None:
         """Take d and d' from a piece."""
         k: cython.Py_ssize_t
         end: cython.Py_ssize_t = piece.blocks - 1
@@ -88,7 +102,7 @@ class Distance:
             self.resting = self.position[k] == 0.0 and self.velocity[k] == 0.0
             k += 1
 
-    def value(self, t):
+    def value(self, t: cython.double) -> cython.double:
         """Return J at time t of the piece."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.degree // 2
@@ -107,7 +121,7 @@ class Distance:
         rate += t * odd_rate
         return sqrt(d * d + rate * rate)
 
-    def integral(self, start, stop):
+    def integral(self, start: cython.double, stop: cython.double) -> cython.double:
         """Return the integral of J from start to stop, times of the piece."""
         middle: cython.double = 0.5 * (start + stop)
         half: cython.double = 0.5 * (stop - start)
@@ -121,7 +135,7 @@ class Distance:
             )
         return self._panel(start, stop, 0)
 
-    def _panel(self, start, stop, depth):
+    def _panel(self, start: cython.double, stop: cython.double, depth: cython.int) -> cython.double:
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t

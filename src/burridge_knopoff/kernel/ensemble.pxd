@@ -4,8 +4,6 @@ from burridge_knopoff.kernel.lane_series cimport LaneSeries
 from burridge_knopoff.kernel.lanes cimport Lanes
 from burridge_knopoff.kernel.vector cimport Vectors, mask
 
-cdef int UNDETERMINED
-
 cdef class Ensemble:
     cdef readonly Lanes lanes
     cdef readonly LaneSeries series

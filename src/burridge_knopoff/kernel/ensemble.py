@@ -5,8 +5,11 @@ A lane whose trajectory has ended takes the next one from the list. No number of
 other lanes, nor on where it ends: the end only cuts off.
 """
 
+from collections.abc import Sequence
+
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.clouds import Clouds
 from cython.cimports.burridge_knopoff.kernel.events import ABSURD_SPEED, ACCUMULATING_EVENTS, COMPLETED, DIVERGED
 from cython.cimports.burridge_knopoff.kernel.friction_series import FrictionSeries
 from cython.cimports.burridge_knopoff.kernel.lane_events import LaneEvents
@@ -31,7 +34,7 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     vec,
 )
 
-# Label of a trajectory that comes close to nothing.
+# Label of a trajectory that comes close to no cloud.
 UNDETERMINED = -1
 
 
@@ -45,21 +48,49 @@ class Ensemble:
     Raises ValueError for another order.
     """
 
+    lanes: Lanes
+    series: LaneSeries
+    events: LaneEvents
+    blocks: cython.Py_ssize_t
+    steps: cython.longlong
+    rounds: cython.longlong
+    active: mask
+    fresh: mask
+    end: cython.double
+    position: cython.double[:, ::1]
+    velocity: cython.double[:, ::1]
+    stuck: cython.int[:, ::1]
+    next_member: cython.Py_ssize_t
+    status: cython.int[::1]
+    time: cython.double[::1]
+    clouds: Clouds
+    streak: cython.Py_ssize_t[:, ::1]
+    returns: cython.Py_ssize_t[::1]
+    point: cython.double[::1]
+    target: Vectors
+    label_of: cython.int[::1]
+    sample_time: cython.double[::1]
+    sample_position: cython.double[:, :, ::1]
+    sample_velocity: cython.double[:, :, ::1]
+    sample_slip: cython.schar[:, :, ::1]
+    event_count: cython.longlong[::1]
+    next_sample: cython.Py_ssize_t[::1]
+
     def __init__(
         self,
-        diagonal,
-        left,
-        right,
-        threshold,
-        sliding_force,
+        diagonal: np.ndarray,
+        left: np.ndarray,
+        right: np.ndarray,
+        threshold: np.ndarray,
+        sliding_force: np.ndarray,
         v: float,
         symmetric: bool,
-        code,
-        first,
-        second,
-        alpha,
-        beta,
-        gamma,
+        code: np.ndarray,
+        first: np.ndarray,
+        second: np.ndarray,
+        alpha: np.ndarray,
+        beta: np.ndarray,
+        gamma: np.ndarray,
         value: int,
         rate_limit: int,
         order: int = 20,
@@ -76,7 +107,15 @@ class Ensemble:
         self.steps = 0
         self.rounds = 0
 
-    def label(self, position, velocity, stuck, clouds, returns, end: float) -> tuple[np.ndarray, np.ndarray]:
+    def label(
+        self,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        stuck: np.ndarray,
+        clouds: Clouds,
+        returns: Sequence[int],
+        end: float,
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return which cloud each state comes close to, −1 for none by time `end`, and when that was certain.
 
         position, velocity, stuck : x_i, U_i' and which blocks stick, shape (n, blocks)
@@ -96,7 +135,9 @@ class Ensemble:
         self._begin(position, velocity, stuck, times, np.zeros(n, dtype=np.intc), np.zeros(n, dtype=np.int64))
         return labels, times
 
-    def run(self, position, velocity, stuck, times, events: int = 0) -> dict[str, np.ndarray]:
+    def run(
+        self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray, times: Sequence[float], events: int = 0
+    ) -> dict[str, np.ndarray]:
         """Return the states of all trajectories at some times, and their first events.
 
         times : one at least, ascending; a state is that before the events of the same instant; the last is the end
@@ -131,7 +172,15 @@ class Ensemble:
         self._begin(position, velocity, stuck, result["end"], result["status"], result["event_count"])
         return result
 
-    def _begin(self, position, velocity, stuck, time, status, count) -> None:
+    def _begin(
+        self,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        stuck: np.ndarray,
+        time: np.ndarray,
+        status: np.ndarray,
+        count: np.ndarray,
+    ) -> None:
         """Run all trajectories, with what is known of each at its end in these arrays."""
         self.position = np.ascontiguousarray(position, dtype=float)
         self.velocity = np.ascontiguousarray(velocity, dtype=float)
@@ -142,7 +191,7 @@ class Ensemble:
         with cython.nogil:
             self._run()
 
-    def _run(self):
+    def _run(self) -> None:
         """Go on until every trajectory has ended."""
         self._refill()
         while bits(self.active):
@@ -154,7 +203,7 @@ class Ensemble:
             self._visit(self._move())
             self._refill()
 
-    def _move(self):
+    def _move(self) -> mask:
         """Move every lane to its next event, or as far as its series goes; return where the first block has stopped."""
         i: cython.Py_ssize_t
         zero: vec = splat(0.0)
@@ -191,7 +240,7 @@ class Ensemble:
         self.lanes.settle(event)
         return event & ~equal(slipped, zero) & equal(self.lanes.slip.at[0], zero)
 
-    def _sample(self):
+    def _sample(self) -> None:
         """Keep the states at the times that lie within the coming step."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -220,12 +269,12 @@ class Ensemble:
                 if due >> lane & 1:
                     self._aim(lane, self.next_sample[lane] + 1)
 
-    def _aim(self, lane, k):
+    def _aim(self, lane: cython.int, k: cython.Py_ssize_t) -> None:
         """Let the k-th time of a lane be the next at which its state is kept."""
         self.next_sample[lane] = k
         put(self.target.at, lane, self.sample_time[k] if k < self.sample_time.shape[0] else LONG)
 
-    def _visit(self, where):
+    def _visit(self, where: mask) -> None:
         """Look at the returns of some lanes; a lane is done when enough of them have been near one cloud."""
         i: cython.Py_ssize_t
         cloud: cython.Py_ssize_t
@@ -249,7 +298,7 @@ class Ensemble:
                     self._finish(from_bits(1 << lane), COMPLETED)
                     break
 
-    def _finish(self, where, status):
+    def _finish(self, where: mask, status: cython.int) -> None:
         """End the trajectories of some lanes."""
         lane: cython.int
         ending: cython.int = bits(where)
@@ -264,7 +313,7 @@ class Ensemble:
                 )
         self.active = self.active & ~where
 
-    def _refill(self):
+    def _refill(self) -> None:
         """Let the next trajectories begin in the lanes that are free."""
         lane: cython.int
         i: cython.Py_ssize_t

@@ -6,6 +6,7 @@ its only approximation is the event time.
 """
 
 import cython
+import numpy as np
 from cython.cimports.burridge_knopoff.kernel.events import (
     ABSURD_SPEED,
     ACCUMULATING_EVENTS,
@@ -15,15 +16,19 @@ from cython.cimports.burridge_knopoff.kernel.events import (
     RUNNING,
     STEP_LIMIT,
     STEPS_PER_CALL,
+    EventLog,
 )
+from cython.cimports.burridge_knopoff.kernel.exponents import Exponents
 from cython.cimports.burridge_knopoff.kernel.modes import Modes
+from cython.cimports.burridge_knopoff.kernel.observe import Observer
 from cython.cimports.burridge_knopoff.kernel.piece import ORDER, Piece
 from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate, evaluate_slope
 from cython.cimports.burridge_knopoff.kernel.search import EventSearch
 from cython.cimports.burridge_knopoff.kernel.series import Series
-from cython.cimports.burridge_knopoff.kernel.state import YOUNG
+from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
+from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 
-# Without events, perturbations are still to be kept apart now and then.
+# Longest time over which perturbations are followed at once: without events, too, they have to be kept apart.
 LONGEST_FOLLOW = 4.0
 
 
@@ -33,7 +38,29 @@ class EventDriven:
     exponents : the perturbations that are propagated beside the run; Exponents with no vectors for none
     """
 
-    def __init__(self, state, log, observer, exponents, closed_form: bool, step_limit: int) -> None:
+    state: State
+    log: EventLog
+    observer: Observer
+    observing: cython.bint
+    exponents: Exponents
+    tangent: Tangent
+    since_tangent: cython.double
+    halting_block: cython.Py_ssize_t
+    end: cython.double
+    series: Series
+    piece: Piece
+    search: EventSearch
+    modes: Modes
+    closed_form: cython.bint
+    clock: cython.double
+    clock_rest: cython.double
+    steps: cython.longlong
+    step_limit: cython.longlong
+    since_event: cython.double
+
+    def __init__(
+        self, state: State, log: EventLog, observer: Observer, exponents: Exponents, closed_form: bool, step_limit: int
+    ) -> None:
         self.state = state
         self.log = log
         self.observer = observer
@@ -52,12 +79,12 @@ class EventDriven:
         self.step_limit = step_limit
         self.restart()
 
-    def begin(self, position, velocity, stuck) -> None:
+    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
         """Begin again at τ = 0 from these positions x_i, velocities U_i' and stuck blocks."""
         self.state.begin(position, velocity, stuck)
         self.restart()
 
-    def restart(self):
+    def restart(self) -> None:
         """Begin again at τ = 0 from what is now the state."""
         self.clock = 0.0
         self.clock_rest = 0.0
@@ -76,7 +103,7 @@ class EventDriven:
             status = self._run()
         return status
 
-    def _run(self):
+    def _run(self) -> cython.int:
         block: cython.Py_ssize_t
         halting: cython.bint
         due: cython.bint
@@ -138,7 +165,7 @@ class EventDriven:
                 return HALTED
         return RUNNING
 
-    def _follow(self, length, due):
+    def _follow(self, length: cython.double, due: cython.bint) -> None:
         """Carry the perturbations along a piece, in strides after which they can be kept apart.
 
         The closed form spans several pieces: there they wait for an event or LONGEST_FOLLOW.
@@ -167,7 +194,7 @@ class EventDriven:
             if self.since_tangent > 0.0:
                 self.exponents.follow(self.state, self.clock + (length - self.since_tangent), False)
 
-    def _fastest(self):
+    def _fastest(self) -> cython.double:
         """Return the largest speed of a block."""
         i: cython.Py_ssize_t
         speed: cython.double = 0.0
@@ -175,7 +202,7 @@ class EventDriven:
             speed = max(speed, abs(self.state.velocity[i]))
         return speed
 
-    def _advance(self, t):
+    def _advance(self, t: cython.double) -> None:
         """Move the state on by t along the piece."""
         i: cython.Py_ssize_t
         if not self.closed_form:

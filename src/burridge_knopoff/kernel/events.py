@@ -1,7 +1,8 @@
-"""Stops and starts: how they are carried out, kept, and told from an accumulation of events."""
+"""Stops and starts: how they are carried out and kept, and when there are so many that they accumulate."""
 
 import cython
 from cython.cimports.burridge_knopoff.kernel.record import Record
+from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 
 STEPS_PER_CALL = 1_000_000
@@ -18,6 +19,17 @@ class EventLog:
     time unit count as an accumulation.
     """
 
+    states_from: cython.double
+    keep: cython.bint
+    earlier_events: Record
+    events: Record
+    count: cython.longlong
+    unit_start: cython.double
+    unit_count: cython.longlong
+    rate_limit: cython.longlong
+    accumulating: cython.bint
+    tangent: Tangent
+
     def __init__(self, blocks: int, states_from: float, keep: bool, rate_limit: int) -> None:
         self.states_from = states_from
         self.keep = keep
@@ -30,18 +42,18 @@ class EventLog:
         self.accumulating = False
         self.tangent = Tangent(blocks, 0, 1)
 
-    def carry(self, tangent) -> None:
+    def carry(self, tangent: Tangent) -> None:
         """Let perturbations go through every change as well."""
         self.tangent = tangent
 
-    def restart(self):
+    def restart(self) -> None:
         """Count from 0 again; what is kept stays."""
         self.count = 0
         self.unit_start = 0.0
         self.unit_count = 0
         self.accumulating = False
 
-    def change(self, state, block, clock):
+    def change(self, state: State, block: cython.Py_ssize_t, clock: cython.double) -> None:
         """Let a block stop or start now, and keep the event."""
         i: cython.Py_ssize_t
         row: cython.Py_ssize_t
@@ -70,7 +82,7 @@ class EventLog:
             self.events.value[row, 2 + i] = state.position[i]
             self.events.value[row, 2 + state.blocks + i] = state.velocity[i]
 
-    def settle(self, state, clock):
+    def settle(self, state: State, clock: cython.double) -> None:
         """Carry out every change that is due at this instant, to the last one, before time moves on."""
         i: cython.Py_ssize_t
         due: cython.int = 1

@@ -7,7 +7,7 @@ cdef double NEVER
 
 cdef class Exponents:
     cdef readonly Tangent tangent
-    cdef double begin
+    cdef double start_time
     cdef double[::1] edge
     cdef readonly bint running
     cdef readonly Py_ssize_t alive
@@ -15,7 +15,7 @@ cdef class Exponents:
     cdef double due
     cdef Py_ssize_t batch
     cdef Py_ssize_t batches
-    cdef double batch_begin
+    cdef double batch_start
     cdef double[::1] whole
     cdef double[::1] product
     cdef double[:, ::1] growth

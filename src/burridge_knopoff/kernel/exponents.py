@@ -1,15 +1,18 @@
 """Lyapunov exponents from perturbations that are orthonormalised again and again.
 
 While m blocks are stuck at once, their m velocity perturbations are 0, so that at least as many exponents are −∞ as
-blocks are ever stuck at the same time. More are where a stuck block parts a chain whose parts lose perturbations one
-after the other. Vectors that are lost are dropped, and the growth of the others is collected batch by batch; a batch
-begins and ends with the first orthonormalisation after its edge.
+blocks are ever stuck at the same time. There are more where a stuck block divides the chain into parts that lose
+perturbations one after the other. Vectors that are lost are dropped, and the growth of the others is collected batch by
+batch; a batch begins and ends with the first orthonormalisation after its edge.
 
 Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
 """
 
+from collections.abc import Sequence
+
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 from cython.cimports.libc.math import cos, log, sqrt
 
@@ -25,14 +28,31 @@ NEVER = 1e300
 class Exponents:
     """Growth of the perturbations of a run.
 
-    begin : the perturbations start with the piece of the motion in which this time lies; until the first edge they only
-        turn into the growing directions
+    start_time : the perturbations start with the piece of the motion in which this time lies; until the first edge they
+        only turn into the growing directions
     edge : boundaries of the batches, shape (batches + 1,)
     """
 
-    def __init__(self, blocks, vectors, order, begin, edge) -> None:
+    tangent: Tangent
+    start_time: cython.double
+    edge: cython.double[::1]
+    running: cython.bint
+    alive: cython.Py_ssize_t
+    most_stuck: cython.Py_ssize_t
+    due: cython.double
+    batch: cython.Py_ssize_t
+    batches: cython.Py_ssize_t
+    batch_start: cython.double
+    whole: cython.double[::1]
+    product: cython.double[::1]
+    growth: cython.double[:, ::1]
+    duration: cython.double[::1]
+
+    def __init__(
+        self, blocks: int, vectors: int, order: int, start_time: float, edge: Sequence[float] | np.ndarray
+    ) -> None:
         self.tangent = Tangent(blocks, vectors, order)
-        self.begin = begin if vectors > 0 else NEVER
+        self.start_time = start_time if vectors > 0 else NEVER
         self.edge = np.array(edge, dtype=float)
         self.running = False
         self.alive = 0
@@ -40,32 +60,32 @@ class Exponents:
         self.due = 0.0
         self.batch = -1
         self.batches = len(edge) - 1
-        self.batch_begin = 0.0
+        self.batch_start = 0.0
         self.whole = np.zeros(vectors)
         # Lengths multiplied up, whose logarithm is taken at the end of a batch, or before it could overflow.
         self.product = np.ones(vectors)
         self.growth = np.zeros((self.batches, vectors))
         self.duration = np.zeros(self.batches)
 
-    def carry(self, matrix) -> None:
+    def carry(self, matrix: np.ndarray) -> None:
         """Carry the columns of a matrix (2 blocks, vectors) from now on as they are, never orthonormalised."""
         self.tangent.load(matrix)
         self.running = True
         self.due = NEVER
         self.most_stuck = self.tangent.blocks
 
-    def begin_within(self, state, clock, length):
-        """Let the perturbations start now if their time comes within a piece of this length."""
-        if self.running or clock + length <= self.begin:
+    def begin_within(self, state: State, clock: cython.double, length: cython.double) -> None:
+        """Start the perturbations now if their time comes within a piece of this length."""
+        if self.running or clock + length <= self.start_time:
             return
         self.running = True
         self._seed(state, 0)
         self.due = clock + INTERVAL
         if clock >= self.edge[0]:
             self.batch = 0
-            self.batch_begin = clock
+            self.batch_start = clock
 
-    def follow(self, state, clock, completed):
+    def follow(self, state: State, clock: cython.double, completed: cython.bint) -> None:
         """Look after the perturbations at a time, when all changes of this instant are done."""
         stuck: cython.Py_ssize_t = self.stuck(state)
         if stuck > self.most_stuck:
@@ -76,7 +96,7 @@ class Exponents:
         if clock >= self.due or (completed and self.alive > 0):
             self._renew(state, clock, completed)
 
-    def stuck(self, state):
+    def stuck(self, state: State) -> cython.Py_ssize_t:
         """Return the number of stuck blocks."""
         i: cython.Py_ssize_t
         count: cython.Py_ssize_t = 0
@@ -84,7 +104,7 @@ class Exponents:
             count += state.slip[i] == 0
         return count
 
-    def _seed(self, state, first):
+    def _seed(self, state: State, first: cython.Py_ssize_t) -> None:
         """Give the vectors from `first` on directions of no special symmetry, as many as the stuck blocks allow."""
         i: cython.Py_ssize_t
         c: cython.Py_ssize_t
@@ -96,7 +116,7 @@ class Exponents:
                 self.tangent.velocity[c, i] = cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip[i] != 0)
         self._orthonormalise(False, False)
 
-    def _square(self, c):
+    def _square(self, c: cython.Py_ssize_t) -> cython.double:
         """Return the square of the length of vector c."""
         i: cython.Py_ssize_t
         moved: cython.double = 0.0
@@ -106,7 +126,7 @@ class Exponents:
             sped += self.tangent.velocity[c, i] * self.tangent.velocity[c, i]
         return moved + sped
 
-    def _orthonormalise(self, kept, counted):
+    def _orthonormalise(self, kept: cython.bint, counted: cython.bint) -> None:
         """Make the vectors orthonormal (modified Gram-Schmidt).
 
         kept : vectors that were orthonormal before are dropped from the first one on that is lost; else they are seeds
@@ -147,12 +167,12 @@ class Exponents:
                     self.tangent.position[d, i] -= (moved + sped) * self.tangent.position[c, i]
                     self.tangent.velocity[d, i] -= (moved + sped) * self.tangent.velocity[c, i]
 
-    def _collect(self, c):
+    def _collect(self, c: cython.Py_ssize_t) -> None:
         """Add the growth of vector c since the last call to its batch."""
         self.growth[self.batch, c] += log(self.product[c])
         self.product[c] = 1.0
 
-    def _renew(self, state, clock, completed):
+    def _renew(self, state: State, clock: cython.double, completed: cython.bint) -> None:
         """Orthonormalise, and go on to the batch in which the time now lies."""
         c: cython.Py_ssize_t
         self._orthonormalise(True, self.batch >= 0 and self.batch < self.batches)
@@ -161,14 +181,14 @@ class Exponents:
             clock >= self.edge[self.batch + 1] or (completed and self.batch == self.batches - 1)
         ):
             if self.batch >= 0:
-                self.duration[self.batch] = clock - self.batch_begin
+                self.duration[self.batch] = clock - self.batch_start
                 for c in range(self.alive):
                     self._collect(c)
             else:
-                # What was stuck in the transient only costs no exponent of the window.
+                # Blocks that were stuck only in the transient cost no exponent of the window.
                 self._seed(state, self.alive)
             self.batch += 1
-            self.batch_begin = clock
+            self.batch_start = clock
 
     def results(self) -> dict:
         """Return `growth` (batches, vectors), −∞ for dropped vectors, `duration` (batches,) and how many are `lost`.

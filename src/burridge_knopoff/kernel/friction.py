@@ -38,7 +38,36 @@ class Friction:
     rate : −dΦ/dU' at rest; steepest : largest modulus of threshold times slope that occurs
     """
 
-    def __init__(self, operations, constants, value, slope, linear, rate, steepest, columns, order) -> None:
+    value: cython.int
+    slope: cython.int
+    linear: cython.bint
+    hyperbolic: cython.bint
+    scale: cython.double
+    rate: cython.double
+    steepest: cython.double
+    at_rest: cython.double
+    columns: cython.Py_ssize_t
+    length: cython.Py_ssize_t
+    operation: cython.int[:, ::1]
+    constant: cython.double[:, ::1]
+    reciprocal: cython.double[::1]
+    register: Vectors
+    inverse: Vectors
+    slopes: Vectors
+    number: cython.double[::1]
+
+    def __init__(
+        self,
+        operations: np.ndarray,
+        constants: np.ndarray,
+        value: int,
+        slope: int,
+        linear: bool,
+        rate: float,
+        steepest: float,
+        columns: int,
+        order: int,
+    ) -> None:
         self.operation = np.array(operations, dtype=np.intc)
         self.constant = np.array(constants, dtype=float)
         self.value = value
@@ -60,10 +89,10 @@ class Friction:
         self.number = np.zeros(len(operations) + 1)
         self.at_rest = self.at(0.0)
         if abs(self.at_rest - 1.0) < ROUNDING:
-            # As friction at rest is 1: rounding must not make a block start with an acceleration.
+            # Exactly 1: rounding must not give a block an acceleration at its start.
             self.at_rest = 1.0
 
-    def at(self, speed):
+    def at(self, speed: cython.double) -> cython.double:
         """Return Φ at a speed."""
         r: cython.Py_ssize_t
         code: cython.int
@@ -92,7 +121,7 @@ class Friction:
             self.number[r + 1] = made
         return self.number[self.value]
 
-    def start(self, column, speed):
+    def start(self, column: cython.Py_ssize_t, speed: vec) -> None:
         """Fill coefficient 0 of all registers from a speed, and their derivatives by it."""
         r: cython.int
         line: vec
@@ -116,11 +145,11 @@ class Friction:
         for r in range(self.value + 1):
             slopes(self, column)[r] = row(self, r, column)[1]
 
-    def extend(self, column, n, first, last):
+    def extend(self, column: cython.Py_ssize_t, n: cython.Py_ssize_t, first: cython.int, last: cython.int) -> None:
         """Do the work of `fill` where it need not be inline."""
         fill(self, column, n, first, last)
 
-    def complete(self, column, first, count):
+    def complete(self, column: cython.Py_ssize_t, first: cython.Py_ssize_t, count: cython.Py_ssize_t) -> None:
         """Fill coefficients first … count − 1 of the registers of the slope, when those of Φ are complete."""
         r: cython.int
         n: cython.Py_ssize_t

@@ -41,7 +41,36 @@ class FrictionSeries:
     value : the register that is Φ
     """
 
-    def __init__(self, columns: int, order: int, code, first, second, alpha, beta, gamma, value: int) -> None:
+    columns: cython.Py_ssize_t
+    length: cython.Py_ssize_t
+    operations: cython.Py_ssize_t
+    affine: cython.bint
+    constant: cython.double
+    slope: cython.double
+    register: Vectors
+    weighted: Vectors
+    inverse: Vectors
+    result: cython.Py_ssize_t
+    code: cython.int[::1]
+    first: cython.int[::1]
+    second: cython.int[::1]
+    alpha: cython.double[::1]
+    beta: cython.double[::1]
+    gamma: cython.double[::1]
+    reciprocal: cython.double[::1]
+
+    def __init__(
+        self,
+        columns: int,
+        order: int,
+        code: np.ndarray,
+        first: np.ndarray,
+        second: np.ndarray,
+        alpha: np.ndarray,
+        beta: np.ndarray,
+        gamma: np.ndarray,
+        value: int,
+    ) -> None:
         self.columns = columns
         self.length = order + 1
         self.operations = len(code)
@@ -68,7 +97,7 @@ class FrictionSeries:
         self.inverse = Vectors(self.operations * columns)
         self.result = value * size
 
-    def begin(self, column):
+    def begin(self, column: cython.Py_ssize_t) -> None:
         """Fill coefficient 0 of one column of all registers from that of register 0."""
         r: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -101,7 +130,7 @@ class FrictionSeries:
                 else:
                     at[out] = each_power(at[i], alpha)
 
-    def extend(self, n):
+    def extend(self, n: cython.Py_ssize_t) -> None:
         """Fill coefficient n ≥ 1 of all registers from that of register 0 and the coefficients before."""
         r: cython.Py_ssize_t
         for r in range(self.operations):
@@ -112,7 +141,7 @@ class FrictionSeries:
             else:
                 self._convolve(r, n)
 
-    def _add(self, r, n):
+    def _add(self, r: cython.Py_ssize_t, n: cython.Py_ssize_t) -> None:
         """Extend α r_i + β r_j + γ."""
         _column: cython.Py_ssize_t
         at: cython.pointer[vec] = self.register.at
@@ -128,7 +157,7 @@ class FrictionSeries:
             j += self.length
             out += self.length
 
-    def _divide(self, r, n):
+    def _divide(self, r: cython.Py_ssize_t, n: cython.Py_ssize_t) -> None:
         """Extend α / r_i: the product of the two is α."""
         column: cython.Py_ssize_t
         at: cython.pointer[vec] = self.register.at
@@ -141,7 +170,7 @@ class FrictionSeries:
             i += self.length
             out += self.length
 
-    def _convolve(self, r, n):
+    def _convolve(self, r: cython.Py_ssize_t, n: cython.Py_ssize_t) -> None:
         """Extend any other operation."""
         column: cython.Py_ssize_t
         i: cython.Py_ssize_t

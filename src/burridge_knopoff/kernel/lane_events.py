@@ -10,6 +10,8 @@ import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
 from cython.cimports.burridge_knopoff.kernel.lane_proof import LOW, LaneProof
+from cython.cimports.burridge_knopoff.kernel.lane_series import LaneSeries
+from cython.cimports.burridge_knopoff.kernel.lanes import Lanes
 from cython.cimports.burridge_knopoff.kernel.vector import (
     LANES,
     Vectors,
@@ -43,6 +45,16 @@ class LaneEvents:
     searches : how often a lane had to be searched by `bernstein`
     """
 
+    order: cython.Py_ssize_t
+    searches: cython.longlong
+    proof: LaneProof
+    time: Vectors
+    block: Vectors
+    candidate: Vectors
+    offset: cython.Py_ssize_t[::1]
+    doubtful: mask
+    polynomial: SearchedPolynomial
+
     def __init__(self, order: int) -> None:
         self.order = order
         self.searches = 0
@@ -54,7 +66,7 @@ class LaneEvents:
         self.proof = LaneProof(order)
         self.polynomial = SearchedPolynomial(order)
 
-    def find(self, lanes, series, where):
+    def find(self, lanes: Lanes, series: LaneSeries, where: mask) -> None:
         """Find the first events within the reach of the series, in some lanes; `series.power` is that of `time`."""
         lane: cython.int
         searched: cython.int
@@ -72,7 +84,7 @@ class LaneEvents:
                     self._search(lanes, series, lane)
             series.raise_powers(self.time.at[0])
 
-    def _deflate(self, lanes, series, where):
+    def _deflate(self, lanes: Lanes, series: LaneSeries, where: mask) -> None:
         """Divide known roots at t = 0 out of the gaps: a block that has just started has U' = U'' = 0."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -96,7 +108,7 @@ class LaneEvents:
                 gap[self.order * series.width] = select(roots, zero, gap[self.order * series.width])
                 roots = roots & equal(gap[0], zero)
 
-    def _guess(self, series):
+    def _guess(self, series: LaneSeries) -> None:
         """Set `time` and `block` to the earliest fall below 0 that samples of the gaps show, or to the reach and −1."""
         i: cython.Py_ssize_t
         k: cython.int
@@ -148,7 +160,7 @@ class LaneEvents:
         self.time.at[0] = time
         self.block.at[0] = block
 
-    def _improve(self, reach):
+    def _improve(self, reach: vec) -> None:
         """Refine the guesses by Halley's method on the first terms."""
         k: cython.int
         _iteration: cython.int
@@ -169,7 +181,7 @@ class LaneEvents:
             t = select(less(splat(0.0), value) & at_most(value, reach), value, t)
         self.time.at[0] = t
 
-    def _solve(self, series, where):
+    def _solve(self, series: LaneSeries, where: mask) -> None:
         """Set `time` to the root near the guess, the reach and −1 if it lies beyond."""
         k: cython.Py_ssize_t
         _iteration: cython.int
@@ -219,7 +231,7 @@ class LaneEvents:
         self.time.at[0] = select(converged, reach, t)
         self.block.at[0] = select(converged, splat(-1.0), self.block.at[0])
 
-    def _shorten(self, where):
+    def _shorten(self, where: mask) -> None:
         """Let lanes without a proof go as far as it holds, without an event, or be doubtful if that is not far."""
         cut: vec = self.proof.cut.at[0]
         short: mask = where & less(cut, splat(1.0)) & ~self.doubtful
@@ -227,7 +239,7 @@ class LaneEvents:
         self.time.at[0] = select(short, cut * self.time.at[0], self.time.at[0])
         self.block.at[0] = select(short, splat(-1.0), self.block.at[0])
 
-    def _search(self, lanes, series, lane):
+    def _search(self, lanes: Lanes, series: LaneSeries, lane: cython.int) -> None:
         """Search all gaps of one lane over the whole reach."""
         i: cython.Py_ssize_t
         side: cython.int
@@ -247,7 +259,7 @@ class LaneEvents:
         put(self.time.at, lane, time)
         put(self.block.at, lane, block)
 
-    def _load(self, lanes, series, lane, i, side):
+    def _load(self, lanes: Lanes, series: LaneSeries, lane: cython.int, i: cython.Py_ssize_t, side: cython.int) -> None:
         """Load the gap of a block of one lane, for a stuck block that to a threshold ahead (1) or behind (−1)."""
         k: cython.Py_ssize_t
         near: cython.bint

@@ -11,6 +11,8 @@ import math
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.lane_proof import LOW, to_bernstein
+from cython.cimports.burridge_knopoff.kernel.lane_series import LaneSeries
+from cython.cimports.burridge_knopoff.kernel.lanes import Lanes
 from cython.cimports.burridge_knopoff.kernel.vector import (
     Vectors,
     at_most,
@@ -35,9 +37,16 @@ SIMULTANEOUS = 1e-14
 class LaneProof:
     """The work space of a proof for series of the given order.
 
-    `cut` is the share of the way on which no gap has a root, 1 if that is all of it; `failed` tells where a stuck block
+    `cut` is the share of the way on which no gap has a root, 1 if that is all of it; `failed` marks where a stuck block
     may start backward on the way.
     """
+
+    order: cython.Py_ssize_t
+    bernstein: Vectors
+    weight: Vectors
+    cut: Vectors
+    failed: mask
+    inverse_binomial: cython.double[::1]
 
     def __init__(self, order: int) -> None:
         self.order = order
@@ -47,7 +56,7 @@ class LaneProof:
         self.failed = from_bits(0)
         self.inverse_binomial = np.array([1.0 / math.comb(LOW, k) for k in range(LOW + 1)])
 
-    def prove(self, lanes, series, block, candidate, where):
+    def prove(self, lanes: Lanes, series: LaneSeries, block: vec, candidate: cython.pointer[vec], where: mask) -> None:
         """Set `cut` and `failed`: no gap may have a root before t*, whose powers are in `series.power`.
 
         block : the block whose gap has a root at t*, −1 for none; candidate : the terms of that gap
@@ -102,7 +111,7 @@ class LaneProof:
                 to_bernstein(b)
             self._shorten(rest, failing)
 
-    def _bound(self, c, stride, series):
+    def _bound(self, c: cython.pointer[vec], stride: cython.Py_ssize_t, series: LaneSeries) -> vec:
         """Load the first terms of a gap for `to_bernstein`, and return the sum of what the others amount to."""
         k: cython.Py_ssize_t
         rest: vec = splat(0.0)
@@ -112,7 +121,7 @@ class LaneProof:
             rest = rest + magnitude(c[k * stride] * series.power.at[k])
         return rest
 
-    def _falls(self, c, stride, series):
+    def _falls(self, c: cython.pointer[vec], stride: cython.Py_ssize_t, series: LaneSeries) -> mask:
         """Tell where (p(u) − p(1)) / (1 − u) is positive on the whole way, for the terms of one gap p."""
         k: cython.Py_ssize_t
         total: vec = splat(0.0)
@@ -128,7 +137,7 @@ class LaneProof:
         total = to_bernstein(b)
         return at_most(splat(0.0), least(total, b[LOW] - rest))
 
-    def _shorten(self, rest, failing):
+    def _shorten(self, rest: vec, failing: mask) -> None:
         """Let `cut` be no more than the share of the way on which a line below the coefficients is positive."""
         k: cython.int
         b: cython.pointer[vec] = self.bernstein.at

@@ -7,6 +7,7 @@ import math
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.lanes import Lanes
 from cython.cimports.burridge_knopoff.kernel.state import YOUNG
 from cython.cimports.burridge_knopoff.kernel.vector import (
     LANES,
@@ -54,6 +55,21 @@ class LaneSeries:
     order : even
     """
 
+    blocks: cython.Py_ssize_t
+    order: cython.Py_ssize_t
+    width: cython.Py_ssize_t
+    position: Vectors
+    velocity: Vectors
+    gap: Vectors
+    slipping: Vectors
+    stuck: Vectors
+    grip: Vectors
+    power: Vectors
+    reach: Vectors
+    reciprocal: cython.double[::1]
+    step_of_last: cython.double[::1]
+    step_of_previous: cython.double[::1]
+
     def __init__(self, blocks: int, order: int) -> None:
         self.blocks = blocks
         self.order = order
@@ -71,7 +87,7 @@ class LaneSeries:
         self.step_of_last = steps(order, TRUNCATION)
         self.step_of_previous = steps(order - 1, RATIO * TRUNCATION)
 
-    def expand(self, lanes):
+    def expand(self, lanes: Lanes) -> None:
         """Fill the series with the motion that starts from the states, and `reach`: 0 where a state has no motion."""
         n: cython.Py_ssize_t
         self._begin(lanes)
@@ -84,7 +100,7 @@ class LaneSeries:
         self._last_row(lanes)
         self._bound()
 
-    def _begin(self, lanes):
+    def _begin(self, lanes: Lanes) -> None:
         """Fill the rows 0 and 1 that follow from the states."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -104,14 +120,14 @@ class LaneSeries:
             self.velocity.at[k + self.width] = self.slipping.at[i] * lanes.slip_acceleration(i, force)
             self.position.at[k + self.width] = lanes.velocity.at[i] - v
 
-    def _close_ring(self, lanes, n):
+    def _close_ring(self, lanes: Lanes, n: cython.Py_ssize_t) -> None:
         """Put the positions of the last and the first block beside those of their neighbours round a ring."""
         x: cython.pointer[vec] = self.position.at + n * self.width
         if lanes.ring:
             x[0] = x[self.blocks]
             x[self.blocks + 1] = x[1]
 
-    def _affine_row(self, lanes, n):
+    def _affine_row(self, lanes: Lanes, n: cython.Py_ssize_t) -> None:
         """Fill row n of the gaps and row n + 1 of positions and velocities from row n of them, for an affine law."""
         i: cython.Py_ssize_t
         width: cython.Py_ssize_t = self.width
@@ -131,7 +147,7 @@ class LaneSeries:
             scale = factor * self.slipping.at[i]
             w[width + i] = scale * force - (scale * lanes.slope[i]) * speed
 
-    def _row(self, lanes, n):
+    def _row(self, lanes: Lanes, n: cython.Py_ssize_t) -> None:
         """Do the same for any other law."""
         i: cython.Py_ssize_t
         width: cython.Py_ssize_t = self.width
@@ -152,7 +168,7 @@ class LaneSeries:
             x[width + i] = factor * w[i]
             w[width + i] = (force - self.grip.at[i] * friction[i * length]) * (factor * self.slipping.at[i])
 
-    def _last_row(self, lanes):
+    def _last_row(self, lanes: Lanes) -> None:
         """Fill the last row of the gaps."""
         i: cython.Py_ssize_t
         x: cython.pointer[vec] = self.position.at + self.order * self.width + 1
@@ -164,7 +180,7 @@ class LaneSeries:
             force = (lanes.left[i] * x[i - 1] + lanes.right[i] * x[i + 1]) - lanes.diagonal[i] * x[i]
             gap[i] = lanes.slip.at[i] * w[i] - self.stuck.at[i] * force
 
-    def _bound(self):
+    def _bound(self) -> None:
         """Set the time over which the first neglected terms stay below TRUNCATION."""
         i: cython.Py_ssize_t
         lane: cython.int
@@ -184,7 +200,7 @@ class LaneSeries:
                 ),
             )
 
-    def raise_powers(self, t):
+    def raise_powers(self, t: vec) -> None:
         """Set `power` to those of t."""
         k: cython.Py_ssize_t
         power: cython.pointer[vec] = self.power.at
@@ -205,7 +221,7 @@ class LaneSeries:
             three = three * fourth
             four = four * fourth
 
-    def move(self, lanes, t, where):
+    def move(self, lanes: Lanes, t: vec, where: mask) -> None:
         """Move the states of some lanes on by t, whose powers are in `power`."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -239,7 +255,7 @@ class LaneSeries:
                     w = w * t + cython.cast(cython.double, k) * self.velocity.at[at + k * width]
                 lanes.acceleration.at[i] = select(young, w, lanes.acceleration.at[i])
 
-    def at_time(self, series, i, t):
+    def at_time(self, series: Vectors, i: cython.Py_ssize_t, t: vec) -> vec:
         """Return block i's value of a series at t."""
         k: cython.Py_ssize_t
         total: vec = series.at[self.order * self.width + i + 1]

@@ -10,6 +10,7 @@ moves as its mirror image, bit for bit.
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.friction import ROUNDING
+from cython.cimports.burridge_knopoff.kernel.friction_series import FrictionSeries
 from cython.cimports.burridge_knopoff.kernel.state import AT_THRESHOLD, COINCIDENCE, LONG, YOUNG
 from cython.cimports.burridge_knopoff.kernel.vector import (
     LANES,
@@ -40,8 +41,50 @@ class Lanes:
     rate_limit : more events in one time unit than this count as an accumulation
     """
 
+    blocks: cython.Py_ssize_t
+    symmetric: cython.bint
+    v: cython.double
+    static_friction: cython.double
+    friction: FrictionSeries
+    diagonal: cython.double[::1]
+    left: cython.double[::1]
+    right: cython.double[::1]
+    threshold: cython.double[::1]
+    sliding_force: cython.double[::1]
+    slope: cython.double[::1]
+    ring: cython.bint
+    lower: cython.Py_ssize_t[::1]
+    upper: cython.Py_ssize_t[::1]
+    position: Vectors
+    velocity: Vectors
+    acceleration: Vectors
+    age: Vectors
+    slip: Vectors
+    touching: Vectors
+    clock: Vectors
+    clock_rest: Vectors
+    count: Vectors
+    unit_start: Vectors
+    unit_count: Vectors
+    rate_limit: cython.double
+    accumulating: mask
+    member: cython.Py_ssize_t[::1]
+    kept: cython.Py_ssize_t
+    event_time: cython.double[:, ::1]
+    event_block: cython.int[:, ::1]
+    event_kind: cython.int[:, ::1]
+
     def __init__(
-        self, diagonal, left, right, threshold, sliding_force, v: float, symmetric: bool, friction, rate_limit: int
+        self,
+        diagonal: np.ndarray,
+        left: np.ndarray,
+        right: np.ndarray,
+        threshold: np.ndarray,
+        sliding_force: np.ndarray,
+        v: float,
+        symmetric: bool,
+        friction: FrictionSeries,
+        rate_limit: int,
     ) -> None:
         n = len(diagonal)
         self.blocks = n
@@ -79,7 +122,14 @@ class Lanes:
         if abs(self.static_friction - 1.0) < ROUNDING:
             self.static_friction = 1.0
 
-    def place(self, lane, member, position, velocity, stuck):
+    def place(
+        self,
+        lane: cython.int,
+        member: cython.Py_ssize_t,
+        position: cython.double[::1],
+        velocity: cython.double[::1],
+        stuck: cython.int[::1],
+    ) -> None:
         """Let a member begin in a lane at τ = 0, from positions x_i, velocities U_i' and which blocks are stuck."""
         i: cython.Py_ssize_t
         self.member[lane] = member
@@ -97,20 +147,20 @@ class Lanes:
         put(self.unit_count.at, lane, 0.0)
         self.accumulating = self.accumulating & ~from_bits(1 << lane)
 
-    def spring_force(self, i):
+    def spring_force(self, i: cython.Py_ssize_t) -> vec:
         """Return s_i."""
         x: cython.pointer[vec] = self.position.at
         pull: vec = self.left[i] * x[self.lower[i]] + self.right[i] * x[self.upper[i]]
         return self.sliding_force[i] + (pull - self.diagonal[i] * x[i])
 
-    def force_rate(self, i):
+    def force_rate(self, i: cython.Py_ssize_t) -> vec:
         """Return ds_i/dτ."""
         w: cython.pointer[vec] = self.velocity.at
         v: cython.double = self.v
         pull: vec = self.left[i] * (w[self.lower[i]] - v) + self.right[i] * (w[self.upper[i]] - v)
         return pull - self.diagonal[i] * (w[i] - v)
 
-    def friction_of(self, i, speed):
+    def friction_of(self, i: cython.Py_ssize_t, speed: vec) -> vec:
         """Return Φ(|U_i'|); the first row of column i of the friction series is that of this speed."""
         if self.friction.affine:
             return self.friction.constant + self.friction.slope * speed
@@ -118,13 +168,13 @@ class Lanes:
         self.friction.begin(i)
         return self.friction.register.at[self.friction.result + i * self.friction.length]
 
-    def slip_acceleration(self, i, force):
+    def slip_acceleration(self, i: cython.Py_ssize_t, force: vec) -> vec:
         """Return U_i'' where block i slips under this spring force."""
         slip: vec = self.slip.at[i]
         whole: vec = force - self.threshold[i] * slip * self.friction_of(i, magnitude(self.velocity.at[i]))
         return select(less(self.age.at[i], splat(YOUNG)), self.acceleration.at[i], whole)
 
-    def pending(self, i):
+    def pending(self, i: cython.Py_ssize_t) -> mask:
         """Tell where block i changes at this very instant: it is past its threshold, or within COINCIDENCE of it."""
         slip: vec = self.slip.at[i]
         zero: vec = splat(0.0)
@@ -152,7 +202,7 @@ class Lanes:
             starting = starting | (at_most(gap, splat(nearness)) & less(gap, -COINCIDENCE * rate))
         return (slipping & ~stuck) | (starting & ~touching & stuck)
 
-    def transition(self, i, where):
+    def transition(self, i: cython.Py_ssize_t, where: mask) -> None:
         """Let block i stop if it slips and start if it is stuck."""
         zero: vec = splat(0.0)
         one: vec = splat(1.0)
@@ -172,7 +222,7 @@ class Lanes:
         excess: cython.double = threshold * (1.0 - self.static_friction)
         self.acceleration.at[i] = select(starting, excess * direction, self.acceleration.at[i])
 
-    def change(self, i, where):
+    def change(self, i: cython.Py_ssize_t, where: mask) -> None:
         """Let block i stop or start now, and count the event."""
         lane: cython.int
         k: cython.Py_ssize_t
@@ -195,7 +245,7 @@ class Lanes:
         self.unit_count.at[0] = select(where, self.unit_count.at[0] + one, self.unit_count.at[0])
         self.accumulating = self.accumulating | less(splat(self.rate_limit), self.unit_count.at[0])
 
-    def settle(self, where):
+    def settle(self, where: mask) -> None:
         """Carry out every change that is due at this instant, to the last one, before time moves on."""
         i: cython.Py_ssize_t
         changing: mask

@@ -21,7 +21,7 @@ each solved once, when it is first met.
 
 import cython
 import numpy as np
-from cython.cimports.burridge_knopoff.kernel.state import YOUNG
+from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
 from cython.cimports.libc.math import cos, exp, sin, sqrt
 
 # Longest run whose modes are refined: long double has no fast matrix product, and beyond this the solution of the
@@ -50,6 +50,22 @@ def _refined(matrix, eigenvalue, vector):
 class Modes:
     """Closed-form motion of a chain of `blocks` blocks from the last call of `start`."""
 
+    blocks: cython.Py_ssize_t
+    eigenvalue: cython.double[::1]
+    vector: cython.double[:, ::1]
+    vector_row: cython.Py_ssize_t[:, ::1]
+    rows: cython.Py_ssize_t
+    first: cython.Py_ssize_t[::1]
+    last: cython.Py_ssize_t[::1]
+    row: cython.Py_ssize_t[::1]
+    runs: cython.Py_ssize_t
+    rate: cython.double
+    origin: cython.double[::1]
+    origin_velocity: cython.double[::1]
+    drift: cython.double[::1]
+    amplitude: cython.double[::1]
+    amplitude_rate: cython.double[::1]
+
     def __init__(self, blocks: int) -> None:
         self.blocks = blocks
         # vector_row[4 (length - 1) + 2 (left end) + (right end)]: first row of that run's block in `vector`, or -1.
@@ -67,7 +83,7 @@ class Modes:
         self.amplitude = np.zeros(blocks)
         self.amplitude_rate = np.zeros(blocks)
 
-    def start(self, state):
+    def start(self, state: State) -> None:
         """Take the state as the origin of the motion: find the runs and their mode amplitudes."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -136,7 +152,7 @@ class Modes:
                 self.amplitude[k] = q - (self.rate * self.drift[k] + push) / self.eigenvalue[row + k - first]
                 self.amplitude_rate[k] = rate - self.drift[k]
 
-    def advance(self, state, t):
+    def advance(self, state: State, t: cython.double) -> None:
         """Set the state's positions and velocities to those at time t after the origin.
 
         A block that has only just started keeps its velocity: it is about s' t²/2, less than what rounding leaves of
@@ -182,7 +198,7 @@ class Modes:
                     if state.age[i] >= YOUNG:
                         state.velocity[i] += self.vector[row, i - first] * rate
 
-    def _row(self, first, last, state):
+    def _row(self, first: cython.Py_ssize_t, last: cython.Py_ssize_t, state: State) -> cython.Py_ssize_t:
         """Return where the modes of the run first … last begin in the tables, solving them if they are new."""
         row: cython.Py_ssize_t = self.vector_row[last - first, 2 * (first == 0) + (last == self.blocks - 1)]
         if row < 0:
@@ -190,7 +206,7 @@ class Modes:
                 row = self._solve(first, last, state)
         return row
 
-    def _solve(self, first, last, state):
+    def _solve(self, first: cython.Py_ssize_t, last: cython.Py_ssize_t, state: State) -> cython.Py_ssize_t:
         """Diagonalise the run's matrix, append eigenvalues and eigenvectors (as rows), and return their first row."""
         length = last - first + 1
         ends = (first == 0, last == self.blocks - 1)

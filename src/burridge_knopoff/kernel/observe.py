@@ -1,13 +1,16 @@
 """Observables taken from the motion while it passes, piece by piece, without storing it."""
 
+from collections.abc import Sequence
+
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
 from cython.cimports.burridge_knopoff.kernel.distance import Distance
-from cython.cimports.burridge_knopoff.kernel.piece import UNCERTAIN
+from cython.cimports.burridge_knopoff.kernel.piece import UNCERTAIN, Piece
 from cython.cimports.burridge_knopoff.kernel.polynomial import evaluate
 from cython.cimports.burridge_knopoff.kernel.record import Record
 from cython.cimports.burridge_knopoff.kernel.search import SEAM
+from cython.cimports.burridge_knopoff.kernel.state import State
 
 TRANSIENT = 0
 WINDOW = 1
@@ -25,7 +28,37 @@ class Observer:
     trajectory_time : times at which positions and velocities are sampled, shape (m,)
     """
 
-    def __init__(self, blocks, order, apart, edge, distance_time, trajectory_time) -> None:
+    transient: cython.double
+    end: cython.double
+    edge: cython.double[::1]
+    batch_integral: cython.double[::1]
+    batch_rest: cython.double[::1]
+    batch: cython.Py_ssize_t
+    batches: cython.Py_ssize_t
+    distance_time: cython.double[::1]
+    distance_sample: cython.double[::1]
+    next_distance: cython.Py_ssize_t
+    trajectory_time: cython.double[::1]
+    trajectory_position: cython.double[:, ::1]
+    trajectory_velocity: cython.double[:, ::1]
+    next_trajectory: cython.Py_ssize_t
+    crossings: Record
+    side: cython.int
+    highest_speed: cython.double[::1]
+    lowest_force: cython.double[::1]
+    distance: Distance
+    loaded: cython.bint
+    polynomial: SearchedPolynomial
+
+    def __init__(
+        self,
+        blocks: int,
+        order: int,
+        apart: float,
+        edge: Sequence[float] | np.ndarray,
+        distance_time: Sequence[float] | np.ndarray,
+        trajectory_time: Sequence[float] | np.ndarray,
+    ) -> None:
         self.transient = edge[0]
         self.end = edge[len(edge) - 1]
         self.edge = np.array(edge, dtype=float)
@@ -48,25 +81,27 @@ class Observer:
         self.loaded = False
         self.polynomial = SearchedPolynomial(order)
 
-    def observe(self, state, piece, clock, clock_rest, length):
+    def observe(
+        self, state: State, piece: Piece, clock: cython.double, clock_rest: cython.double, length: cython.double
+    ) -> None:
         """Take everything from the first `length` of a piece that starts at time clock + clock_rest."""
-        window: cython.double = (self.transient - clock) - clock_rest
+        until_window: cython.double = (self.transient - clock) - clock_rest
         self.loaded = False
-        if length > window:
+        if length > until_window:
             self._average(piece, clock, clock_rest, length)
             self._cross(state, piece, clock, clock_rest, length)
-            self._extreme(state, piece, WINDOW, max(0.0, window), length)
-        if window > 0.0:
-            self._extreme(state, piece, TRANSIENT, 0.0, min(length, window))
+            self._extreme(state, piece, WINDOW, max(0.0, until_window), length)
+        if until_window > 0.0:
+            self._extreme(state, piece, TRANSIENT, 0.0, min(length, until_window))
         self._sample(piece, clock, clock_rest, length)
 
-    def _load_distance(self, piece, length):
+    def _load_distance(self, piece: Piece, length: cython.double) -> None:
         """Load the distance of this piece, once, and only if something asks for it."""
         if not self.loaded:
             self.distance.load(piece)
             self.loaded = True
 
-    def _average(self, piece, clock, clock_rest, length):
+    def _average(self, piece: Piece, clock: cython.double, clock_rest: cython.double, length: cython.double) -> None:
         """Add the integral of J to the batches that the piece touches (compensated sums)."""
         start: cython.double = max(0.0, (self.edge[self.batch] - clock) - clock_rest)
         stop: cython.double
@@ -87,7 +122,7 @@ class Observer:
             self.batch += 1
             start = max(0.0, edge)
 
-    def _sample(self, piece, clock, clock_rest, length):
+    def _sample(self, piece: Piece, clock: cython.double, clock_rest: cython.double, length: cython.double) -> None:
         """Take the samples of J and of the trajectory that fall into the piece."""
         i: cython.Py_ssize_t
         t: cython.double
@@ -107,7 +142,9 @@ class Observer:
                 self.trajectory_velocity[self.next_trajectory, i] = evaluate(piece.velocity, i, piece.degree, t)
             self.next_trajectory += 1
 
-    def _cross(self, state, piece, clock, clock_rest, length):
+    def _cross(
+        self, state: State, piece: Piece, clock: cython.double, clock_rest: cython.double, length: cython.double
+    ) -> None:
         """Record where W = Σ x_i changes its sign, with W' and the direction.
 
         The side on which W lies is remembered from piece to piece, so that rounding at a seam can neither hide a
@@ -118,7 +155,7 @@ class Observer:
         total: cython.double
         t: cython.double
         start: cython.double = 0.0
-        window: cython.double = (self.transient - clock) - clock_rest
+        until_window: cython.double = (self.transient - clock) - clock_rest
         value: cython.double
         if self.side != 0 and piece.crossing != UNCERTAIN:
             if piece.crossing >= 0.0:
@@ -131,10 +168,10 @@ class Observer:
                 total += piece.position[k, i]
             self.polynomial.coefficient[k] = total
         if self.side == 0:
-            self.side = DOWNWARD if self.polynomial.value(max(0.0, window)) < 0.0 else UPWARD
-            if window > 0.0:
-                self.polynomial.shift(window)
-                start = window
+            self.side = DOWNWARD if self.polynomial.value(max(0.0, until_window)) < 0.0 else UPWARD
+            if until_window > 0.0:
+                self.polynomial.shift(until_window)
+                start = until_window
         value = self.side * self.polynomial.coefficient[0]
         if -SEAM < value < 0.0 and self.side * self.polynomial.coefficient[1] > 0.0:
             self.polynomial.coefficient[0] = 0.0
@@ -157,14 +194,16 @@ class Observer:
                 continue
             self._turn(state, piece, start, clock + (clock_rest + start))
 
-    def _turn(self, state, piece, t, time):
+    def _turn(self, state: State, piece: Piece, t: cython.double, time: cython.double) -> None:
         """Change the side and keep the crossing to it: when, W' there, and the side."""
         row: cython.Py_ssize_t = self.crossings.append(time)
         self.side = -self.side
         self.crossings.value[row, 0] = piece.sliding_rate(state.v, t)
         self.crossings.value[row, 1] = self.side
 
-    def _extreme(self, state, piece, stage, start, stop):
+    def _extreme(
+        self, state: State, piece: Piece, stage: cython.int, start: cython.double, stop: cython.double
+    ) -> None:
         """Follow the highest slip speed and the lowest spring force on a stuck block, in transient or window."""
         i: cython.Py_ssize_t
         threshold: cython.double

@@ -6,6 +6,9 @@ Whatever a solver does, it hands its motion on in this form; events and observab
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.piece import ORDER
+from cython.cimports.burridge_knopoff.kernel.polynomial import Polynomial
+from cython.cimports.burridge_knopoff.kernel.springs import Springs
+from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, lane_of, splat, value_at, vec
 
 UNKNOWN = 1e300
@@ -21,6 +24,23 @@ class Piece:
     `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used;
     `crossing` when W = Σ x_i changes its sign in that time, −1.0 if it does not, UNCERTAIN if that is to be looked for.
     """
+
+    blocks: cython.Py_ssize_t
+    order: cython.Py_ssize_t
+    degree: cython.Py_ssize_t
+    columns: cython.Py_ssize_t
+    positions: Vectors
+    velocities: Vectors
+    forces: Vectors
+    direction: Vectors
+    stuck: Vectors
+    direction_table: cython.double[::1]
+    stuck_table: cython.double[::1]
+    position: cython.double[:, ::1]
+    velocity: cython.double[:, ::1]
+    force: cython.double[:, ::1]
+    highest: cython.double[::1]
+    crossing: cython.double
 
     def __init__(self, blocks: int, order: int) -> None:
         self.blocks = blocks
@@ -41,7 +61,7 @@ class Piece:
         self.highest = np.full(blocks, UNKNOWN)
         self.crossing = UNCERTAIN
 
-    def fill_force(self, springs, n):
+    def fill_force(self, springs: Springs, n: cython.Py_ssize_t) -> None:
         """Fill row n of the spring forces from row n of the positions."""
         i: cython.Py_ssize_t
         for i in range(self.blocks):
@@ -50,14 +70,14 @@ class Piece:
             for i in range(self.blocks):
                 self.force[0, i] += springs.sliding_force[i]
 
-    def move(self, state, t):
+    def move(self, state: State, t: cython.double) -> None:
         """Set positions and velocities of the state to those at time t of a series."""
         c: cython.Py_ssize_t
         for c in range(self.columns):
             state.positions.at[c] = value_at(self.positions.at + c, self.columns, ORDER, t)
             state.velocities.at[c] = value_at(self.velocities.at + c, self.columns, ORDER, t)
 
-    def sliding_rate(self, v, t):
+    def sliding_rate(self, v: cython.double, t: cython.double) -> cython.double:
         """Return the rate Σ (U_i' − v) of W at time t."""
         i: cython.Py_ssize_t
         speed: vec = splat(0.0)
@@ -68,7 +88,7 @@ class Piece:
             total += lane_of(speed, i % LANES) - v
         return total
 
-    def load_speed(self, state, i, polynomial):
+    def load_speed(self, state: State, i: cython.Py_ssize_t, polynomial: Polynomial) -> None:
         """Load the speed |U_i'| of a slipping block: the block stops where it becomes negative."""
         k: cython.Py_ssize_t
         polynomial.degree = self.degree
@@ -79,7 +99,7 @@ class Piece:
             for k in range(self.degree + 1):
                 polynomial.coefficient[k] = self.velocity[k, i]
 
-    def load_gap(self, state, i, side, polynomial):
+    def load_gap(self, state: State, i: cython.Py_ssize_t, side: cython.int, polynomial: Polynomial) -> None:
         """Load threshold_i − side·s_i of a stuck block: the block starts where it becomes negative."""
         k: cython.Py_ssize_t
         polynomial.degree = self.degree

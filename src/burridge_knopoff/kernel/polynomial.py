@@ -4,7 +4,9 @@ import cython
 import numpy as np
 
 
-def evaluate(coefficient, column, degree, t):
+def evaluate(
+    coefficient: cython.double[:, ::1], column: cython.Py_ssize_t, degree: cython.Py_ssize_t, t: cython.double
+) -> cython.double:
     """Return the value at t of the polynomial whose coefficients are one column of a table, lowest power first."""
     k: cython.Py_ssize_t
     total: cython.double = coefficient[degree, column]
@@ -13,7 +15,9 @@ def evaluate(coefficient, column, degree, t):
     return total
 
 
-def evaluate_slope(coefficient, column, degree, t):
+def evaluate_slope(
+    coefficient: cython.double[:, ::1], column: cython.Py_ssize_t, degree: cython.Py_ssize_t, t: cython.double
+) -> cython.double:
     """Return the derivative at t of the polynomial in one column of a table."""
     k: cython.Py_ssize_t
     total: cython.double = 0.0
@@ -28,19 +32,24 @@ class Polynomial:
     Rows of `table` hold the coefficients, those of the first and of the second derivative, where they were asked for.
     """
 
+    capacity: cython.Py_ssize_t
+    degree: cython.Py_ssize_t
+    table: cython.double[:, ::1]
+    coefficient: cython.double[::1]
+
     def __init__(self, capacity: int) -> None:
         self.capacity = capacity
         self.degree = 0
         self.table = np.zeros((3, (capacity // 8 + 1) * 8))
         self.coefficient = self.table[0]
 
-    def derive(self, row):
+    def derive(self, row: cython.Py_ssize_t) -> None:
         """Fill the next row with the derivative of the polynomial in this one."""
         k: cython.Py_ssize_t
         for k in range(self.degree // 8 * 8 + 8 - 1):
             self.table[row + 1, k] = (k + 1.0) * self.table[row, k + 1]
 
-    def at(self, row, t):
+    def at(self, row: cython.Py_ssize_t, t: cython.double) -> cython.double:
         """Return the value at t of the polynomial in a row: eight sums side by side, as each waits for the last."""
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t = self.degree // 8 * 8
@@ -58,16 +67,16 @@ class Polynomial:
             (total[4] + t * total[5]) + square * (total[6] + t * total[7])
         )
 
-    def value(self, t):
+    def value(self, t: cython.double) -> cython.double:
         """Return the value at t."""
         return self.at(0, t)
 
-    def slope(self, t):
+    def slope(self, t: cython.double) -> cython.double:
         """Return the derivative at t."""
         self.derive(0)
         return self.at(1, t)
 
-    def deflate(self):
+    def deflate(self) -> cython.Py_ssize_t:
         """Divide out the roots at t = 0 (leading coefficients that are exactly 0); return how many there were.
 
         A polynomial that is identically zero keeps one coefficient, 0.
@@ -82,7 +91,7 @@ class Polynomial:
             self.degree -= zeros
         return zeros
 
-    def shift(self, t):
+    def shift(self, t: cython.double) -> None:
         """Move the origin to t: the polynomial p(t + ·)."""
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -90,7 +99,7 @@ class Polynomial:
             for k in range(self.degree - 1, j - 1, -1):
                 self.coefficient[k] += t * self.coefficient[k + 1]
 
-    def negate(self):
+    def negate(self) -> None:
         """Change the sign of the polynomial."""
         k: cython.Py_ssize_t
         for k in range(self.degree + 1):

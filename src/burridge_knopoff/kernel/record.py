@@ -1,10 +1,16 @@
 """A table that grows: one time and a few values a row, for events and section crossings."""
 
+import cython
 import numpy as np
 
 
 class Record:
     """Rows of a time and `width` values; `append` makes room for a row and returns its number."""
+
+    width: cython.Py_ssize_t
+    count: cython.Py_ssize_t
+    time: cython.double[::1]
+    value: cython.double[:, ::1]
 
     def __init__(self, width: int) -> None:
         self.width = width
@@ -12,7 +18,7 @@ class Record:
         self.time = np.zeros(1024)
         self.value = np.zeros((1024, width))
 
-    def append(self, time):
+    def append(self, time: cython.double) -> cython.Py_ssize_t:
         """Add a row at this time and return its number."""
         if self.count == self.time.shape[0]:
             self._grow()
@@ -20,7 +26,7 @@ class Record:
         self.count += 1
         return self.count - 1
 
-    def _grow(self):
+    def _grow(self) -> cython.int:
         time = np.zeros(2 * self.count)
         time[: self.count] = self.time
         value = np.zeros((2 * self.count, self.width))

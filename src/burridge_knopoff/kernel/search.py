@@ -3,8 +3,8 @@
 What decides about an event is a polynomial g for each block, positive until the event: its speed while it slips, or
 how far its spring force is from its threshold while it sticks. A root t* is guessed and refined by Halley's method, and
 then it is proved that no g has one before: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*) q(t), is
-bounded from below (see `bounds`). Where the proof fails the exhaustive search of `bernstein` decides. So an event can
-be found late only by what rounding hides.
+bounded from below (see `bounds`). Where the proof fails the exhaustive search of `bernstein` decides. So an event is
+found late only by as much as rounding hides.
 
 Where the sum of all positions W changes its sign is found on the way, in a lane behind those of the blocks: it moves no
 event, and costs next to nothing.
@@ -14,8 +14,9 @@ import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.bernstein import SearchedPolynomial
 from cython.cimports.burridge_knopoff.kernel.bounds import LOW, Bounds
-from cython.cimports.burridge_knopoff.kernel.piece import ORDER, UNCERTAIN, UNKNOWN
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER, UNCERTAIN, UNKNOWN, Piece
 from cython.cimports.burridge_knopoff.kernel.springs import thresholds
+from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.vector import (
     LANES,
     Vectors,
@@ -51,6 +52,19 @@ NEAR = 1e-3
 class EventSearch:
     """Finds events of chains of `blocks` blocks on pieces of a series; `time` is that of the last one found."""
 
+    time: cython.double
+    columns: cython.Py_ssize_t
+    polynomial: SearchedPolynomial
+    bounds: Bounds
+    gap: Vectors
+    gap_table: cython.double[:, ::1]
+    root: Vectors
+    root_table: cython.double[::1]
+    zeros: cython.Py_ssize_t[::1]
+    section: cython.Py_ssize_t
+    least_section: cython.double
+    blocks_in: cython.int[::1]
+
     def __init__(self, blocks: int) -> None:
         columns = (blocks + LANES) // LANES
         self.time = 0.0
@@ -67,7 +81,7 @@ class EventSearch:
         self.least_section = 0.0
         self.blocks_in = np.array([(1 << min(LANES, blocks - c * LANES)) - 1 for c in range(columns)], dtype=np.intc)
 
-    def first(self, state, piece, reach, side):
+    def first(self, state: State, piece: Piece, reach: cython.double, side: cython.int) -> cython.Py_ssize_t:
         """Return the block that stops or starts first within the reach, −1 if none does; its time is in `time`.
 
         side : the sign of W, if its crossings are looked for as well, else 0
@@ -93,7 +107,7 @@ class EventSearch:
             return block
         return self._exhaustive(state, piece, reach)
 
-    def crossing(self, length):
+    def crossing(self, length: cython.double) -> cython.double:
         """Return when W changes its sign in the first `length` of the reach, −1.0 if it does not; else UNCERTAIN."""
         root: cython.double = self.root_table[self.section]
         fall: cython.double = self.bounds.fall_table[self.section % LANES]
@@ -103,7 +117,7 @@ class EventSearch:
             return root if root < length else -1.0
         return UNCERTAIN
 
-    def _load(self, state, piece, side):
+    def _load(self, state: State, piece: Piece, side: cython.int) -> None:
         """Take g of every block, its known zeros at the start divided out: a block that has just started has U' = 0."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -146,7 +160,7 @@ class EventSearch:
             if bits(equal(g[c], splat(0.0))) & self.blocks_in[c]:
                 self._divide(c)
 
-    def _divide(self, column):
+    def _divide(self, column: cython.Py_ssize_t) -> None:
         """Divide the zeros at the start out of the polynomials of one column."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -167,7 +181,7 @@ class EventSearch:
             for i in range(column * LANES, min(len(self.zeros), (column + 1) * LANES)):
                 self.zeros[i] += found >> (i - column * LANES) & 1
 
-    def _whole(self, state, piece, reach):
+    def _whole(self, state: State, piece: Piece, reach: cython.double) -> cython.bint:
         """Tell whether bounds show that nothing happens in the reach; else leave a root of each block, or UNKNOWN."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -194,7 +208,7 @@ class EventSearch:
         self.least_section = self.bounds.lowest_table[self.section]
         return nothing
 
-    def _refine(self, column, t, reach, wanted):
+    def _refine(self, column: cython.Py_ssize_t, t: vec, reach: cython.double, wanted: mask) -> vec:
         """Return the roots near guesses, by Halley's method; UNKNOWN where it does not converge within the reach."""
         k: cython.Py_ssize_t
         top: cython.Py_ssize_t
@@ -258,7 +272,7 @@ class EventSearch:
             open_lanes = good & ~wanted
         return select(done, t, splat(UNKNOWN))
 
-    def _proved(self, piece, t):
+    def _proved(self, piece: Piece, t: cython.double) -> cython.bint:
         """Tell whether no block has an event before t, by bounds over [0, t]."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -290,7 +304,7 @@ class EventSearch:
                     )
         return True
 
-    def _exhaustive(self, state, piece, reach):
+    def _exhaustive(self, state: State, piece: Piece, reach: cython.double) -> cython.Py_ssize_t:
         """Do the work of `first` block by block, by halving."""
         i: cython.Py_ssize_t
         side: cython.int

@@ -13,9 +13,9 @@ methods", Exp. Math. 14 (2005) 99-117.
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.friction import inner, prepare, row, settle, slopes
-from cython.cimports.burridge_knopoff.kernel.piece import ORDER
+from cython.cimports.burridge_knopoff.kernel.piece import ORDER, Piece
 from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, SLIDING, pulls, thresholds
-from cython.cimports.burridge_knopoff.kernel.state import YOUNG
+from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
 from cython.cimports.burridge_knopoff.kernel.vector import (
     Vectors,
     convolution,
@@ -40,6 +40,14 @@ LONGEST = 1e9
 class Series:
     """The recursion for `columns` vectors of blocks."""
 
+    reciprocal: cython.double[::1]
+    moving: Vectors
+    signed: Vectors
+    damping: Vectors
+    pressed: Vectors
+    last_root: cython.double[::1]
+    previous_root: cython.double[::1]
+
     def __init__(self, columns: int) -> None:
         self.reciprocal = 1.0 / np.maximum(np.arange(ORDER + 2, dtype=float), 1.0)
         # Slipping or not, threshold signed by the direction of slip, and friction per speed.
@@ -52,7 +60,7 @@ class Series:
         self.last_root = np.floor(2.0 ** (30.0 + np.arange(ORDER) / ORDER)) / 2.0**30
         self.previous_root = np.floor(2.0 ** (30.0 + np.arange(ORDER - 1) / (ORDER - 1))) / 2.0**30
 
-    def expand(self, state, piece):
+    def expand(self, state: State, piece: Piece) -> cython.double:
         """Fill the piece with the motion that starts from the state; return the time for which it is valid."""
         i: cython.Py_ssize_t
         c: cython.Py_ssize_t
@@ -106,7 +114,7 @@ class Series:
             self._extend(state, piece)
         return self._step(piece)
 
-    def _extend(self, state, piece):
+    def _extend(self, state: State, piece: Piece) -> None:
         """Fill the rows from 2 on.
 
         In row n friction is its slope at the start times U'_n, plus what follows from the rows before: that is ready
@@ -146,7 +154,7 @@ class Series:
             for c in range(columns):
                 s[(n + 1) * columns + c] = pulls(state.springs, x + (n + 1) * columns, c)
 
-    def _extend_one(self, state, piece):
+    def _extend_one(self, state: State, piece: Piece) -> None:
         """Do the same for blocks that lie in one vector, which need not wait for memory."""
         n: cython.Py_ssize_t
         value: cython.int = state.friction.value
@@ -216,7 +224,7 @@ class Series:
             x[n + 1] = shift
             s[n + 1] = force
 
-    def _step(self, piece):
+    def _step(self, piece: Piece) -> cython.double:
         """Return the time over which the last terms that are kept stay below TRUNCATION; LONGEST if nothing slips."""
         i: cython.Py_ssize_t
         last: cython.double = 0.0
@@ -229,7 +237,7 @@ class Series:
         return min(_length(last, self.last_root, ORDER), _length(previous, self.previous_root, ORDER - 1), LONGEST)
 
 
-def _length(coefficient, root, power):
+def _length(coefficient: cython.double, root: cython.double[::1], power: cython.int) -> cython.double:
     """Return about the time at which this power of it, with its coefficient, is as small as TRUNCATION says."""
     digits: cython.int
     if coefficient < 1e-300:

@@ -8,6 +8,7 @@ with K_ii the sum of all springs at block i and, off the diagonal, minus the spr
 A ring has a spring between the last block and the first.
 """
 
+import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.springs import SLIDING, THRESHOLD
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors
@@ -27,7 +28,28 @@ class Springs:
     block have no springs and a threshold of 1, which nothing reaches.
     """
 
-    def __init__(self, diagonal, before, after, threshold, sliding_force) -> None:
+    blocks: cython.Py_ssize_t
+    columns: cython.Py_ssize_t
+    diagonal: cython.double[::1]
+    before: cython.double[::1]
+    after: cython.double[::1]
+    threshold: cython.double[::1]
+    sliding_force: cython.double[::1]
+    previous: cython.Py_ssize_t[::1]
+    next: cython.Py_ssize_t[::1]
+    fastest: cython.double
+    lanes: Vectors
+    from_previous: Vectors
+    from_next: Vectors
+
+    def __init__(
+        self,
+        diagonal: np.ndarray,
+        before: np.ndarray,
+        after: np.ndarray,
+        threshold: np.ndarray,
+        sliding_force: np.ndarray,
+    ) -> None:
         n = len(diagonal)
         self.blocks = n
         self.diagonal = np.array(diagonal, dtype=float)
@@ -66,7 +88,7 @@ class Springs:
         self.from_next = Vectors(columns)
         self.from_next.set(following.ravel().astype(np.int64).view(float))
 
-    def pull(self, displacement, i):
+    def pull(self, displacement: cython.pointer[cython.const[cython.double]], i: cython.Py_ssize_t) -> cython.double:
         """Return −(K x)_i for a row of displacements x, or of their rates.
 
         The neighbours are added first, so that a mirrored state has mirrored forces to the bit.

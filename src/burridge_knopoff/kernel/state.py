@@ -1,4 +1,7 @@
-"""The state of a chain at one instant and the stick-slip rules that change it.
+"""The state of a chain as a solver moves it on, and the stick-slip rules that change it.
+
+It is taken from a `model.Instant`, and read out as one: beside positions, velocities and which blocks stick it has what
+the next event depends on, and it changes all the time. (An `InitialState` gives U(0) and U'(0) as the paper does.)
 
 Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −Φ(av)·1, velocity is U_i' itself, so that a
 stuck block has velocity exactly 0. Because K·1 = D the spring force on block i is
@@ -11,10 +14,12 @@ on it passes threshold_i.
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.friction import Friction
+from cython.cimports.burridge_knopoff.kernel.springs import Springs
 from cython.cimports.burridge_knopoff.kernel.vector import Vectors
 
 # Times closer than this are one instant: velocities and spring forces carry rounding of about this size, so that the
-# order of two such events cannot be told.
+# order of two such events is not known.
 COINCIDENCE = 1e-14
 
 # A block that has slipped for less than this keeps the acceleration that was carried along since its start, which
@@ -35,7 +40,22 @@ class State:
     stopped again) at this very instant. `age` is the time since the start of the present slip.
     """
 
-    def __init__(self, springs, friction, v, symmetric) -> None:
+    blocks: cython.Py_ssize_t
+    springs: Springs
+    friction: Friction
+    symmetric: cython.int
+    drops: cython.bint
+    v: cython.double
+    positions: Vectors
+    velocities: Vectors
+    position: cython.double[::1]
+    velocity: cython.double[::1]
+    acceleration: cython.double[::1]
+    age: cython.double[::1]
+    slip: cython.int[::1]
+    touching: cython.int[::1]
+
+    def __init__(self, springs: Springs, friction: Friction, v: float, symmetric: bool) -> None:
         n = springs.blocks
         self.blocks = n
         self.springs = springs
@@ -52,7 +72,7 @@ class State:
         self.slip = np.zeros(n, dtype=np.intc)
         self.touching = np.zeros(n, dtype=np.intc)
 
-    def begin(self, position, velocity, stuck) -> None:
+    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
         """Set the state at τ = 0: positions x_i, velocities U_i', and which blocks are stuck with velocity 0."""
         self.place(
             np.array(position, dtype=float),
@@ -60,7 +80,7 @@ class State:
             np.array(stuck, dtype=bool).astype(np.intc),
         )
 
-    def place(self, position, velocity, stuck):
+    def place(self, position: cython.double[::1], velocity: cython.double[::1], stuck: cython.int[::1]) -> None:
         """Do the work of `begin` in compiled code."""
         i: cython.Py_ssize_t
         for i in range(self.blocks):
@@ -75,22 +95,22 @@ class State:
         """Return copies of positions x_i, velocities U_i' and slip directions, each of shape (blocks,)."""
         return np.array(self.position[: self.blocks]), np.array(self.velocity[: self.blocks]), np.array(self.slip)
 
-    def spring_force(self, i):
+    def spring_force(self, i: cython.Py_ssize_t) -> cython.double:
         """Return s_i."""
         return self.springs.sliding_force[i] + self.springs.pull(cython.address(self.position[0]), i)
 
-    def force_rate(self, i):
+    def force_rate(self, i: cython.Py_ssize_t) -> cython.double:
         """Return ds_i/dτ."""
         rate: cython.double = self.springs.diagonal[i] * (self.velocity[i] - self.v)
         rate -= self.springs.before[i] * (self.velocity[self.springs.previous[i]] - self.v)
         rate -= self.springs.after[i] * (self.velocity[self.springs.next[i]] - self.v)
         return -rate
 
-    def start_acceleration(self, i):
+    def start_acceleration(self, i: cython.Py_ssize_t) -> cython.double:
         """Return |U_i''| of a block that starts at its threshold: 0, exactly, unless friction drops at the start."""
         return self.springs.threshold[i] * (1.0 - self.friction.at_rest)
 
-    def slip_acceleration(self, i):
+    def slip_acceleration(self, i: cython.Py_ssize_t) -> cython.double:
         """Return U_i'' of a slipping block."""
         if self.touching[i]:
             return self.slip[i] * self.start_acceleration(i)
@@ -100,7 +120,7 @@ class State:
             self.springs.threshold[i] * self.friction.at(self.slip[i] * self.velocity[i])
         )
 
-    def transition(self, i):
+    def transition(self, i: cython.Py_ssize_t) -> cython.int:
         """Let block i stop if it slips and start if it is stuck; return the kind of event: 0 stop, 1 start."""
         self.velocity[i] = 0.0
         self.acceleration[i] = 0.0
@@ -116,12 +136,12 @@ class State:
             self.age[i] = 0.0
         return 1
 
-    def at_threshold(self, i, force):
+    def at_threshold(self, i: cython.Py_ssize_t, force: cython.double) -> cython.bint:
         """Tell whether a spring force that starts a block is its threshold, within rounding."""
         size: cython.double = max(self.springs.threshold[i], self.springs.diagonal[i] * abs(self.position[i]))
         return abs(force) - self.springs.threshold[i] <= AT_THRESHOLD * size
 
-    def pending(self, i):
+    def pending(self, i: cython.Py_ssize_t) -> cython.int:
         """Tell whether block i changes at this very instant: it is past its threshold, or within COINCIDENCE of it."""
         gap: cython.double
         side: cython.int

@@ -19,7 +19,10 @@ from math import factorial
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.friction import row
-from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, neighbours, thresholds
+from cython.cimports.burridge_knopoff.kernel.modes import Modes
+from cython.cimports.burridge_knopoff.kernel.piece import Piece
+from cython.cimports.burridge_knopoff.kernel.springs import AFTER, BEFORE, DIAGONAL, Springs, neighbours, thresholds
+from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.tangent import follow_together, spread
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors, bits, largest, less, magnitude, splat, vec
 from cython.cimports.libc.math import cos, exp, sin, sqrt
@@ -58,7 +61,32 @@ class Tangent:
     `lost` and `deceleration` keep what a stop takes away, for a block that turns round at the same instant.
     """
 
-    def __init__(self, blocks, vectors, order) -> None:
+    blocks: cython.Py_ssize_t
+    vectors: cython.Py_ssize_t
+    columns: cython.Py_ssize_t
+    packs: cython.Py_ssize_t
+    longest: cython.Py_ssize_t
+    length: cython.Py_ssize_t
+    positions: Vectors
+    velocities: Vectors
+    position: cython.double[:, ::1]
+    velocity: cython.double[:, ::1]
+    lost: cython.double[:, ::1]
+    deceleration: cython.double[::1]
+    series: Vectors
+    row: Vectors
+    moving: Vectors
+    weights: Vectors
+    lookup: Vectors
+    rates: Vectors
+    rate_terms: cython.Py_ssize_t
+    degree: cython.Py_ssize_t
+    reciprocal: cython.double[::1]
+    enough: cython.double[::1]
+    moved: cython.double[:, ::1]
+    sped: cython.double[:, ::1]
+
+    def __init__(self, blocks: int, vectors: int, order: int) -> None:
         columns = (blocks + LANES - 1) // LANES
         side = max(LANES // blocks, 1)
         packs = (vectors + side - 1) // side
@@ -96,7 +124,7 @@ class Tangent:
         self.lookup = Vectors(3)
         self.lookup.set(np.concatenate(neighbours).astype(np.int64).view(float))
 
-    def load(self, matrix) -> None:
+    def load(self, matrix: np.ndarray) -> None:
         """Set the perturbations to the columns of a matrix (2 blocks, vectors): rows δx_1 …, then δU_1' …"""
         n = self.blocks
         if self.vectors:
@@ -109,13 +137,13 @@ class Tangent:
         tables = np.asarray(self.position), np.asarray(self.velocity)
         return np.concatenate([table[: self.vectors, : self.blocks].T for table in tables])
 
-    def forget_stops(self):
+    def forget_stops(self) -> None:
         """Time moves on, or begins again: what stops have taken away does not come back."""
         i: cython.Py_ssize_t
         for i in range(self.blocks):
             self.deceleration[i] = 0.0
 
-    def change(self, state, block):
+    def change(self, state: State, block: cython.Py_ssize_t) -> None:
         """Carry the perturbations through a stop or start that this block is about to make."""
         c: cython.Py_ssize_t
         force: cython.double
@@ -139,7 +167,7 @@ class Tangent:
             for c in range(self.vectors):
                 self.velocity[c, block] = factor * state.springs.pull(cython.address(self.position[c, 0]), block)
 
-    def follow_modes(self, state, modes, t):
+    def follow_modes(self, state: State, modes: Modes, t: cython.double) -> None:
         """Propagate over a time t without events in closed form; `modes` holds the slipping blocks."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -196,7 +224,7 @@ class Tangent:
                 self.position[c, i] += self.moved[c, i]
                 self.velocity[c, i] += self.sped[c, i]
 
-    def load_rates(self, state, piece, length):
+    def load_rates(self, state: State, piece: Piece, length: cython.double) -> cython.Py_ssize_t:
         """Expand −threshold dΦ/dU' along a piece of the motion; return into how many parts to divide its length.
 
         Coefficient k is multiplied by t^(k+1), with t the length of a part, and is 0 where a block sticks.
@@ -240,7 +268,7 @@ class Tangent:
             self.rate_terms = min(first + 2, piece.order)
             self.degree = min(self.degree + 2, self.longest)
 
-    def _expand_rates(self, state, c, first, t):
+    def _expand_rates(self, state: State, c: cython.Py_ssize_t, first: cython.Py_ssize_t, t: cython.double) -> None:
         """Fill the rates in one column; of the series of the slope, coefficients below `first` are there."""
         n: cython.Py_ssize_t
         square: cython.double = t * t
@@ -256,7 +284,7 @@ class Tangent:
         for n in range(self.rate_terms, self.degree):
             rate[n] = splat(0.0)
 
-    def _is_enough(self):
+    def _is_enough(self) -> cython.bint:
         """Tell whether the rates that are left out are negligible, by the last two that are there."""
         c: cython.Py_ssize_t
         last: cython.pointer[vec]
@@ -267,7 +295,7 @@ class Tangent:
                 return False
         return True
 
-    def move_rates(self):
+    def move_rates(self) -> None:
         """Take the rates as series about the end of a part (Horner's scheme, repeated)."""
         c: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -279,7 +307,7 @@ class Tangent:
                 for j in range(self.rate_terms - 2, n - 1, -1):
                     rate[j] = rate[j] + rate[j + 1]
 
-    def follow_series(self, springs, t):
+    def follow_series(self, springs: Springs, t: cython.double) -> None:
         """Propagate over one part of a piece, of length t, with what `load_rates` has made ready for it.
 
         With all coefficients multiplied by the power of t that they belong to,
@@ -301,7 +329,7 @@ class Tangent:
                 follow_together(self, v, t, 1)
             v += 3
 
-    def _follow(self, springs, v, t):
+    def _follow(self, springs: Springs, v: cython.Py_ssize_t, t: cython.double) -> None:
         """Propagate one perturbation of a chain of several columns, to the bit as `follow_together` would."""
         n: cython.Py_ssize_t
         j: cython.Py_ssize_t

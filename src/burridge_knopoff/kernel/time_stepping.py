@@ -9,8 +9,11 @@ from cython.cimports.burridge_knopoff.kernel.events import (
     DIVERGED,
     RUNNING,
     STEPS_PER_CALL,
+    EventLog,
 )
+from cython.cimports.burridge_knopoff.kernel.observe import Observer
 from cython.cimports.burridge_knopoff.kernel.piece import Piece
+from cython.cimports.burridge_knopoff.kernel.state import State
 
 CUBIC = 3
 
@@ -18,7 +21,19 @@ CUBIC = 3
 class TimeStepping:
     """One run with step h; between step ends the motion is the cubic through both states and their slopes."""
 
-    def __init__(self, state, log, observer, step: float) -> None:
+    state: State
+    log: EventLog
+    observer: Observer
+    piece: Piece
+    step: cython.double
+    clock: cython.double
+    steps: cython.longlong
+    speed: cython.double[:, ::1]
+    acceleration: cython.double[:, ::1]
+    position: cython.double[::1]
+    velocity: cython.double[::1]
+
+    def __init__(self, state: State, log: EventLog, observer: Observer, step: float) -> None:
         n = state.blocks
         self.state = state
         self.log = log
@@ -32,7 +47,7 @@ class TimeStepping:
         self.speed = np.zeros((4, n))
         self.acceleration = np.zeros((4, n))
 
-    def begin(self, position, velocity, stuck) -> None:
+    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
         """Begin again at τ = 0 from these positions x_i, velocities U_i' and stuck blocks."""
         self.state.begin(position, velocity, stuck)
         self.clock = 0.0
@@ -46,7 +61,7 @@ class TimeStepping:
             status = self._run()
         return status
 
-    def _run(self):
+    def _run(self) -> cython.int:
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.state.blocks
         after: cython.double
@@ -92,7 +107,7 @@ class TimeStepping:
                 return ACCUMULATING_EVENTS
         return COMPLETED
 
-    def _slope(self, stage):
+    def _slope(self, stage: cython.Py_ssize_t) -> None:
         """Write x' and U'' at the current state into row `stage`."""
         i: cython.Py_ssize_t
         direction: cython.double
@@ -105,14 +120,14 @@ class TimeStepping:
                     self.state.springs.threshold[i] * self.state.friction.at(direction * self.state.velocity[i])
                 )
 
-    def _stage(self, stage, step):
+    def _stage(self, stage: cython.Py_ssize_t, step: cython.double) -> None:
         """Set the state to the one at the start of the step, moved on by `step` with the slope in row `stage`."""
         i: cython.Py_ssize_t
         for i in range(self.state.blocks):
             self.state.position[i] = self.position[i] + step * self.speed[stage, i]
             self.state.velocity[i] = self.velocity[i] + step * self.acceleration[stage, i]
 
-    def _interpolate(self, step):
+    def _interpolate(self, step: cython.double) -> None:
         """Fill the piece with the cubics through both ends of the step; rows 0 and 3 hold the slopes there."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t

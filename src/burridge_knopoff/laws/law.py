@@ -35,8 +35,8 @@ class Law:
     name : by which the law is known in a study and in its files; without it that of its class
     numbers : for the names that the formula uses besides `a` and `u`; without them those of its class
 
-    Raises ValueError where the law is none: a number that is not finite, friction of a block that starts, Φ(0), that is
-    not above 0 and at most 1, or Φ not analytic and finite for all speeds up to FASTEST.
+    Raises ValueError for a number that is not finite, for Φ(0), the friction on a block that starts, unless it is above
+    0 and at most 1, and where Φ is not analytic and finite for all speeds up to FASTEST.
     """
 
     #: Φ in the syntax of a config: u is U', a the friction parameter.

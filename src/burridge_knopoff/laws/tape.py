@@ -1,7 +1,7 @@
 """A friction law as a tape: a few operations on the slip speed from which its value, slope and Taylor series follow.
 
 Register 0 is the speed u = |U'|; operation r fills register r + 1 from earlier ones. The kernel runs the operations on
-truncated Taylor series; here they run on numbers, and on intervals, which tell whether the law is analytic.
+truncated Taylor series; here they run on numbers, and on intervals, which show whether the law is analytic.
 
 Reference for derivatives by operations on a tape: A. Griewank and A. Walther, "Evaluating Derivatives" (SIAM 2008).
 """

@@ -68,7 +68,7 @@ class Model:
 
     @property
     def scale(self) -> float:
-        """Motion is in proportion to v (for the linearized law exactly): factor on distances, given for v = 0.1."""
+        """Factor on distances that are given for v = 0.1: they grow with v, exactly so under the linearized law."""
         return self.v / 0.1
 
     @cached_property
@@ -107,7 +107,10 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Instant:
-    """The state of all blocks at one instant of a motion, arrays of shape (blocks,).
+    """The state of all blocks at one instant of a motion, arrays of shape (blocks,): what a run can go on from.
+
+    An `InitialState` becomes one by `Model.begin`, which decides which blocks stick; the kernel's `State` is the one
+    that a solver changes as it goes.
 
     position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : which blocks stick
     """

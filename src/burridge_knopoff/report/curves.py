@@ -10,14 +10,16 @@ import xarray
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
 from burridge_knopoff.figures.lyapunov import KIND_COLORS
 from burridge_knopoff.report.numbers import rounded
-from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.summaries.orbits import FOUND
+from burridge_knopoff.summaries.orbits import OrbitStatus
 
 
 def kinds() -> list[dict[str, Any]]:
     """Return number, name and colour of each kind of motion."""
-    return [{"number": kind, "name": KINDS[kind], "color": color} for kind, color in KIND_COLORS.items()]
+    return [
+        {"number": kind, "name": MotionKind(kind).name.lower(), "color": color} for kind, color in KIND_COLORS.items()
+    ]
 
 
 def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
@@ -84,7 +86,7 @@ def conventions(attractors: xarray.Dataset) -> dict[str, Any]:
 
 def orbit_curves(orbits: xarray.Dataset) -> list[dict[str, Any]]:
     """Return, for each law, multipliers against a and the asymmetric orbits beyond a_c; empty if there is no orbit."""
-    if not (orbits["status"].values == FOUND).any():
+    if not (orbits["status"].values == OrbitStatus.FOUND).any():
         return []
     laws = []
     for law in orbits["law"].values:

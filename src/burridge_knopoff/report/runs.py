@@ -11,7 +11,7 @@ import xarray
 
 from burridge_knopoff.report.numbers import exact
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import KINDS, UNDETERMINED
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study import Study
 from burridge_knopoff.study.paths import POINT
 
@@ -75,7 +75,7 @@ def embedded_runs(
         "configfile": shlex.join(["--configfile", commands.configfile]) if commands.configfile else "",
         "results": f"results/{study.name}",
         "statuses": STATUSES,
-        "kinds": {str(number): name for number, name in KINDS.items()},
+        "kinds": {str(int(kind)): kind.name.lower() for kind in MotionKind},
     }
 
 
@@ -98,7 +98,7 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xa
         for j, initial in enumerate(commands.study.initial):
             for k, a in enumerate(commands.study.grid):
                 status = int(mean_distance["status"].values[i, j, k])
-                if status == Status.COMPLETED and int(lyapunov["kind"].values[i, j, k]) != UNDETERMINED:
+                if status == Status.COMPLETED and int(lyapunov["kind"].values[i, j, k]) != MotionKind.UNDETERMINED:
                     continue
                 run = {
                     "law": law,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,8 @@ import xarray
 
 from burridge_knopoff.figures.branches import branch_name
 from burridge_knopoff.report.numbers import text, with_error
-from burridge_knopoff.stability.motion import KINDS
-from burridge_knopoff.summaries.orbits import FOUND, SIDES, UNDETERMINED
-from burridge_knopoff.summaries.orbits import KINDS as BIFURCATIONS
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.summaries.orbits import Bifurcation, BifurcationSide, OrbitStatus
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
@@ -35,7 +35,9 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
                     "range": f"{text(a[there[0]])} to {text(a[there[-1]])}",
                     "values": f"{len(there)} of {len(a)}",
                     "distance": f"{distance.min():.4f} to {distance.max():.4f}",
-                    "kinds": ", ".join(KINDS[int(kind)] for kind in np.unique(one["kind"].values[members])),
+                    "kinds": ", ".join(
+                        MotionKind(kind).name.lower() for kind in np.unique(one["kind"].values[members])
+                    ),
                     "fraction": f"{fraction[largest]:.3f} (a = {text(a[largest])})" if samples else "–",
                 }
             )
@@ -44,7 +46,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
 
 def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
     """Return names and values, a column for each law, of the transitions of the synchronized orbit; {} without one."""
-    if not (orbits["status"].values == FOUND).any():
+    if not (orbits["status"].values == OrbitStatus.FOUND).any():
         return {}
     laws = [str(law) for law in orbits["law"].values]
 
@@ -57,8 +59,8 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             cells.append(with_error(number, one[error].item()) if error else _long(number))
         return {"name": name, "cells": cells}
 
-    kinds = [_flag(orbits.sel(law=law)["bifurcation_kind"].item(), BIFURCATIONS) for law in laws]
-    sides = [_flag(orbits.sel(law=law)["bifurcation_side"].item(), SIDES) for law in laws]
+    kinds = [_meaning(Bifurcation(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
+    sides = [_meaning(BifurcationSide(orbits.sel(law=law)["bifurcation_side"].item())) for law in laws]
     return {
         "laws": laws,
         "rows": [
@@ -80,8 +82,8 @@ def _long(value: float) -> str:
     return text(value) if not np.isfinite(value) else f"{value:.10g}".replace("-", "−")
 
 
-def _flag(value: int, meanings: dict[int, str]) -> str:
-    return "" if value == UNDETERMINED else meanings[value]
+def _meaning(item: IntEnum) -> str:
+    return "" if item < 0 else item.name.lower()
 
 
 def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:

@@ -1,4 +1,4 @@
-"""Many trajectories of one model at once, for labels and long searches: several times sooner than one by one."""
+"""Many trajectories of one model at once, for labels and long searches: several times faster than one by one."""
 
 from __future__ import annotations
 

@@ -124,7 +124,7 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
 
     The standard error of the batches, which falls like the root of the window, is right for chaos. In regular motion
     perturbations may grow like a power of time: from an alignment A through a window T one that grows linearly gains
-    ln(1 + T/(1 + A)), which no run of that length can tell from an exponent of that over T. Both go into the error.
+    ln(1 + T/(1 + A)), which in a run of that length looks like an exponent of that over T. Both go into the error.
     """
     count = settings.lyapunov_exponents
     batch = np.full((settings.batches, count), np.nan)

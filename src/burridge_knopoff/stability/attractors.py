@@ -1,4 +1,7 @@
-"""The attractors of one model: found from initial states, and told apart by their returns."""
+"""The search for the attractors of one model, from initial states; docs/attractors.md shows it as a diagram.
+
+`continuation` follows them along a, `basins` maps what they attract, and `summaries.attractors` writes them to a file.
+"""
 
 from __future__ import annotations
 
@@ -9,18 +12,9 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.labels import (
-    ASYMMETRIC,
-    SYMMETRIC,
-    SYNCHRONIZED,
-    UNDETERMINED,
-    Attractor,
-    close_returns,
-    label,
-    pushed,
-    spread,
-)
-from burridge_knopoff.stability.motion import CHAOTIC
+from burridge_knopoff.stability.attractor import Attractor, Symmetry, close_returns, pushed, spread
+from burridge_knopoff.stability.labels import UNDETERMINED, label
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
@@ -32,46 +26,7 @@ from burridge_knopoff.stability.steady import (
     measure,
     visit,
 )
-
-# Longest transient, in those of the settings, for a motion that is still settling.
-PATIENCE = 16
-
-# Drift, in resolutions, with which a motion that has not settled may still show a set.
-LOOSE = 10.0
-
-# Window, in those of the settings, for a motion that is not periodic.
-FILLING = 4
-
-# Mean distance, in resolutions, below which a motion is next to synchrony.
-SYNCHRONY = 10.0
-
-# Unstable motions that a trajectory may come close to before it is given up.
-TRIALS = 2
-
-# Trajectories that are followed without finding anything new before the others are left to what is known.
-FRUITLESS = 3
-
-# Transients through which chaos has to last, and states ascribed to it that are followed.
-LASTING = 33
-CHECKED = 6
-
-# States, the first of each sample, whose labels are verified.
-VERIFIED = 60
-
-# Rounds of labelling, each after something new was found, before the labels are left as they are.
-ROUNDS = 20
-
-# Trajectories that may be followed in vain at one a, over all rounds.
-IN_VAIN = 6
-
-# Time, in transients, in which most trajectories have decided.
-QUICK = 0.3
-
-SMALLEST_RADIUS = 1e-5
-
-# Radius below which a motion is no attractor at all. On some orbits a block just misses to stick, or to start: they
-# attract from one side only, and next to nothing of the other.
-TINY_RADIUS = 1e-8
+from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 
 def find_attractors(
@@ -81,18 +36,21 @@ def find_attractors(
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
+    tuning: Tuning = TUNING,
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index among them that each initial state reaches.
 
-    settings : how they are looked for, and how many initial states are drawn; motion : how kinds of motion are told
+    settings : how they are looked for, and how many initial states are drawn; motion : how kinds of motion are
+        told apart
     starts : initial states besides those that are drawn
     start : moving or tested, see `Model.begin`
+    tuning : what the search decides by itself
 
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
-    nothing that settles. What no state reaches is not found, and a motion on which the first block never stops is not
-    told: attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
+    nothing that settles. What no state reaches is not found, nor is a motion on which the first block never stops:
+    attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
     """
-    search = Search(model, settings, motion)
+    search = Search(model, settings, motion, tuning)
     labels = search.labels(search.starts(starts, start))
     return search.attractors, labels
 
@@ -101,13 +59,14 @@ def find_attractors(
 class Search:
     """Finds the attractors of one model.
 
-    motion : how kinds of motion are told
+    motion_settings : how kinds of motion are told apart
     attractors : those found so far; vain : trajectories followed without finding one
     """
 
     model: Model
     settings: SearchSettings = SEARCH
-    motion: MotionSettings = MOTION
+    motion_settings: MotionSettings = MOTION
+    tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
     vain: int = 0
 
@@ -119,7 +78,7 @@ class Search:
     @property
     def tolerance(self) -> float:
         """Distance within which the returns of a closed orbit repeat."""
-        return self.motion.period_tolerance * min(1.0, self.model.scale)
+        return self.motion_settings.period_tolerance * min(1.0, self.model.scale)
 
     def starts(self, given: Sequence[InitialState], start: str) -> list[Instant]:
         """Return where the drawn states, and after them those that are given, begin."""
@@ -139,41 +98,42 @@ class Search:
         undecided = list(range(len(starts)))
         while True:
             found, _ = label(
-                self.model, self.attractors, [starts[k] for k in undecided], QUICK * self.settings.transient
+                self.model, self.attractors, [starts[k] for k in undecided], self.tuning.quick * self.settings.transient
             )
             undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
             if not self._discover([starts[k] for k in undecided]):
                 break
-        for _ in range(ROUNDS):
+        for _ in range(self.tuning.rounds):
             labels = self.known_labels(starts)
             more = self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
             if more:
                 continue
-            if not check or (self._verified(starts[:VERIFIED], labels[:VERIFIED]) and self._single(starts, labels)):
+            if not check or (self._verified(starts, labels) and self._single(starts, labels)):
                 break
         return labels
 
     def _single(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
-        """Tell whether states that are ascribed to chaotic sets come there: a few are followed."""
+        """Follow a few states that are ascribed to chaotic attractors; tell whether they lead to nothing new."""
         known = len(self.attractors)
         for index, attractor in enumerate(self.attractors):
-            if attractor.slow or attractor.motion.kind != CHAOTIC:
+            if attractor.slow or attractor.motion.kind != MotionKind.CHAOTIC:
                 continue
-            for k in np.flatnonzero(labels == index)[:CHECKED]:
+            for k in np.flatnonzero(labels == index)[: self.tuning.checked]:
                 self.reach(starts[k])
         return len(self.attractors) == known
 
     def _verified(self, starts: Sequence[Instant], labels: np.ndarray) -> bool:
-        """Follow labelled states on until they are much closer to their attractors, and tell whether they come there.
+        """Follow the first states until they are much closer to their attractors; tell whether all get there.
 
-        If one settles elsewhere, something that was not known lies within the radius: it is known then, and the radius
-        of the attractor that the state was ascribed to is halved.
+        If one settles elsewhere, an attractor that was not known lies within the radius: it is known then, and the
+        radius of the one that the state was ascribed to is halved.
         """
-        narrow = [replace(item, radius=recovered(item.motion, item.radius)) for item in self.attractors]
+        starts, labels = starts[: self.tuning.verified], labels[: self.tuning.verified]
+        narrow = [replace(item, radius=recovered(item.motion, item.radius, self.tuning)) for item in self.attractors]
         closer, _ = label(self.model, narrow, starts, self.settings.time_limit)
         doubtful = np.flatnonzero((closer != labels) & (labels != UNDETERMINED)).tolist()
         verified = True
-        for k in doubtful[:FRUITLESS]:
+        for k in doubtful[: self.tuning.fruitless]:
             if self.reach(starts[k]) not in (UNDETERMINED, labels[k]):
                 verified = False
                 attractor = self.attractors[labels[k]]
@@ -184,8 +144,8 @@ class Search:
     def _discover(self, starts: Sequence[Instant]) -> bool:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
         known = len(self.attractors)
-        for start in starts[:FRUITLESS]:
-            if self.vain >= IN_VAIN:
+        for start in starts[: self.tuning.fruitless]:
+            if self.vain >= self.tuning.in_vain:
                 break
             self.reach(start)
             if len(self.attractors) > known:
@@ -202,68 +162,75 @@ class Search:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
         generator = np.random.default_rng(self.settings.seed)
         resolution = self.resolution
-        for _ in range(TRIALS):
+        for _ in range(self.tuning.trials):
             found = self._settle(start)
             if found is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow or not lies_on(found, attractor.motion, resolution, self.tolerance):
+                if attractor.slow or not lies_on(found, attractor.motion, resolution, self.tolerance, self.tuning):
                     continue
                 return index
             # Closed orbits on a slow set are part of it.
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow and is_near(found.returns, attractor.motion.returns, resolution):
+                if attractor.slow and is_near(
+                    found.returns, attractor.motion.returns, resolution, self.tuning.near_share
+                ):
                     return index
             index = len(self.attractors)
             if self._add(found):
                 return index
             # An unstable motion that the trajectory has come very close to: pushed off, it goes on.
-            start = pushed(found.instant(), 0.1 * resolution, generator)
+            start = pushed(found.instant(), self.tuning.unstable_push * resolution, generator)
         return UNDETERMINED
 
     def _add(self, found: Returns) -> bool:
         """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
-        settings = self.settings
+        settings, tuning = self.settings, self.tuning
         closed = found.closed(self.tolerance)
-        window = settings.window * (1 if closed else FILLING)
-        motion = measure(self.model, found.instant(), settings.transient, window, self.motion)
+        window = settings.window * (1 if closed else tuning.filling)
+        motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, self.tuning)
         if motion is None:
             return False
-        if motion.kind == CHAOTIC and not closed:
+        if motion.kind == MotionKind.CHAOTIC and not closed:
             # Chaos may be a transient of any length: one trajectory has to last.
-            lasting = visit(self.model, found.instant(), LASTING * settings.transient, settings.window)
+            lasting = visit(self.model, found.instant(), tuning.lasting * settings.transient, settings.window, tuning)
             if lasting is None or lasting.closed(self.tolerance):
                 return lasting is not None and self._add(lasting)
         index = len(self.attractors)
         mirror = self.model.chain.is_mirror_symmetric
         if not mirror:
-            new = [Attractor(motion, ASYMMETRIC, index)]
-        elif motion.mean_distance < self.motion.synchronization_threshold:
-            new = [Attractor(motion, SYNCHRONIZED, index)]
+            new = [Attractor(motion, Symmetry.ASYMMETRIC, index)]
+        elif motion.mean_distance < self.motion_settings.synchronization_threshold:
+            new = [Attractor(motion, Symmetry.SYNCHRONIZED, index)]
         elif self._symmetric(found):
-            new = [Attractor(motion.symmetrized(), SYMMETRIC, index)]
+            new = [Attractor(motion.symmetrized(tuning), Symmetry.SYMMETRIC, index)]
         else:
-            new = [Attractor(motion, ASYMMETRIC, index + 1), Attractor(motion.mirrored(), ASYMMETRIC, index)]
-        new = [replace(item, close_returns=close_returns(found, self.tolerance)) for item in new]
-        if self._accept(new, SMALLEST_RADIUS):
+            new = [
+                Attractor(motion, Symmetry.ASYMMETRIC, index + 1),
+                Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index),
+            ]
+        new = [replace(item, close_returns=close_returns(found, self.tolerance, tuning)) for item in new]
+        if self._accept(new, tuning.smallest_radius):
             return True
-        # Synchrony that does not attract is unstable. Other motion may lie on one set that does as a whole.
-        if mirror and motion.mean_distance < SYNCHRONY * self.resolution:
+        # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole.
+        if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
             return False
-        symmetry = SYMMETRIC if mirror else ASYMMETRIC
-        slow = Attractor(spread(self.model, motion, settings), symmetry, index, slow=True)
-        return self._accept([slow], SMALLEST_RADIUS) or (closed and self._accept(new, TINY_RADIUS))
+        symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
+        slow = Attractor(spread(self.model, motion, settings, tuning), symmetry, index, slow=True)
+        return self._accept([slow], tuning.smallest_radius) or (closed and self._accept(new, tuning.tiny_radius))
 
     def _accept(self, new: Sequence[Attractor], least: float) -> bool:
         """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
         before = list(self.attractors)
         self.attractors = [*before, *new]
-        self.attractors = bounded(self.model, self.attractors, self.tolerance)
-        # A slow set in which an attractor is known already is none of its own.
-        overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance)
+        self.attractors = bounded(self.model, self.attractors, self.tolerance, self.tuning)
+        # A slow set that contains a known attractor is not another one.
+        overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance, self.tuning)
         radius = 0.0
         if not overlapping:
-            radius = captured(self.model, self.attractors, len(before), least, self.tolerance, self.settings)
+            radius = captured(
+                self.model, self.attractors, len(before), least, self.tolerance, self.settings, self.tuning
+            )
         if radius == 0.0:
             self.attractors = before
             return False
@@ -275,26 +242,26 @@ class Search:
         """Return where a state returns to when it has settled, or None if it does not settle."""
         found = None
         transient, window = self.settings.transient, self.settings.window
-        tolerance, resolution = self.tolerance, self.resolution
-        longest = PATIENCE * window
-        while transient <= PATIENCE * self.settings.transient:
-            found = visit(self.model, start, transient, window)
+        tolerance, resolution, tuning = self.tolerance, self.resolution, self.tuning
+        longest = tuning.patience * window
+        while transient <= tuning.patience * self.settings.transient:
+            found = visit(self.model, start, transient, window, tuning)
             if found is None:
                 return None
             start = found.instant()
-            closed, settled = found.closed(tolerance), found.settled(tolerance, resolution)
+            closed, settled = found.closed(tolerance), found.settled(tolerance, resolution, tuning)
             # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
             # like a set of its own; and a chaotic transient may still end.
             whole = self._symmetric(found) or not self.model.chain.is_mirror_symmetric
-            filled = window >= FILLING * self.settings.window and whole
+            filled = window >= tuning.filling * self.settings.window and whole
             if settled and (closed or filled or window == longest):
                 return found
             if not settled:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
-        # What has not settled by now drifts slowly along a set; whether the set attracts, pushes will tell.
-        return found if found is not None and found.drift <= LOOSE * resolution else None
+        # What has not settled by now drifts slowly along a set; pushes will show whether the set attracts.
+        return found if found is not None and found.drift <= tuning.loose_drift * resolution else None
 
     def _symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image."""

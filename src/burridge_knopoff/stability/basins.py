@@ -1,4 +1,7 @@
-"""Basins of attraction: which attractor each state of a plane of initial states reaches."""
+"""Basins of attraction: which attractor each state of a plane of initial states reaches.
+
+`summaries.basins` makes maps of them and `figures.basins` draws these.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +14,14 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.attractors import FILLING
-from burridge_knopoff.stability.labels import SYMMETRIC, UNDETERMINED, Attractor, label_together, spread
-from burridge_knopoff.stability.motion import PERIODIC, SYNCHRONIZED
+from burridge_knopoff.stability.attractor import Attractor, Symmetry, spread
+from burridge_knopoff.stability.labels import UNDETERMINED, label_together
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import measure
+from burridge_knopoff.stability.tuning import TUNING
 
-CLOSED = (SYNCHRONIZED, PERIODIC)
-
-# Difference of ⟨J⟩ beyond its errors that an attractor may show when it is followed once more.
-SAME_MEAN = 1e-3
+CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,23 +53,26 @@ def known_attractors(
         velocity = one["velocity"].values
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         closed = one["kind"].item() in CLOSED
-        window = settings.window * (1 if closed else FILLING)
+        window = settings.window * (1 if closed else TUNING.filling)
         steady = measure(model, start, settings.transient, window, motion)
         if steady is None:
-            raise ValueError(f"attractors.nc: the attractor of branch {one['branch'].item()} at a = {a} is none")
-        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + SAME_MEAN * model.scale
+            raise ValueError(
+                f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} is not an attractor: its "
+                "motion does not complete, or the first block hardly ever stops"
+            )
+        error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + TUNING.same_mean * model.scale
         if abs(steady.mean_distance - one["mean_distance"].item()) > error:
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "
                 f"{steady.mean_distance:.5f} now and {one['mean_distance'].item():.5f} in the file: motion that does "
-                "not last is no attractor to map basins of; leave this a out of basins"
+                "not last has no basin; leave this a out of basins"
             )
         slow = bool(one["slow"].item())
         if slow:
             steady = spread(model, steady, settings)
-        elif one["symmetry"].item() == SYMMETRIC:
+        elif one["symmetry"].item() == Symmetry.SYMMETRIC:
             steady = steady.symmetrized()
-        fixed = (one["symmetry"].item(), int(slot), one["radius"].item(), slow, one["close_returns"].item())
+        fixed = (Symmetry(one["symmetry"].item()), int(slot), one["radius"].item(), slow, one["close_returns"].item())
         attractors.append(Attractor(steady, *fixed))
     return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
 
@@ -88,9 +92,9 @@ def label_states(
     attractors : as `find_attractors` returns them
     position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
     time_limit : by which a state has to reach one of them
-    threads : trajectories are shared out among so many; each is followed alone, so that no label depends on them
+    threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
 
-    A label is the index of an attractor, or −1 where none is reached: everywhere, if there is none.
+    A label is the index of an attractor, or −1 where none is reached.
     """
     stuck = model.starts_stuck(position, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)

@@ -25,7 +25,15 @@ from burridge_knopoff.model.model import Instant
 from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import ALL, SYMMETRIC, Orbit, OrbitError, after, find_orbit, solve
+from burridge_knopoff.stability.orbit import (
+    ALL_DIRECTIONS,
+    SYMMETRIC_DIRECTIONS,
+    Orbit,
+    OrbitError,
+    after,
+    find_orbit,
+    solve,
+)
 from burridge_knopoff.stability.transition import TOLERANCE, apart
 
 # Rounding of positions, which g carries divided by the asymmetry.
@@ -45,14 +53,14 @@ SWEEP_TIME = 20_000.0
 
 
 def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
-    """Return the orbit of a given small asymmetry that branches off at a_c; its model tells at which a it exists.
+    """Return the orbit of a given small asymmetry that branches off at a_c; its model has the a at which it exists.
 
     Raises OrbitError if it is not found.
     """
 
     def constrained(a: float) -> tuple[Instant, float]:
         near = family.at(a)
-        return solve(near.model, apart(near.reference, asymmetry), near.period, SYMMETRIC)
+        return solve(near.model, apart(near.reference, asymmetry), near.period, SYMMETRIC_DIRECTIONS)
 
     def reduced(a: float) -> float:
         if not abs(a - critical) < FARTHEST * critical:
@@ -69,7 +77,7 @@ def branch_orbit(family: Family, critical: float, asymmetry: float) -> Orbit:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {critical!r}")
     a = float(found.root)
     state, period = constrained(a)
-    return find_orbit(family.model_at(a), state, period, ALL)
+    return find_orbit(family.model_at(a), state, period, ALL_DIRECTIONS)
 
 
 def leading_modulus(orbit: Orbit) -> float:
@@ -110,7 +118,7 @@ def sweep(family: Family, values: np.ndarray) -> np.ndarray:
     """Return |x_1 − x_3| (while both stick) after a run at each a in turn, shape (n,).
 
     Each run goes on from the last one, with a small asymmetry added; the first begins near the synchronized orbit. NaN
-    from where blocks 1 and 3 do not stick at once any more.
+    from the a on at which blocks 1 and 3 no longer stick at the same time.
     """
     found = np.full(len(values), np.nan)
     state = family.at(float(values[0])).reference
@@ -133,4 +141,4 @@ def _settled(family: Family, a: float, state: Instant) -> Instant:
         now = runner.instant()
         if now.stuck[0] and now.stuck[2]:
             return now
-    raise OrbitError(f"a = {a!r}: blocks 1 and 3 do not stick at once any more")
+    raise OrbitError(f"a = {a!r}: blocks 1 and 3 no longer stick at the same time")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,14 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.settings import SAMPLE, WATCH, Sample, Watch
 
-OUTCOMES = {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}
-UNDETERMINED, NOT_SYNCHRONIZED, SYNCHRONIZED = OUTCOMES
+
+class Outcome(IntEnum):
+    """Whether the mirror blocks of a chain have synchronized, numbered as in netCDF files."""
+
+    UNDETERMINED = -1
+    NOT_SYNCHRONIZED = 0
+    SYNCHRONIZED = 1
+
 
 # Time between two looks at the distances; no multiple of the period of the synchronous motion, about 5.6.
 INTERVAL = 20.0
@@ -58,7 +65,7 @@ class Fate:
     transverse_exponent : of the symmetric motion that was reached or is near
     """
 
-    outcome: int
+    outcome: Outcome
     time: float = math.nan
     distance: float = math.nan
     mean_distance: float = math.nan
@@ -93,14 +100,14 @@ def watch_state(runner: Runner, start: Instant, watch: Watch = WATCH) -> Fate:
     history: list[np.ndarray] = []
     for check in range(1, round(watch.time_limit / INTERVAL) + 1):
         if runner.run(check * INTERVAL) != Status.COMPLETED:
-            return Fate(UNDETERMINED)
+            return Fate(Outcome.UNDETERMINED)
         state = runner.instant()
         distances = pair_distances(state)
         history.append(distances)
         nearest = float(distances.max())
         if nearest <= watch.synchronization_distance:
             exponent, _ = transverse_exponent(model, state, ALIGNMENT, watch.quarter)
-            outcome = SYNCHRONIZED if exponent < 0.0 else UNDETERMINED
+            outcome = Outcome.SYNCHRONIZED if exponent < 0.0 else Outcome.UNDETERMINED
             return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
     quarter = len(history) // 4
     last, before = np.array(history[-quarter:]), np.array(history[-2 * quarter : -quarter])
@@ -110,7 +117,7 @@ def watch_state(runner: Runner, start: Instant, watch: Watch = WATCH) -> Fate:
         exponent, error = transverse_exponent(model, runner.instant(), ALIGNMENT, watch.quarter)
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(
-        UNDETERMINED if undetermined else NOT_SYNCHRONIZED,
+        Outcome.UNDETERMINED if undetermined else Outcome.NOT_SYNCHRONIZED,
         distance=float(last.max()),
         mean_distance=float(last.max(axis=1).mean()),
         pairs=int(np.count_nonzero(last.max(axis=0) < watch.pair_distance)),

@@ -1,7 +1,7 @@
 """Attractors matched along a: what each one turns into when a is stepped up or down, and the branches that this makes.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
-Chaos 33 (2023) 073151, whose continuation by seeding from the attractors of the parameter before this is.
+Chaos 33 (2023) 073151: the search at each parameter begins from the attractors at the one before.
 """
 
 from __future__ import annotations
@@ -14,16 +14,15 @@ from scipy.optimize import linear_sum_assignment
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.stability.attractor import Attractor, Symmetry, pushed
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.labels import SYNCHRONIZED, UNDETERMINED, Attractor, pushed
+from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
+from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 #: ⟨J⟩ and which blocks stick, on a branch at one a; and {branch: {position of a in the grid: that}}.
 BranchPoint = tuple[float, tuple[bool, ...]]
 BranchCurves = Mapping[int, dict[int, BranchPoint]]
-
-# Size of the seeded push that takes a state off an unstable symmetry, as part of the resolution.
-PUSH = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,19 +51,20 @@ def continue_attractors(
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
+    tuning: Tuning = TUNING,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
-    settings, motion, starts, start : see `find_attractors`
+    settings, motion, starts, start, tuning : see `find_attractors`
 
     Raises ValueError if an initial state does not fit the models.
     """
     generator = np.random.default_rng(settings.seed)
-    searches = [Search(model, settings, motion) for model in models]
+    searches = [Search(model, settings, motion, tuning) for model in models]
     begun = [search.starts(starts, start) for search in searches]
 
     def seeds(search: Search) -> list[Instant]:
-        size = PUSH * search.resolution
+        size = tuning.symmetry_push * search.resolution
         return [pushed(attractor.motion.instant(), size, generator) for attractor in search.attractors]
 
     labels = []
@@ -101,7 +101,7 @@ def branches(
 
     Attractors of neighbouring a are on one branch if each, or its mirror image, is reached from the other. The two of a
     mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images have side 0.
-    The synchronized attractor is branch 0 wherever it is and nothing else is: what it turns into where it loses its
+    Branch 0 is the synchronized attractor, wherever it exists, and nothing else: what it turns into where it loses its
     stability is another branch. Other branches are numbered from 1 in the order of their first a, and of ⟨J⟩ there.
     """
     branch_of: list[np.ndarray] = []
@@ -114,14 +114,14 @@ def branches(
         single = [i for i, attractor in enumerate(here) if attractor.partner >= i]
         for i in sorted(single, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
             before = UNDETERMINED
-            if k and here[i].symmetry != SYNCHRONIZED:
+            if k and here[i].symmetry != Symmetry.SYNCHRONIZED:
                 before = int(downward[k][i])
             if before != UNDETERMINED:
                 back = int(upward[k - 1][before])
-                same_kind = attractors[k - 1][before].symmetry != SYNCHRONIZED
+                same_kind = attractors[k - 1][before].symmetry != Symmetry.SYNCHRONIZED
                 if not same_kind or back not in (i, here[i].partner) or branch_of[k - 1][before] in branch:
                     before = UNDETERMINED
-            if here[i].symmetry == SYNCHRONIZED:
+            if here[i].symmetry == Symmetry.SYNCHRONIZED:
                 branch[i] = 0
             elif before != UNDETERMINED:
                 branch[i] = branch_of[k - 1][before]
@@ -145,7 +145,7 @@ def _orientation(attractor: Attractor) -> int:
 
 
 def same_numbers(first: BranchCurves, second: BranchCurves, tolerance: float, largest: int) -> dict[int, int]:
-    """Return new numbers for the branches of another law than the first: what both laws have carries one number.
+    """Return new numbers for the branches of a second law: a branch that both laws have keeps one number.
 
     Branches are paired so that as many values of a as possible lie on both of a pair, with ⟨J⟩ equal within the
     tolerance and the same blocks sticking. The synchronized branch is 0 in both; what has no partner is numbered on

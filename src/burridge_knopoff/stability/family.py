@@ -64,7 +64,7 @@ class Family:
         raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, SEEDS))}")
 
     def model_at(self, a: float) -> Model:
-        """Return the model at another friction parameter; raises OrbitError where its law is none."""
+        """Return the model at another friction parameter; raises OrbitError where its law does not allow that."""
         try:
             return self.model.at(a)
         except ValueError as error:

@@ -1,19 +1,28 @@
-"""What kind of motion a run ended in, told from its Lyapunov exponents and its section points."""
+"""The kind of motion that a run ended in, from its Lyapunov exponents and its section points."""
 
 from __future__ import annotations
+
+from enum import IntEnum
 
 import numpy as np
 
 from burridge_knopoff.stability.settings import MotionSettings
 
-#: Kinds of motion; `synchronized` is the periodic motion in which the end blocks move as one.
-KINDS = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
-UNDETERMINED, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = KINDS
 
-# Error, in units of the least exponent of chaos, up to which exponents tell a kind.
+class MotionKind(IntEnum):
+    """Kinds of motion, numbered as in netCDF files; SYNCHRONIZED is periodic, with end blocks that move as one."""
+
+    UNDETERMINED = -1
+    SYNCHRONIZED = 0
+    PERIODIC = 1
+    QUASIPERIODIC = 2
+    CHAOTIC = 3
+
+
+# Largest error of an exponent, in units of `chaotic_exponent`, with which exponents decide the kind.
 LARGEST_ERROR = 3.0
 
-# A sequence has a period if it is seen this many times at least.
+# A period counts if the sequence shows it at least this many times.
 REPETITIONS = 3
 
 
@@ -32,7 +41,7 @@ def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
 
 
 def section_closed(section: np.ndarray, tolerance: float) -> bool:
-    """Tell whether section points W' repeat after however many: almost each has another one within the tolerance.
+    """Tell whether section points W' repeat, however long the period: almost all have another within the tolerance.
 
     section : shape (n,); its second half is judged
     """
@@ -45,19 +54,19 @@ def section_closed(section: np.ndarray, tolerance: float) -> bool:
 
 
 def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
-    """Return which exponents, of these standard errors, cannot be told from 0; all of shape (n,)."""
+    """Return which exponents, of these standard errors, cannot be distinguished from 0; all of shape (n,)."""
     return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * error)
 
 
-def closed_kind(mean_distance: float, settings: MotionSettings) -> int:
+def closed_kind(mean_distance: float, settings: MotionSettings) -> MotionKind:
     """Return the kind of a closed orbit with that ⟨J⟩."""
-    return SYNCHRONIZED if mean_distance < settings.synchronization_threshold else PERIODIC
+    return MotionKind.SYNCHRONIZED if mean_distance < settings.synchronization_threshold else MotionKind.PERIODIC
 
 
 def motion_kind(
     mean_distance: float, period: int, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
-) -> int:
-    """Return the kind of motion of a completed run, a key of KINDS.
+) -> MotionKind:
+    """Return the kind of motion of a completed run.
 
     mean_distance : ⟨J⟩; the end blocks move as one where it is below the synchronization threshold
     period : of the section points, 0 if they do not repeat
@@ -65,20 +74,24 @@ def motion_kind(
 
     Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
     that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
-    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined, among it what is
-    above `chaotic_exponent` and not above its error.
+    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined, even a largest
+    exponent above `chaotic_exponent` if it is within its error.
     """
     known = np.flatnonzero(~np.isnan(exponent))
     if len(known) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]):
-        return CHAOTIC
+        return MotionKind.CHAOTIC
     zero = zero_exponents(exponent, error, settings)
     if len(known) and not zero[0]:
-        return UNDETERMINED
+        return MotionKind.UNDETERMINED
     if period:
         return closed_kind(mean_distance, settings)
-    # An error beyond the threshold of chaos tells nothing from nothing, as where chaos ends within the window.
+    # Errors beyond the threshold of chaos, as where chaos ends within the window, leave the kind open.
     if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
-        return UNDETERMINED
+        return MotionKind.UNDETERMINED
     if len(known) > 1 and not zero[1]:
         return closed_kind(mean_distance, settings)
-    return QUASIPERIODIC if len(known) > 1 and exponent[0] <= settings.chaotic_exponent else UNDETERMINED
+    return (
+        MotionKind.QUASIPERIODIC
+        if len(known) > 1 and exponent[0] <= settings.chaotic_exponent
+        else MotionKind.UNDETERMINED
+    )

@@ -1,10 +1,10 @@
 """Periodic orbits on which the outer blocks of three stick once a period, as fixed points of the return map.
 
-An orbit is held by its state in the middle of the time in which blocks 1 and 3 both stick, the reference instant. Their
-stops and starts are far from either end of a period, so that the flow over a fixed time is smooth there. The unknowns
-are the positions, the velocity of block 2 where it slips, and the period T; the equations are φ_T(z) = z and a phase
-condition, that corrections are perpendicular to the flow. Powell's hybrid of Newton's method solves them with the
-Jacobian from the tangent dynamics of the kernel. Stability of the orbit plays no part.
+An orbit is represented by its state in the middle of the time in which blocks 1 and 3 both stick, the reference
+instant. Their stops and starts are far from either end of a period, so that the flow over a fixed time is smooth there.
+The unknowns are the positions, the velocity of block 2 where it slips, and the period T; the equations are φ_T(z) = z
+and a phase condition, that corrections are perpendicular to the flow. Powell's hybrid of Newton's method solves them
+with the Jacobian from the tangent dynamics of the kernel. Stability of the orbit plays no part.
 
 The synchronized orbit is the mirror-symmetric one, on which blocks 1 and 3 move alike.
 """
@@ -25,8 +25,8 @@ from burridge_knopoff.running.runner import Runner
 TOLERANCE = 1e-14
 
 # Directions in which a state is sought: those of a mirror-symmetric one, and all; the last is that of U_2'.
-SYMMETRIC = ((1, 0, 1, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 0, 0, 1, 0))
-ALL = ((1, 0, 0, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 1, 0, 0, 0), (0, 0, 0, 0, 1, 0))
+SYMMETRIC_DIRECTIONS = ((1, 0, 1, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 0, 0, 1, 0))
+ALL_DIRECTIONS = ((1, 0, 0, 0, 0, 0), (0, 1, 0, 0, 0, 0), (0, 0, 1, 0, 0, 0), (0, 0, 0, 0, 1, 0))
 
 # A solution on another set of stuck blocks than it was sought on is sought again, this often at most.
 ATTEMPTS = 6
@@ -112,10 +112,12 @@ def rate(model: Model, at: Instant) -> np.ndarray:
     return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force)])
 
 
-def find_orbit(model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]] = SYMMETRIC) -> Orbit:
+def find_orbit(
+    model: Model, guess: Instant, period: float, directions: Sequence[Sequence[int]] = SYMMETRIC_DIRECTIONS
+) -> Orbit:
     """Return the periodic orbit near a state in which blocks 1 and 3 both stick.
 
-    directions : in which the state may be changed: SYMMETRIC or ALL
+    directions : in which the state may be changed: SYMMETRIC_DIRECTIONS or ALL_DIRECTIONS
 
     Raises OrbitError if none is found to within TOLERANCE, or if one outer block stops more than once a period.
     """
@@ -208,7 +210,7 @@ def multipliers(orbit: Orbit) -> np.ndarray:
     The 3 × 3 matrix of the mirror-symmetric perturbations (x_1 = x_3, x_2, U_2') has the eigenvalue of the flow and the
     two others, which follow from its trace and the sum of its principal minors.
     """
-    columns = (np.array(SYMMETRIC, dtype=float)[:, None, :] * orbit.monodromy).sum(axis=2)
+    columns = (np.array(SYMMETRIC_DIRECTIONS, dtype=float)[:, None, :] * orbit.monodromy).sum(axis=2)
     matrix = columns[:, [0, 1, 4]].T
     direction = rate(orbit.model, orbit.reference)[[0, 1, 4]]
     trivial = float((direction * _products(matrix, direction)).sum() / (direction * direction).sum())

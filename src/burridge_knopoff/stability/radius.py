@@ -12,37 +12,28 @@ from dataclasses import replace
 import numpy as np
 
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.labels import CLOSE_RETURNS, PATIENT_RETURNS, Attractor, label, pushed
-from burridge_knopoff.stability.motion import CHAOTIC
+from burridge_knopoff.stability.attractor import Attractor, pushed
+from burridge_knopoff.stability.labels import label
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import SPACINGS, SteadyMotion, instant_of, least_distance
-
-LARGEST_RADIUS = 0.02
-
-# Part of the way to another attractor that a radius takes at most.
-SHARED = 0.4
-
-# Pushed trajectories have come back when they are this many times closer than they were pushed.
-RECOVERY = 10.0
-
-# Pushed trajectories that are followed at once: one that does not come back spares the others.
-GROUP = 4
+from burridge_knopoff.stability.steady import SteadyMotion, instant_of, least_distance
+from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 
-def recovered(motion: SteadyMotion, radius: float) -> float:
+def recovered(motion: SteadyMotion, radius: float, tuning: Tuning = TUNING) -> float:
     """Return how close to an attractor a trajectory has to come after a push by that radius."""
-    return max(SPACINGS * motion.spacing, radius / RECOVERY)
+    return max(tuning.spacings * motion.spacing, radius / tuning.recovery)
 
 
-def midst(attractors: Sequence[Attractor], index: int, tolerance: float) -> list[int]:
+def midst(attractors: Sequence[Attractor], index: int, tolerance: float, tuning: Tuning = TUNING) -> list[int]:
     """Return the closed orbits that lie in the midst of an attractor, which is chaos or a slow set.
 
     tolerance : distance within which the returns of closed orbits repeat
     """
     motion = attractors[index].motion
-    if motion.kind != CHAOTIC and not attractors[index].slow:
+    if motion.kind != MotionKind.CHAOTIC and not attractors[index].slow:
         return []
-    reach = SPACINGS * motion.spacing
+    reach = tuning.spacings * motion.spacing
     return [
         k
         for k, other in enumerate(attractors)
@@ -52,20 +43,23 @@ def midst(attractors: Sequence[Attractor], index: int, tolerance: float) -> list
     ]
 
 
-def bounded(model: Model, attractors: Sequence[Attractor], tolerance: float) -> list[Attractor]:
+def bounded(
+    model: Model, attractors: Sequence[Attractor], tolerance: float, tuning: Tuning = TUNING
+) -> list[Attractor]:
     """Return the attractors with all radii bounded by the distances between them.
 
-    Chaos with a closed orbit in its midst keeps its radius but asks for patience: who comes to the orbit is told first.
+    Chaos with a closed orbit in its midst keeps its radius but takes more returns, so that a trajectory on its way to
+    the orbit is captured there first.
     """
-    within = [midst(attractors, index, tolerance) for index in range(len(attractors))]
+    within = [midst(attractors, index, tolerance, tuning) for index in range(len(attractors))]
     result = []
     for index, attractor in enumerate(attractors):
-        radius = min(attractor.radius, LARGEST_RADIUS * model.scale)
+        radius = min(attractor.radius, tuning.largest_radius * model.scale)
         for k, other in enumerate(attractors):
             if k != index and k not in within[index] and index not in within[k]:
-                apart = least_distance(attractor.motion.returns, other.motion.returns, radius / SHARED)
-                radius = min(radius, SHARED * apart)
-        returns = PATIENT_RETURNS if within[index] else attractor.close_returns
+                apart = least_distance(attractor.motion.returns, other.motion.returns, radius / tuning.shared)
+                radius = min(radius, tuning.shared * apart)
+        returns = tuning.patient_returns if within[index] else attractor.close_returns
         result.append(replace(attractor, radius=radius, close_returns=returns))
     return result
 
@@ -77,6 +71,7 @@ def captured(
     least: float,
     tolerance: float,
     settings: SearchSettings,
+    tuning: Tuning = TUNING,
 ) -> float:
     """Return a radius of an attractor from which all of a number of random pushes come back, at most the present one.
 
@@ -84,16 +79,16 @@ def captured(
     """
     motion = attractors[index].motion
     radius = attractors[index].radius
-    inner = midst(attractors, index, tolerance)
+    inner = midst(attractors, index, tolerance, tuning)
     generator = np.random.default_rng(settings.seed)
     while radius >= least * model.scale:
-        close = recovered(motion, radius)
+        close = recovered(motion, radius, tuning)
         narrow = [replace(item, radius=min(item.radius, close)) for item in attractors]
         if inner:
-            narrow[index] = replace(narrow[index], close_returns=CLOSE_RETURNS)
+            narrow[index] = replace(narrow[index], close_returns=tuning.close_returns)
         left = settings.pushes
         while left > 0:
-            chosen = generator.integers(len(motion.returns), size=min(GROUP, left))
+            chosen = generator.integers(len(motion.returns), size=min(tuning.push_group, left))
             starts = [pushed(instant_of(motion.returns[k]), radius, generator) for k in chosen]
             reached, _ = label(model, narrow, starts, settings.time_limit)
             if not np.isin(reached, [index, *inner]).all():

@@ -1,4 +1,4 @@
-"""Initial states drawn at random from a stated box, with a fixed seed, and what fractions of them say."""
+"""Initial states drawn at random from a stated box, with a fixed seed, and confidence intervals of their fractions."""
 
 from __future__ import annotations
 

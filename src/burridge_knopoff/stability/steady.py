@@ -14,36 +14,14 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import (
-    CHAOTIC,
-    QUASIPERIODIC,
-    UNDETERMINED,
-    closed_kind,
-    motion_kind,
-    section_period,
-)
+from burridge_knopoff.stability.motion import MotionKind, closed_kind, motion_kind, section_period
 from burridge_knopoff.stability.settings import MotionSettings
-
-# Share of the returns that must lie near another set for the two to be one: a few may lie where the other has a gap.
-SHARE = 0.95
-
-# Sets are one if the distance between them is at most this many times the distance between neighbours within them.
-SPACINGS = 3.0
-
-# Closed orbits drift by less than this part of the resolution from one half of the window to the other once they have
-# settled; other sets fill up so slowly that the resolution itself must do.
-DRIFT = 100.0
-
-# A window that has to tell weak chaos from motion on a torus is this many times longer: an exponent of 0.001 is seen.
-LONGER = 20.0
+from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 BATCHES = 6
 EXPONENTS = 3
 
-# A set of fewer returns than this says nothing.
-FEWEST = 8
-
-# Velocity that is rounding.
+# A velocity of this modulus is rounding.
 STANDING = 1e-14
 
 
@@ -66,10 +44,10 @@ class Returns:
         """Tell whether the returns repeat: the motion is a closed orbit."""
         return self.spacing <= tolerance
 
-    def settled(self, tolerance: float, resolution: float) -> bool:
+    def settled(self, tolerance: float, resolution: float, tuning: Tuning = TUNING) -> bool:
         """Tell whether both halves of the window show the same set."""
-        allowed = resolution / DRIFT if self.closed(tolerance) else resolution
-        return self.drift <= max(allowed, SPACINGS * self.spacing)
+        allowed = resolution / tuning.closed_drift if self.closed(tolerance) else resolution
+        return self.drift <= max(allowed, tuning.spacings * self.spacing)
 
     def instant(self) -> Instant:
         """Return the state at the last return."""
@@ -91,7 +69,7 @@ class SteadyMotion:
     mean_distance: float
     mean_distance_error: float
     stop_rate: np.ndarray
-    kind: int
+    kind: MotionKind
     section_period: int
     exponent: np.ndarray
 
@@ -99,14 +77,16 @@ class SteadyMotion:
         """Return the motion seen from the other end of the chain."""
         return replace(self, returns=self.mirror_returns, mirror_returns=self.returns, stop_rate=self.stop_rate[::-1])
 
-    def symmetrized(self) -> SteadyMotion:
+    def symmetrized(self, tuning: Tuning = TUNING) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
-        return self.with_returns(np.concatenate([self.returns, self.mirror_returns]))
+        return self.with_returns(np.concatenate([self.returns, self.mirror_returns]), tuning)
 
-    def with_returns(self, returns: np.ndarray) -> SteadyMotion:
+    def with_returns(self, returns: np.ndarray, tuning: Tuning = TUNING) -> SteadyMotion:
         """Return the motion with these returns, a set that is its own mirror image if the chain is."""
         mirror_returns = returns if len(self.mirror_returns) else self.mirror_returns
-        return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=_spacing(returns))
+        return replace(
+            self, returns=returns, mirror_returns=mirror_returns, spacing=_spacing(returns, tuning.near_share)
+        )
 
     def instant(self) -> Instant:
         """Return the state at the last return."""
@@ -121,17 +101,17 @@ def instant_of(state: np.ndarray) -> Instant:
     return Instant(position.copy(), np.where(stuck, 0.0, velocity), stuck)
 
 
-def visit(model: Model, start: Instant, transient: float, window: float) -> Returns | None:
+def visit(model: Model, start: Instant, transient: float, window: float, tuning: Tuning = TUNING) -> Returns | None:
     """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
     runner = Runner(model, events_from=transient, keep_events=True)
     runner.begin(start)
     if runner.run(transient + window) != Status.COMPLETED:
         return None
     events = runner.log.events.values()
-    return _returns(model, events[:, 0], events[:, 1], events[:, 2:])
+    return _returns(model, events[:, 0], events[:, 1], events[:, 2:], tuning)
 
 
-def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray) -> Returns | None:
+def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning) -> Returns | None:
     """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
     stops = states[(block == 1) & (kind == 0)]
     mirror_returns = stops[:0]
@@ -140,32 +120,38 @@ def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarr
         position, velocity = np.split(states[(block == model.blocks) & (kind == 0)], 2, axis=1)
         mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
         fewest = min(fewest, len(mirror_returns))
-    if fewest < FEWEST:
+    if fewest < tuning.fewest_returns:
         return None
     first, second = np.array_split(stops, 2)
     return Returns(
         returns=stops,
         mirror_returns=mirror_returns,
-        spacing=_spacing(second),
-        drift=max(distance(first, second), distance(second, first)),
+        spacing=_spacing(second, tuning.near_share),
+        drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),
     )
 
 
 def measure(
-    model: Model, start: Instant, transient: float, window: float, settings: MotionSettings
+    model: Model,
+    start: Instant,
+    transient: float,
+    window: float,
+    settings: MotionSettings,
+    tuning: Tuning = TUNING,
 ) -> SteadyMotion | None:
     """Measure the motion from a state that has settled; None if it does not complete or hardly ever stops.
 
     transient : in which the perturbations turn into the directions of the exponents
 
-    An exponent that only its error keeps from telling chaos from motion on a torus is measured in a longer window.
+    Where only the error of the largest exponent leaves open whether the motion is chaotic, it is measured in a longer
+    window.
     """
-    found = _measure(model, start, transient, window, settings)
-    if found is None or found.kind not in (QUASIPERIODIC, UNDETERMINED):
+    found = _measure(model, start, transient, window, settings, tuning)
+    if found is None or found.kind not in (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED):
         return found
     if not found.exponent[0] > settings.zero_exponent:
         return found
-    longer = _measure(model, start, transient, LONGER * window, settings)
+    longer = _measure(model, start, transient, tuning.longer_window * window, settings, tuning)
     if longer is None:
         return found
     # The returns stay those of the usual window: their number decides how attractors are told apart.
@@ -173,7 +159,7 @@ def measure(
 
 
 def _measure(
-    model: Model, start: Instant, transient: float, window: float, settings: MotionSettings
+    model: Model, start: Instant, transient: float, window: float, settings: MotionSettings, tuning: Tuning
 ) -> SteadyMotion | None:
     """Measure the motion in one window; see `measure`."""
     position = start.position + model.sliding_offset
@@ -192,7 +178,7 @@ def _measure(
     if trajectory.status != "completed":
         return None
     states = np.concatenate([trajectory.event_position - model.sliding_offset, trajectory.event_velocity], axis=1)
-    found = _returns(model, trajectory.event_block, trajectory.event_kind, states)
+    found = _returns(model, trajectory.event_block, trajectory.event_kind, states, tuning)
     if found is None:
         return None
     upward = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
@@ -201,8 +187,8 @@ def _measure(
     # End blocks that are not each other's mirror images do not synchronize.
     mean = trajectory.mean_distance if model.chain.is_mirror_symmetric else math.inf
     kind = motion_kind(mean, period, exponent, error, settings)
-    if kind in (QUASIPERIODIC, UNDETERMINED) and found.closed(settings.period_tolerance):
-        # A weakly attracting orbit of a long period: its exponent cannot be told from 0, but its returns repeat.
+    if kind in (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED) and found.closed(settings.period_tolerance):
+        # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
     stopped = trajectory.event_block[trajectory.event_kind == 0]
     return SteadyMotion(
@@ -218,16 +204,16 @@ def _measure(
     )
 
 
-def distance(first: np.ndarray, second: np.ndarray) -> float:
-    """Return how far the returns of the first set lie from the second: the distance that SHARE of them keep."""
+def distance(first: np.ndarray, second: np.ndarray, share: float = TUNING.near_share) -> float:
+    """Return how far the returns of the first set lie from the second: the distance within which that share does."""
     nearest, _ = cKDTree(second).query(first, p=np.inf)
-    return float(np.quantile(nearest, SHARE))
+    return float(np.quantile(nearest, share))
 
 
-def _spacing(returns: np.ndarray) -> float:
-    """Return the distance within which SHARE of the returns have a neighbour."""
+def _spacing(returns: np.ndarray, share: float) -> float:
+    """Return the distance within which that share of the returns have a neighbour."""
     nearest, _ = cKDTree(returns).query(returns, k=2, p=np.inf)
-    return float(np.quantile(nearest[:, 1], SHARE))
+    return float(np.quantile(nearest[:, 1], share))
 
 
 def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
@@ -239,12 +225,12 @@ def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
     return longest
 
 
-def is_near(first: np.ndarray, second: np.ndarray, limit: float) -> bool:
+def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = TUNING.near_share) -> bool:
     """Tell whether `distance(first, second)` is at most the limit, without looking for neighbours beyond it."""
     near = int(np.count_nonzero(np.isfinite(_nearest(first, second, limit))))
     # The quantile lies between two of the sorted distances; only where the limit parts these does their size matter.
-    below = math.floor(SHARE * (len(first) - 1)) + 1
-    return near > below or (near == below and distance(first, second) <= limit)
+    below = math.floor(share * (len(first) - 1)) + 1
+    return near > below or (near == below and distance(first, second, share) <= limit)
 
 
 def least_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
@@ -259,7 +245,9 @@ def _nearest(first: np.ndarray, second: np.ndarray, bound: float) -> np.ndarray:
     return nearest
 
 
-def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
+def lies_on(
+    found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float, tuning: Tuning = TUNING
+) -> bool:
     """Tell whether a settled motion lies on an attractor, as far as that is resolved.
 
     A closed orbit may lie in the midst of a chaotic attractor, but not on it.
@@ -267,6 +255,8 @@ def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, toleranc
     resolution : distance below which attractors are not told apart
     tolerance : distance within which the returns of closed orbits repeat
     """
-    if found.closed(tolerance) and attractor.kind == CHAOTIC:
+    if found.closed(tolerance) and attractor.kind == MotionKind.CHAOTIC:
         return False
-    return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))
+    return is_near(
+        found.returns, attractor.returns, max(resolution, tuning.spacings * attractor.spacing), tuning.near_share
+    )

@@ -19,8 +19,8 @@ from burridge_knopoff.stability.orbit import Orbit, OrbitError, after, multiplie
 #: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
 SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))
 
-# To this a change of the orbit is found, the rounding of what changes its sign there. In such steps of rounding brentq
-# halves and halves: its hundred iterations may not do.
+# A change of the orbit is found to the rounding of the function that changes its sign there. With steps that small
+# brentq only bisects, and its usual hundred iterations may not be enough.
 TOLERANCE = 1e-15
 ITERATIONS = 1000
 
@@ -57,8 +57,8 @@ def grazing_a(family: Family) -> float:
 def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
     """Return the least a in the scanned range at which a function of the orbit changes its sign; NaN if it does not.
 
-    A change at which the orbit itself is lost is none: where friction drops at the start of a slip, a stick of block 2
-    does not begin at length 0, and the orbit jumps.
+    A change at which the orbit itself is lost does not count: where friction drops at the start of a slip, a stick of
+    block 2 does not begin at length 0, and the orbit jumps.
     """
     last: tuple[float, float] | None = None
     for a in SCAN:
@@ -118,7 +118,7 @@ def finite_difference_multiplier(orbit: Orbit) -> float:
 
 
 def critical_a_error(family: Family, a: float) -> float:
-    """Return by how much a_c changes if finite differences take the place of the tangent map; NaN near its loss."""
+    """Return by how much a_c changes if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
     orbit = family.at(a)
     try:
         low, high = (transverse_multiplier(family.at(a + side * SLOPE_STEP)) for side in (-1, 1))

@@ -1,1 +1,1 @@
-"""Summaries: from point files to one netCDF file a question, over (law, initial, a)."""
+"""Summaries: one netCDF file for each question, from point files, or from the model where no single run answers it."""

@@ -12,9 +12,9 @@ from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import judge
+from burridge_knopoff.summaries.judgement import Answer, judge
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 # The last bit of a product of vectors depends on where in memory they lie.
@@ -22,12 +22,11 @@ DIGITS = 12
 
 _POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
-_VERDICT = {-1: "undetermined", 0: "no", 1: "yes"}
-_YES_NO = flag("i1", _VERDICT)
+_ANSWER = flag("i1", Answer)
 POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
-    "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", KINDS)),
+    "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", MotionKind)),
 }
 PAIR_VARIABLES = {
     "difference": Variable(_PAIR, "f8", "<J> of the other law minus <J> of the first law"),
@@ -37,8 +36,8 @@ PAIR_VARIABLES = {
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
-    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _YES_NO),
-    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _YES_NO),
+    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _ANSWER),
+    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
 }
 VARIABLES = {**POINT_VARIABLES, **PAIR_VARIABLES}
@@ -119,8 +118,8 @@ def table(dataset: xarray.Dataset) -> str:
             for other in others:
                 difference, error, section, order = (row[name].sel(other_law=other).item() for name in compared)
                 cells += [f"{difference:.8e}", f"{error:.2e}", f"{section:.6e}", f"{order:.3f}"]
-            cells += [KINDS[int(kind)] for kind in row["kind"].values]
-            cells += [_VERDICT[int(agrees)] for agrees in row["agrees"].values]
+            cells += [MotionKind(kind).name.lower() for kind in row["kind"].values]
+            cells += [Answer(agrees).name.lower() for agrees in row["agrees"].values]
             lines.write(",".join(cells) + "\n")
     return lines.getvalue()
 

@@ -1,4 +1,7 @@
-"""The attractors of both laws against a: features, branches, sweeps, basin fractions, and what each run reached."""
+"""The attractors of each law against a, as `stability.continuation` finds them, as a file.
+
+Features, branches, sweeps, basin fractions, and what each initial state reaches.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,10 @@ from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.continuation import BranchPoint, Continuation, continue_attractors, same_numbers
-from burridge_knopoff.stability.labels import SYMMETRIES, UNDETERMINED, label
-from burridge_knopoff.stability.motion import KINDS
+from burridge_knopoff.stability.labels import UNDETERMINED, label
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import EXPONENTS
@@ -33,10 +37,15 @@ _V = Variable
 VARIABLES = {
     "branch": _V(_SLOT, "i2", "branch of attractors along a; 0 is the synchronized one", NOTHING),
     "side": _V(_SLOT, "i1", "side of the branch: 1 and -1 for mirror images of each other, 0 for its own mirror image"),
-    "symmetry": _V(_SLOT, "i1", "mirror symmetry of the attractor", flag("i1", {-1: "none", **SYMMETRIES})),
+    "symmetry": _V(
+        _SLOT,
+        "i1",
+        "mirror symmetry of the attractor",
+        flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}}),
+    ),
     "mean_distance": _V(_SLOT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": _V(_SLOT, "f8", "standard error of <J> from batch means"),
-    "kind": _V(_SLOT, "i1", "kind of motion", flag("i1", KINDS)),
+    "kind": _V(_SLOT, "i1", "kind of motion", flag("i1", MotionKind)),
     "section_period": _V(_SLOT, "i2", "upward section points after which W' repeats, 0 if it does not"),
     "stop_rate": _V((*_SLOT, "block"), "f8", "stops of a block in a unit of time"),
     "lyapunov_exponent": _V((*_SLOT, "exponent"), "f8", "Lyapunov exponents, the largest first"),
@@ -80,8 +89,8 @@ def one_law(
     """Find and match the attractors of one law along a.
 
     model : under that law, at any a; grid : values of a, ascending
-    initial : states whose attractor is told under each convention, and from which attractors are looked for
-    settings : of the search; motion : how kinds of motion are told; start : convention for the drawn states
+    initial : states from which attractors are looked for, and whose own is found under each convention
+    settings : of the search; motion : how kinds of motion are told apart; start : convention for the drawn states
     """
     models = [model.at(a) for a in grid]
     found = continue_attractors(models, settings, motion, starts=initial, start=start)
@@ -153,7 +162,7 @@ def digest(dataset: xarray.Dataset) -> str:
             slots = branch == number
             where = a[slots.any(axis=1)]
             mean = one["mean_distance"].values[slots]
-            kinds = ", ".join(KINDS[int(kind)] for kind in np.unique(one["kind"].values[slots]))
+            kinds = ", ".join(MotionKind(kind).name.lower() for kind in np.unique(one["kind"].values[slots]))
             sticks = (one["stop_rate"].values[slots] > 0.0).any(axis=0)
             never = [str(block) for block, sticking in zip(one["block"].values, sticks, strict=True) if not sticking]
             share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)

@@ -45,7 +45,7 @@ def basin_map(
     samples, seed : initial states from which attractors are looked for; an attractor that none of them reaches stays
         unknown, and its basin undetermined (−1)
     threads : of the labelling; they change no label
-    search : other settings of `SearchSettings` by name; motion : how kinds of motion are told
+    search : other settings of `SearchSettings` by name; motion : how kinds of motion are told apart
 
     The map `branch` of the first Dataset has the shape (1, pixels, pixels), U_N(0) along the rows. The uncertainty
     exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is not allowed, and

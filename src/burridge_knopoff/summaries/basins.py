@@ -1,4 +1,4 @@
-"""Basins of attraction over a plane of initial states: tiles of a map, and the maps put together."""
+"""Basins of attraction, as `stability.basins` labels them: tiles of a map, whole maps, and their boundaries."""
 
 from __future__ import annotations
 

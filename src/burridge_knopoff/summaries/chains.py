@@ -18,10 +18,7 @@ from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.software import provenance
 from burridge_knopoff.stability.chains import (
-    NOT_SYNCHRONIZED,
-    OUTCOMES,
-    SYNCHRONIZED,
-    UNDETERMINED,
+    Outcome,
     Sample,
     Watch,
     watch_chain,
@@ -33,7 +30,7 @@ _OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance(__name__))
 _STATE = (*_POINT, "state")
 _SYMMETRIC = (*_POINT, "symmetric_state")
 CHAIN_VARIABLES = {
-    "outcome": Variable(_STATE, "i1", "what became of the mirror blocks", flag("i1", OUTCOMES)),
+    "outcome": Variable(_STATE, "i1", "what became of the mirror blocks", flag("i1", Outcome)),
     "time": Variable(_STATE, "f8", "time tau at which the synchronization distance was reached, NaN if it was not"),
     "distance": Variable(
         _STATE, "f8", "largest mirror distance in the last quarter of the time limit, or at that time"
@@ -143,8 +140,8 @@ def _coordinates(laws: ArrayLike, grid: ArrayLike, states: int, symmetric_states
 
 def _fractions(outcome: np.ndarray, pairs: np.ndarray, mean_distance: np.ndarray) -> dict[str, np.ndarray]:
     """Return the counted variables, shape (blocks, laws, a)."""
-    synchronized = outcome == SYNCHRONIZED
-    undetermined = outcome == UNDETERMINED
+    synchronized = outcome == Outcome.SYNCHRONIZED
+    undetermined = outcome == Outcome.UNDETERMINED
     states = outcome.shape[-1]
     low, high = np.zeros(outcome.shape[:-1]), np.zeros(outcome.shape[:-1])
     for index in np.ndindex(low.shape):
@@ -156,6 +153,6 @@ def _fractions(outcome: np.ndarray, pairs: np.ndarray, mean_distance: np.ndarray
         "synchronized_low": low,
         "synchronized_high": high,
         "undetermined_fraction": undetermined.mean(axis=-1),
-        "partial_fraction": ((outcome == NOT_SYNCHRONIZED) & (pairs > 0)).mean(axis=-1),
+        "partial_fraction": ((outcome == Outcome.NOT_SYNCHRONIZED) & (pairs > 0)).mean(axis=-1),
         "mean_mirror_distance": np.where(synchronized, 0.0, mean_distance).mean(axis=-1),
     }

@@ -29,7 +29,7 @@ LARGEST_GROWTH = 20.0
 
 PARTS = ("real", "imaginary")
 
-# Figures of numbers that come from LAPACK, whose last bits depend on the machine.
+# Digits kept of numbers that come from LAPACK, whose last bits depend on the machine.
 DIGITS = 12
 
 _CURVE = ("law", "a")
@@ -89,7 +89,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
 
 
 def sliding_position(model: Model) -> np.ndarray:
-    """Return e with K e = −Φ(v)·threshold, shape (blocks,), in a way that the simulation has no part in."""
+    """Return e with K e = −Φ(v)·threshold, shape (blocks,), independently of the simulation."""
     chain = model.chain
     load = -float(model.law(model.v)) * chain.thresholds
     if chain.ends == "ring":
@@ -147,5 +147,5 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
 
 
 def _rounded(value: float) -> float:
-    """Return a number to the figures that every machine agrees on."""
+    """Return a number to the digits that every machine agrees on."""
     return float(f"{value:.{DIGITS - 1}e}")

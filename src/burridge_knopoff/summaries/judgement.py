@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.stability.motion import UNDETERMINED
+from burridge_knopoff.stability.motion import MotionKind
+
+
+class Answer(IntEnum):
+    """Whether two laws agree, numbered as in netCDF files."""
+
+    UNDETERMINED = -1
+    NO = 0
+    YES = 1
 
 
 def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
@@ -22,8 +31,8 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
     kind = values["kind"]
     values["difference"][...] = other - first
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
-    determined = (kind != UNDETERMINED).all(axis=0)
-    values["same_kind"][...] = np.where(determined, kind[0] == kind[1], -1)
+    determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
+    values["same_kind"][...] = np.where(determined, kind[0] == kind[1], Answer.UNDETERMINED)
     tolerance = np.maximum.reduce(
         [
             agreement["relative_tolerance"] * np.maximum(first, other),
@@ -31,8 +40,8 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
             np.full_like(first, threshold),
         ]
     )
-    agrees = (values["same_kind"] == 1) & (np.abs(values["difference"]) <= tolerance)
-    values["agrees"][...] = np.where(determined, agrees, -1)
+    agrees = (values["same_kind"] == Answer.YES) & (np.abs(values["difference"]) <= tolerance)
+    values["agrees"][...] = np.where(determined, agrees, Answer.UNDETERMINED)
     for j, agrees in enumerate(values["agrees"]):
-        apart = a[agrees == 0]
+        apart = a[agrees == Answer.NO]
         values["parting_a"][j] = apart[0] if len(apart) else np.nan

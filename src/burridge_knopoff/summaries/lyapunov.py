@@ -1,4 +1,4 @@
-"""Lyapunov exponents over (law, initial, a), and the kind of motion that they and the section points tell."""
+"""Lyapunov exponents over (law, initial, a), and the kind of motion that they and the section points show."""
 
 from __future__ import annotations
 
@@ -14,10 +14,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
-    KINDS,
-    PERIODIC,
-    QUASIPERIODIC,
-    UNDETERMINED,
+    MotionKind,
     motion_kind,
     section_closed,
     section_period,
@@ -36,7 +33,7 @@ VARIABLES = {
     ),
     "lyapunov_error": Variable((*_AXES, "exponent"), "f8", "standard error of a Lyapunov exponent from the batches"),
     "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
-    "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", KINDS)),
+    "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
     "section_period": Variable(_AXES, "i2", "upward section points after which W' repeats, 0 if it does not"),
     "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
@@ -66,14 +63,14 @@ def summarize(
         exponent, error = read["lyapunov_exponent"], read["lyapunov_error"]
         upward = read["crossing_velocity"][read["crossing_direction"] > 0]
         period = section_period(upward, settings.period_tolerance, settings.longest_period)
-        kind = UNDETERMINED
+        kind = MotionKind.UNDETERMINED
         if read["status"] == Status.COMPLETED:
             # End blocks that are not each other's mirror images do not synchronize.
             mean = float(read["mean_distance"]) if symmetric else math.inf
             kind = motion_kind(mean, period, exponent, error, settings)
-            if kind == QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
+            if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
                 # A weakly attracting orbit of a long period.
-                kind = PERIODIC
+                kind = MotionKind.PERIODIC
         values["kind"][index] = kind
         values["section_period"][index] = period
         values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, settings))

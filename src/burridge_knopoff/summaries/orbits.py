@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -22,15 +23,35 @@ MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2
 PARTS = ("real", "imaginary")
 DIRECTIONS = ("upward", "downward")
 
-#: Whether there is an orbit. Where friction does not depend on speed, as under most laws at a = 0, nothing feeds or
-#: damps the motion: no periodic orbit is isolated.
-ORBIT_STATUS = {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"}
-FOUND, NEUTRAL, NOT_FOUND, NOT_THREE_BLOCKS = ORBIT_STATUS
 
-KINDS = {-1: "undetermined", 1: "pitchfork", 2: "flip"}
-SIDES = {-1: "undetermined", 0: "subcritical", 1: "supercritical"}
-UNDETERMINED, PITCHFORK, FLIP = KINDS
-SUBCRITICAL, SUPERCRITICAL = 0, 1
+class OrbitStatus(IntEnum):
+    """Whether there is a synchronized orbit, numbered as in netCDF files.
+
+    Where friction does not depend on speed, as under most laws at a = 0, nothing feeds or damps the motion: no periodic
+    orbit is isolated (neutral).
+    """
+
+    FOUND = 0
+    NEUTRAL = 1
+    NOT_FOUND = 2
+    NOT_THREE_BLOCKS = 3
+
+
+class Bifurcation(IntEnum):
+    """How the synchronized orbit is lost, numbered as in netCDF files."""
+
+    UNDETERMINED = -1
+    PITCHFORK = 1
+    FLIP = 2
+
+
+class BifurcationSide(IntEnum):
+    """On which side of a_c the orbits that branch off lie, numbered as in netCDF files."""
+
+    UNDETERMINED = -1
+    SUBCRITICAL = 0
+    SUPERCRITICAL = 1
+
 
 #: Asymmetries x_1 − x_3 of the orbits that branch off, in units of v, and up to which the amplitude law is fitted.
 ASYMMETRIES = tuple(float(f"{10 ** (k / 5 - 3):.3e}") for k in range(13))
@@ -42,7 +63,7 @@ OFFSETS = (-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
 _CURVE = ("law", "a")
 _BRANCH = ("law", "branch_asymmetry")
 VARIABLES = {
-    "status": Variable(_CURVE, "i1", "whether the synchronized orbit was found", flag("i1", ORBIT_STATUS)),
+    "status": Variable(_CURVE, "i1", "whether the synchronized orbit was found", flag("i1", OrbitStatus)),
     "period": Variable(_CURVE, "f8", "period T of the synchronized orbit"),
     "residual": Variable(_CURVE, "f8", "largest difference of the state after one period"),
     "lateral_slip_time": Variable(_CURVE, "f8", "time T_s for which blocks 1 and 3 slip in a period"),
@@ -53,9 +74,11 @@ VARIABLES = {
     "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is taken from finite differences of the flow"),
     "grazing_a": Variable(("law",), "f8", "a at which block 2 begins to stick"),
     "symmetric_flip_a": Variable(("law",), "f8", "a at which a multiplier of symmetric perturbations reaches -1"),
-    "bifurcation_kind": Variable(("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", KINDS)),
+    "bifurcation_kind": Variable(
+        ("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", Bifurcation)
+    ),
     "bifurcation_side": Variable(
-        ("law",), "i1", "side of a_c on which the orbits that branch off lie", flag("i1", SIDES)
+        ("law",), "i1", "side of a_c on which the orbits that branch off lie", flag("i1", BifurcationSide)
     ),
     "branch_offset": Variable(_BRANCH, "f8", "a - a_c at which the asymmetric orbit exists"),
     "branch_period": Variable(_BRANCH, "f8", "period of the asymmetric orbit"),
@@ -110,9 +133,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     pair = [model for law in PAPER_LAWS for model in models if model.law == law_of(law, model.a)]
     variables = {**VARIABLES, **(COMPARISON if len(pair) == len(PAPER_LAWS) else {})}
     values: dict[str, Any] = {
-        name: np.full(
-            [sizes[dimension] for dimension in item.dimensions], UNDETERMINED if item.dtype == "i1" else np.nan
-        )
+        name: np.full([sizes[dimension] for dimension in item.dimensions], -1 if item.dtype == "i1" else np.nan)
         for name, item in variables.items()
     }
     families: dict[str, Family | None] = {}
@@ -154,9 +175,9 @@ def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarr
 def _fill_curve(values: dict[str, Any], i: int, model: Model, family: Family | None, grid: Sequence[float]) -> None:
     """Fill in what is known along the grid for the law of that number."""
     for k, a in enumerate(grid):
-        values["status"][i, k] = NOT_FOUND if model.blocks == 3 else NOT_THREE_BLOCKS
+        values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == 3 else OrbitStatus.NOT_THREE_BLOCKS
         if model.blocks == 3 and _is_constant(model.at(a).law):
-            values["status"][i, k] = NEUTRAL
+            values["status"][i, k] = OrbitStatus.NEUTRAL
         if family is None or a == 0.0:
             continue
         try:
@@ -165,7 +186,7 @@ def _fill_curve(values: dict[str, Any], i: int, model: Model, family: Family | N
             print(f"{family.model.law.name}: {error}")
             continue
         found = multipliers(orbit)
-        values["status"][i, k] = FOUND
+        values["status"][i, k] = OrbitStatus.FOUND
         values["period"][i, k] = orbit.period
         values["residual"][i, k] = orbit.residual
         values["lateral_slip_time"][i, k] = orbit.lateral_slip_time
@@ -190,12 +211,12 @@ def _fill_transition(values: dict[str, Any], i: int, family: Family | None, asym
     if not np.isfinite(critical):
         return
     values["critical_a_error"][i] = critical_a_error(family, critical)
-    kind = PITCHFORK if transverse_multiplier(family.at(critical)) > 0.0 else FLIP
+    kind = Bifurcation.PITCHFORK if transverse_multiplier(family.at(critical)) > 0.0 else Bifurcation.FLIP
     values["bifurcation_kind"][i] = kind
     runs = critical + np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(family, runs), sweep(family, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
-    if kind == PITCHFORK:
+    if kind == Bifurcation.PITCHFORK:
         _fill_branch(values, i, family, critical, asymmetry)
 
 
@@ -215,7 +236,9 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
     small = np.array(ASYMMETRIES) <= LARGEST_FITTED
     offset = values["branch_offset"][i, small]
     if (offset > 0.0).all() or (offset < 0.0).all():
-        values["bifurcation_side"][i] = SUPERCRITICAL if offset[0] > 0.0 else SUBCRITICAL
+        values["bifurcation_side"][i] = (
+            BifurcationSide.SUPERCRITICAL if offset[0] > 0.0 else BifurcationSide.SUBCRITICAL
+        )
         fit = fit_power_law(np.abs(offset), asymmetry[small])
         values["amplitude_exponent"][i] = fit.exponent
         values["amplitude_exponent_error"][i] = fit.error
@@ -234,7 +257,7 @@ def _compare(
     for name in ("critical_a", "grazing_a"):
         values[f"effective_{name}_difference"] = effective_a(other, values[name][other_row]) - values[name][first_row]
     for k, a in enumerate(values["effective_a"]):
-        if first is None or values["status"][other_row, k] != FOUND:
+        if first is None or values["status"][other_row, k] != OrbitStatus.FOUND:
             continue
         try:
             orbit = first.at(float(a))

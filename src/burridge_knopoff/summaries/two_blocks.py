@@ -19,25 +19,25 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.stability.motion import KINDS, UNDETERMINED, motion_kind, section_period
+from burridge_knopoff.stability.motion import MotionKind, motion_kind, section_period
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import judge
+from burridge_knopoff.summaries.judgement import Answer, judge
 
 BLOCKS = 2
 
-# Enough to tell the kinds of motion.
+# Enough to tell the kinds of motion apart.
 EXPONENTS = 2
 
 _RUN = ("law", "state", "a")
 _PAIR = ("other_law", "state", "a")
 _FRACTION = ("other_law", "a")
-_VERDICT = flag("i1", {-1: "undetermined", 0: "no", 1: "yes"})
+_ANSWER = flag("i1", Answer)
 RUN_VARIABLES = {
     "mean_distance": Variable(_RUN, "f8", "time average <J> of the phase-space distance between the two blocks"),
     "mean_distance_error": Variable(_RUN, "f8", "standard error of <J> from the batch means"),
-    "kind": Variable(_RUN, "i1", "kind of motion", flag("i1", KINDS)),
+    "kind": Variable(_RUN, "i1", "kind of motion", flag("i1", MotionKind)),
     "section_period": Variable(_RUN, "i2", "upward section points after which W' repeats, 0 if it does not"),
 }
 PAIR_VARIABLES = {
@@ -45,8 +45,8 @@ PAIR_VARIABLES = {
     "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
-    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _VERDICT),
-    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _VERDICT),
+    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _ANSWER),
+    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "least a at which the laws disagree, NaN if there is none"),
     "agreeing_fraction": Variable(_FRACTION, "f8", "fraction of the initial states for which the laws agree"),
     "agreeing_low": Variable(_FRACTION, "f8", "lower end of the confidence interval of this fraction"),
@@ -77,7 +77,7 @@ def summarize(
     """Run two blocks from each initial state at each a of an ascending grid under each law, and compare.
 
     models : one of two blocks for each law, at any a; each other law is compared with the first one
-    settings : of the runs, see `run_settings`; motion : how kinds of motion are told
+    settings : of the runs, see `run_settings`; motion : how kinds of motion are told apart
     agreement : the config's section of that name
     """
     laws = [model.law.name for model in models]
@@ -131,13 +131,13 @@ def summarize(
 
 
 def _fill_run(values: Mapping[str, np.ndarray], k: int, trajectory: Trajectory, motion: MotionSettings) -> None:
-    """Fill in what a run tells, at that a of the grid."""
+    """Fill in what a run shows, at that a of the grid."""
     section = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
     period = section_period(section, motion.period_tolerance, motion.longest_period)
     mean = trajectory.mean_distance
     values["mean_distance"][k], values["mean_distance_error"][k] = mean, trajectory.mean_distance_error
     values["section_period"][k] = period
-    values["kind"][k] = UNDETERMINED
+    values["kind"][k] = MotionKind.UNDETERMINED
     if trajectory.status == "completed":
         exponents = trajectory.lyapunov_exponent, trajectory.lyapunov_error
         values["kind"][k] = motion_kind(mean, period, *exponents, motion)

@@ -1,0 +1,78 @@
+"""One attractor: a settled motion with its mirror symmetry and the radius within which it captures trajectories."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.stability.steady import Returns, SteadyMotion, instant_of, orbit_length, visit
+from burridge_knopoff.stability.tuning import TUNING, Tuning
+
+
+class Symmetry(IntEnum):
+    """Mirror symmetry of an attractor, numbered as in netCDF files.
+
+    Mirror blocks move as one (synchronized), the set is its own mirror image (symmetric), or neither (asymmetric), as
+    in every chain that is not its own mirror image.
+    """
+
+    SYNCHRONIZED = 0
+    SYMMETRIC = 1
+    ASYMMETRIC = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """A settled motion with what distinguishes it from others.
+
+    symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric, as
+        all are in a chain that is not its own mirror image
+    partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set, or
+        where there is none
+    radius : distance from its returns within which trajectories are captured
+    slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
+    close_returns : successive returns within the radius after which a trajectory counts as captured
+    """
+
+    motion: SteadyMotion
+    symmetry: Symmetry
+    partner: int
+    radius: float = np.inf
+    slow: bool = False
+    close_returns: int = TUNING.close_returns
+
+
+def close_returns(found: Returns, tolerance: float, tuning: Tuning = TUNING) -> int:
+    """Return how many successive returns have to be close to a motion: twice round it if it is a closed orbit."""
+    if not found.closed(tolerance):
+        return tuning.close_returns
+    return max(tuning.close_returns, 2 * orbit_length(found.returns, 10.0 * tolerance, tuning.longest_orbit))
+
+
+def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:
+    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random."""
+    blocks = len(start.position)
+    change = generator.uniform(-size, size, 2 * blocks)
+    velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
+    return Instant(start.position + change[:blocks], velocity, start.stuck)
+
+
+def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning: Tuning = TUNING) -> SteadyMotion:
+    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
+
+    Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
+    itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
+    """
+    generator = np.random.default_rng(settings.seed)
+    clouds = [motion.returns, motion.mirror_returns]
+    for k in generator.integers(len(motion.returns), size=tuning.slow_states):
+        size = tuning.slow_push * settings.resolution * model.scale
+        start = pushed(instant_of(motion.returns[k]), size, generator)
+        found = visit(model, start, tuning.slow_time * settings.transient, settings.window, tuning)
+        if found is not None:
+            clouds += [found.returns, found.mirror_returns]
+    return motion.with_returns(np.concatenate(clouds), tuning)

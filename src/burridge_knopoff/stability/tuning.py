@@ -1,0 +1,109 @@
+"""What the search for attractors decides by itself: numbers that no study sets, each with why it has its value.
+
+Times are in units of the transient or the window of `SearchSettings`, distances in units of its resolution where that
+is said; all others are for v = 0.1 and grow with v.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """Limits and margins of `attractors`, `steady`, `attractor`, `radius`, `continuation` and `basins`."""
+
+    # When a motion has settled.
+
+    #: Longest transient and window, in those of the settings, of a motion that is still settling: four doublings.
+    patience: int = 16
+    #: Drift, in resolutions, with which a motion that has not settled by then may still show a set: it creeps along it,
+    #: and pushes show whether the set attracts.
+    loose_drift: float = 10.0
+    #: Closed orbits drift by less than the resolution over this once they have settled, since they attract
+    #: exponentially; other sets fill up so slowly that the resolution itself must do.
+    closed_drift: float = 100.0
+    #: Window, in that of the settings, of a motion that is not a closed orbit: near a resonance half of a torus looks
+    #: like a set of its own until it has filled.
+    filling: int = 4
+    #: Transients that chaos has to last for, from one state: at the default settings about 100 000 time units, ten
+    #: times as long as a run of the paper.
+    lasting: int = 33
+    #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
+    #: 0.001 is then beyond its error.
+    longer_window: float = 20.0
+
+    # When two sets of returns are one.
+
+    #: Share of the returns that must lie near another set: a few may lie where the other has a gap.
+    near_share: float = 0.95
+    #: Sets are one if they are no farther apart than this many times the distance between neighbours within them, which
+    #: varies from place to place.
+    spacings: float = 3.0
+    #: Fewer returns than this show no set.
+    fewest_returns: int = 8
+    #: ⟨J⟩ of an attractor that is followed once more may differ by this beyond its errors.
+    same_mean: float = 1e-3
+
+    # Whether a motion attracts, and from how far.
+
+    #: Largest radius: beyond it a push may leave the basin of a thin attractor although all samples come back.
+    largest_radius: float = 0.02
+    #: Part of the way to another attractor that a radius takes at most: less than half, so that no state is near both.
+    shared: float = 0.4
+    #: Least radius of an attractor, 1 % of the default resolution: what comes back only from nearer belongs to a set
+    #: that attracts as a whole, or to none.
+    smallest_radius: float = 1e-5
+    #: Least radius of a closed orbit for which no such set is found. On some orbits a block almost sticks, or almost
+    #: starts: they attract from one side only, and hardly at all from the other.
+    tiny_radius: float = 1e-8
+    #: Pushed trajectories have come back when they are this many times closer than they were pushed, well beyond what a
+    #: motion that neither attracts nor repels shows.
+    recovery: float = 10.0
+    #: Pushed trajectories that are followed at once: one that does not come back saves following the others.
+    push_group: int = 4
+    #: ⟨J⟩, in resolutions, below which a motion is next to synchrony: if it does not attract it is unstable, and no
+    #: part of a slow set.
+    next_to_synchrony: float = 10.0
+    #: States that show a slow set; how far they are pushed, in resolutions, so that they leave the locked orbit on it;
+    #: and how long they are left to fall back, in transients, too short to reach that orbit again.
+    slow_states: int = 12
+    slow_push: float = 5.0
+    slow_time: float = 0.3
+
+    # When a label is certain.
+
+    #: Successive returns within the radius after which a trajectory is captured: none passes by so often by chance.
+    close_returns: int = 8
+    #: The same near a set that a closed orbit lies in: long enough for most trajectories to come to the orbit first.
+    patient_returns: int = 2000
+    #: Longest orbit, in returns, that a trajectory has to go round twice; it bounds the cost of a label.
+    longest_orbit: int = 100
+
+    # How much work is done.
+
+    #: Time, in transients, of the first search, in which most trajectories have decided.
+    quick: float = 0.3
+    #: Unstable motions that a trajectory may come close to before it is given up; each costs a whole settling.
+    trials: int = 2
+    #: Trajectories that are followed without finding anything new before the others are left to what is known.
+    fruitless: int = 3
+    #: Trajectories that may be followed in vain at one a, over all rounds.
+    in_vain: int = 6
+    #: Rounds of labelling, each after something new was found, before the labels are left as they are.
+    rounds: int = 20
+    #: States, the first of each sample, whose labels are verified; the cost grows with them.
+    verified: int = 60
+    #: States ascribed to a chaotic attractor that are followed until they have settled.
+    checked: int = 6
+
+    # Pushes off what is unstable.
+
+    #: Push, in resolutions, off an unstable motion on which a trajectory has settled.
+    unstable_push: float = 0.1
+    #: Push, in resolutions, off an unstable symmetry, of a state that is carried to the next a.
+    symmetry_push: float = 0.1
+
+
+#: Those of the package.
+TUNING = Tuning()
