@@ -1,6 +1,5 @@
 """A map of basins in one call: the settings are the config's defaults, and the labels those of whole runs."""
 
-
 import numpy as np
 import pytest
 
