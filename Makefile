@@ -88,11 +88,12 @@ size: .venv/kernel
 fuzz: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/fuzz.py
 
-# The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains.
+# The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains; the tables of keys.
 docs: setup
 	$(BIN)/snakemake -c2 chains
 	$(BIN)/snakemake -c2
 	$(BIN)/python docs/refresh.py results/paper
+	$(BIN)/python docs/keys.py
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:

@@ -16,9 +16,9 @@ from burridge_knopoff import __version__
 from burridge_knopoff.laws import LAWS, Law, law_of
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import REQUIRED, fields_of
-from burridge_knopoff.model.initial import InitialState, initial_state
-from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.ranges import Either, Number, Several, Whole
+from burridge_knopoff.model.initial import STATE_NAME, InitialState, initial_state
+from burridge_knopoff.model.model import LAW_NAME, Model
+from burridge_knopoff.model.ranges import Either, Number, Several, Text, Whole
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS
 from burridge_knopoff.running.settings import Settings
 
@@ -81,18 +81,14 @@ def _named_number(text: str) -> tuple[str, float]:
     return name, _number(value)
 
 
-def _law_name(text: str) -> str:
-    if not re.fullmatch("[a-z][a-z0-9_]{0,31}", text):
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not allowed: small letters, digits and _, at most 32, a letter first"
-        )
-    return text
+def _named(allowed: Text) -> Callable[[str], str]:
+    def name(text: str) -> str:
+        try:
+            return allowed.form(text, "")
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(f"{error}") from None
 
-
-def _name(text: str) -> str:
-    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,31}", text):
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: letters, digits and _, at most 32, a letter first")
-    return text
+    return name
 
 
 #: Options whose value may begin with a minus, without being a plain number.
@@ -162,14 +158,16 @@ def build_parser() -> argparse.ArgumentParser:
         metavar="NAME=NUMBER",
         help="a number of the law; as often as it has some",
     )
-    model.add_argument("--law-name", type=_law_name, metavar="NAME", help="name of the law in the file (default: LAW)")
+    model.add_argument(
+        "--law-name", type=_named(LAW_NAME), metavar="NAME", help="name of the law in the file (default: LAW)"
+    )
     model.add_argument("--a", required=True, type=_number, help="friction parameter, 0 or more")
     _add(model, Chain, *CHAIN_OPTIONS)
     _add(model, Model, "v", "contact")
     state = simulate.add_argument_group("initial state")
     state.add_argument(
         "--initial",
-        type=_name,
+        type=_named(STATE_NAME),
         default="minus",
         metavar="NAME",
         help="minus | plus, or a name for the numbers given below (default: %(default)s)",

@@ -13,7 +13,9 @@ from burridge_knopoff.laws.law import FASTEST
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.ranges import Number, OneOf
+from burridge_knopoff.model.ranges import Number, OneOf, Text
+
+LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
 CONTACTS = ("one_sided", "symmetric")
 STARTS = ("moving", "tested")

@@ -13,8 +13,8 @@ from typing import Any
 
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.initial import STATE_NAME, InitialState
+from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import HUGE, Either, Named, Number, OneOf, Range, Several, Text, Whole, joined
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.stability.settings import (
@@ -44,8 +44,6 @@ VALUES = Several(Either((A, STEPS)), 1)
 SOME_VALUES = Several(A, 0, 100, distinct=True)
 
 STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first", "[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
-STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
-LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
 
 class LawKeys(Range):

@@ -7,6 +7,8 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
+from burridge_knopoff.model.ranges import refusal
+
 #: Values of a list, and points of a study: Snakemake takes minutes to plan so many jobs.
 MAXIMUM_POINTS = 100_000
 
@@ -50,13 +52,10 @@ def values_of(items: Sequence[Any], place: str) -> list[float]:
 def _range(item: Mapping[str, float], place: str) -> list[float]:
     first, last, step = (Decimal(repr(item[key])) for key in ("from", "to", "step"))
     if last < first:
-        raise ValueError(f"{place}.to: {item['to']!r} is not allowed: at least from ({item['from']!r})")
+        raise refusal(f"{place}.to", item["to"], f"at least from ({item['from']!r})")
     count = (last - first) / step
     if count >= MAXIMUM_POINTS:
-        raise ValueError(f"{place}.step: {item['step']!r} is not allowed: at most {MAXIMUM_POINTS} values in a range")
+        raise refusal(f"{place}.step", item["step"], f"at most {MAXIMUM_POINTS} values in a range")
     if count != int(count):
-        raise ValueError(
-            f"{place}.step: {item['step']!r} is not allowed: it does not divide the range "
-            f"{item['from']!r} to {item['to']!r}"
-        )
+        raise refusal(f"{place}.step", item["step"], f"it does not divide the range {item['from']!r} to {item['to']!r}")
     return [float(first + step * k) for k in range(int(count) + 1)]

@@ -13,7 +13,7 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.ranges import joined
+from burridge_knopoff.model.ranges import OneOf, Several, joined, refusal
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED
@@ -39,10 +39,8 @@ def fill_states(config: Mapping[str, Any]) -> None:
     states = config["initial"]
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
-            raise ValueError(
-                f"initial.{name}: unknown initial state; without position and velocity only these are known: "
-                f"{' | '.join(PAPER_STATES)}"
-            )
+            known = " | ".join(PAPER_STATES)
+            raise ValueError(f"initial.{name}: unknown initial state; without position and velocity: {known}")
         for key in ("position", "velocity"):
             if state and key not in state:
                 raise ValueError(f"initial.{name}.{key}: missing; position and velocity are needed together")
@@ -56,11 +54,9 @@ def fill_states(config: Mapping[str, Any]) -> None:
 def fill_laws(config: Mapping[str, Any]) -> None:
     """Check the names of laws that other keys hold, and fill in the first law where they hold none."""
     laws = config["laws"]
-    shown = config["figures"].setdefault("law", next(iter(laws)))
-    others = config["chains"].setdefault("laws", [next(iter(laws))])
-    for place, law in [("figures.law", shown), *((f"chains.laws[{i}]", law) for i, law in enumerate(others))]:
-        if law not in laws:
-            raise ValueError(f"{place}: {law!r} is not allowed: {' | '.join(laws)}")
+    known = OneOf(tuple(laws))
+    known.form(config["figures"].setdefault("law", next(iter(laws))), "figures.law")
+    Several(known).form(config["chains"].setdefault("laws", [next(iter(laws))]), "chains.laws")
 
 
 def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) -> None:
@@ -104,9 +100,7 @@ def fill_solver(config: dict[str, Any], grid: Iterable[float], blocks: int) -> N
             model = Model(chain, law_of(name, a, laws[name]), config["v"], config["contact"])
             if not model.has_closed_form:
                 others = " | ".join(solver for solver in SOLVERS if solver != "map")
-                raise ValueError(
-                    f"solver.{name}: 'map' is not allowed: no closed form at a = {a:g}: {_reason(model)}; {others}"
-                )
+                raise refusal(f"solver.{name}", "map", f"no closed form at a = {a:g}: {_reason(model)}; {others}")
     config["solver"] = solvers
 
 
@@ -133,9 +127,7 @@ def fill_basins(config: Mapping[str, Any], grid: Iterable[float]) -> None:
         _check_grid(f"basins.a.{law}", values, grid)
     usual = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in laws}
     basins["a"] = {law: basins["a"].get(law, [a for a in usual[law] if a in grid]) for law in laws}
-    name = basins.setdefault("initial", next(iter(states)))
-    if name not in states:
-        raise ValueError(f"basins.initial: {name!r} is not allowed: {' | '.join(states)}")
+    OneOf(tuple(states)).form(basins.setdefault("initial", next(iter(states))), "basins.initial")
 
 
 def fill_compared(config: Mapping[str, Any], grid: Iterable[float], else_a: float) -> None:
@@ -151,7 +143,7 @@ def fill_compared(config: Mapping[str, Any], grid: Iterable[float], else_a: floa
 def _check_grid(key: str, values: Iterable[float], grid: Iterable[float]) -> None:
     for a in values:
         if a not in grid:
-            raise ValueError(f"{key}: {a!r} is not allowed: a value of the grid")
+            raise refusal(key, a, "a value of the grid")
 
 
 def fill_chains(config: Mapping[str, Any]) -> None:
@@ -187,11 +179,6 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
         ("chains.two_blocks.samples", two_blocks["samples"], len(two_blocks["a"]) * two_blocks["samples"]),
     ):
         if numbers > MOST_NUMBERS:
-            raise ValueError(
-                f"{key}: {value!r} is not allowed: a job would hold {numbers:.1e} numbers for it, "
-                f"at most {MOST_NUMBERS:.0e}"
-            )
+            raise refusal(key, value, f"a job would hold {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}")
     if maps * basins["tiles"] > MAXIMUM_POINTS:
-        raise ValueError(
-            f"basins.tiles: {basins['tiles']} is not allowed: {maps} maps in at most {MAXIMUM_POINTS} tiles"
-        )
+        raise refusal("basins.tiles", basins["tiles"], f"{maps} maps in at most {MAXIMUM_POINTS} tiles")

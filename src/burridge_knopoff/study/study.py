@@ -11,7 +11,7 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, Sample, SearchSettings, Watch
+from burridge_knopoff.stability.settings import BasinSettings, Sample
 from burridge_knopoff.study import rules
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.grid import grid_of
@@ -136,34 +136,6 @@ class Study:
             raise ConfigError(f"a{a}: not a point of study {self.name}: a is not in its grid")
         return self.grid[a]
 
-    @property
-    def motion(self) -> MotionSettings:
-        """How kinds of motion are told."""
-        threshold = self.config["synchronization_threshold"]
-        return MotionSettings(**self.config["motion"], synchronization_threshold=threshold)
-
-    @property
-    def search(self) -> SearchSettings:
-        """How attractors are looked for."""
-        return SearchSettings(**self.config["attractors"])
-
-    @property
-    def basins(self) -> BasinSettings:
-        """The maps of basins."""
-        section = {key: value for key, value in self.config["basins"].items() if key not in ("a", "initial")}
-        return BasinSettings(initial=self.state(self.config["basins"]["initial"]), **section)
-
-    @property
-    def sample(self) -> Sample:
-        """The initial states of longer chains."""
-        return _settings_of(Sample, {**self.config, **self.config["chains"]})
-
-    @property
-    def watch(self) -> Watch:
-        """How long these are watched."""
-        threshold = self.config["synchronization_threshold"]
-        return _settings_of(Watch, {**self.config["chains"], "pair_distance": threshold})
-
     def settings(self, law: str, solver: str | None = None) -> Settings:
         """Return the settings of the runs under a law.
 
@@ -234,9 +206,9 @@ def _study(config: Mapping[str, Any]) -> Study:
         study.settings(law).check_blocks(study.blocks)
     rules.fill_basins(filled, set(values))
     with rules.under("basins."):
-        _ = study.basins
+        _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):
-        _ = study.sample
+        _settings_of(Sample, filled["chains"])
     rules.fill_compared(filled, set(values), study.shown_a)
     rules.check_size(filled, len(grid), study.blocks)
     return study

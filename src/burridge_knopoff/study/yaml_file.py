@@ -12,7 +12,6 @@ from burridge_knopoff.model.ranges import joined
 from burridge_knopoff.provenance.files import display_path
 
 _TAG = "tag:yaml.org,2002:"
-_PLAIN = ("map", "seq", "str", "int", "float", "bool", "null")
 
 
 class ConfigError(ValueError):
@@ -20,18 +19,13 @@ class ConfigError(ValueError):
 
 
 class _Loader(yaml.SafeLoader):
-    """Mappings, lists, texts, decimals, true, false and null; the keys of a mapping are different texts.
+    """Numbers are decimals, and the keys of a mapping different texts.
 
-    YAML also takes 010 for eight, 1:30 for ninety, 1_0 for ten and 2020-01-01 for a date: all of these are texts here.
+    YAML also takes 010 for eight, 1:30 for ninety and 1_0 for ten: these are texts here.
     """
 
-    yaml_constructors = {  # noqa: RUF012
-        tag: construct
-        for tag, construct in yaml.SafeLoader.yaml_constructors.items()
-        if tag is None or tag.removeprefix(_TAG) in _PLAIN
-    }
     yaml_implicit_resolvers = {  # noqa: RUF012
-        first: [(tag, pattern) for tag, pattern in resolvers if tag.removeprefix(_TAG) in ("bool", "null", "merge")]
+        first: [(tag, pattern) for tag, pattern in resolvers if tag not in (f"{_TAG}int", f"{_TAG}float")]
         for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
     }
 
@@ -78,7 +72,8 @@ def read_yaml(path: str | Path) -> Any:
         raise ConfigError(f"{file}: cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise ConfigError(f"{file}: cannot be read: not UTF-8 text") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    # All but the first are what PyYAML lets through, as for the value of a tag that it does not fit.
+    except (yaml.YAMLError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
         mark = getattr(error, "problem_mark", None)
         problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
         place = f" (line {mark.line + 1})" if mark else ""
