@@ -130,7 +130,7 @@ class LogHandler(LogHandlerBase):
                     needs = frozenset(self._needs.get(name, ()))
                     stage = PLAN.stages.get(name, name)
                     self._tally.rules[name] = Rule(stage, self._counts[name], PLAN.last_duration(name), needs)
-            if PLAN.stages:
+            if PLAN.results:
                 *stages, total = self._tally.counts()
                 self._say(f"{jobs(total.total)}: {', '.join(f'{stage.name} {stage.total}' for stage in stages)}")
         if self._silent:
@@ -159,7 +159,7 @@ class LogHandler(LogHandlerBase):
         if display is not None:
             display.close()
             self._text.setStream(self._stream)
-        if PLAN.stages and self._tally.rules:
+        if PLAN.results and self._tally.rules:
             tally, self._tally = self._tally, Tally()
             # What comes after a rule that runs, and does not run itself, is left out by --until.
             left_out = downstream(self._counts.keys(), self._needs) - self._counts.keys()

@@ -33,13 +33,17 @@ class Plan:
         """Take note of a run that begins.
 
         rules : `workflow.rules` of Snakemake. No event and nothing documented lists rules with their files: this is the
-            one place that looks inside Snakemake. Without what it finds each rule is a stage.
+            one place that looks inside Snakemake. If that fails a warning tells, and each rule is a stage.
         """
+        from snakemake.logging import logger
+
         self.results = results
-        for rule in (rules := list(rules)):
-            if rule.output:
-                self.stages[rule.name] = stage(rule, rules)
-                self.benchmarks[rule.name] = re.sub(r"\{[^}]*\}", "*", str(rule.benchmark or ""))
+        try:
+            rules = list(rules)
+            self.benchmarks = {rule.name: re.sub(r"\{[^}]*\}", "*", str(rule.benchmark or "")) for rule in rules}
+            self.stages = {rule.name: stage(rule, rules) for rule in rules if rule.output}
+        except Exception as error:
+            logger.warning(f"the stages of this run cannot be told: {error}")
 
     def last_duration(self, rule: str) -> float | None:
         """Return the mean seconds of a job of this rule by the benchmark files there are; None if there is none."""

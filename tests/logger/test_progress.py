@@ -163,6 +163,13 @@ def test_the_pace_of_plain_lines():
     assert due == [False, True, False, True, False, True, False]
 
 
+def test_a_defect_of_the_plan_is_only_told(caplog):
+    plan = Plan()
+    plan.announce("results/x", [SimpleNamespace(name="simulate")])
+    assert (plan.results, plan.stages, plan.last_duration("simulate")) == ("results/x", {}, None)
+    assert caplog.messages[0].startswith("the stages of this run cannot be told: ")
+
+
 def test_what_the_snakefile_announces(tmp_path):
     """Stages are files of rules; durations are means over benchmark files, as far as they can be read."""
 
