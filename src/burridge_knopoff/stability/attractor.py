@@ -62,7 +62,7 @@ def pushed(start: Instant, size: float, generator: np.random.Generator) -> Insta
 
 
 def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning: Tuning = TUNING) -> SteadyMotion:
-    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
+    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, as its own.
 
     Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
     itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
