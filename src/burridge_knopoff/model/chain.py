@@ -158,7 +158,7 @@ class Chain:
     def _solve(self, load: np.ndarray) -> np.ndarray:
         """Return the solution for the tridiagonal part of K; in a ring with its corner strength added at both ends.
 
-        By elimination: LAPACK's last bit depends on where in memory its arguments lie, and every number of a study would
+        By elimination: LAPACK's last bit depends on where in memory its arguments lie, and all numbers of a study would
         change with the folder that it is run from.
         """
         pivot = self.diagonal
