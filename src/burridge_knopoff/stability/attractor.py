@@ -29,8 +29,6 @@ class Symmetry(IntEnum):
 class Attractor:
     """A settled motion with what distinguishes it from others.
 
-    symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric, as
-        all are in a chain that is not its own mirror image
     partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set, or
         where there is none
     radius : distance from its returns within which trajectories are captured
