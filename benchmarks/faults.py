@@ -145,7 +145,7 @@ def jobs_killed(trials: Trials) -> None:
         wait_for_stages(study, {stage}, process)
 
         def job(study: Study = study, stage: str = stage) -> int | None:
-            words = {"points": "bk simulate", "attractors": ".attractors_of_law.py", "figures": ".figure.py"}[stage]
+            words = {"points": "bk simulate", "attractors": ".attractors_of_law.py", "figures": ".figure_of_"}[stage]
             commands = processes(study).items()
             return next((number for number, command in commands if re.search(f"python.*{words}", command)), None)
 

@@ -24,6 +24,7 @@ FIGURES = tuple(
         *("basins", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion"),
     )
 )
+OF_SUMMARIES = tuple(name for name in FIGURES if name not in ("figure_distance", "figure_motion"))
 CODE, COMMENT, DOCSTRING = "\n_MORE = 1\n", "\n# More words.\n", '"""More words.\n'
 
 
@@ -106,8 +107,8 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
         ("figures/style.py", FIGURES),
         ("claims/history.py", ("claims",)),
         ("report/page.py", ("report",)),
-        ("../../workflow/scripts/figure.py", FIGURES),
-        ("../../workflow/scripts/summary.py", (*OF_POINTS, "orbits", "equilibrium")),
+        ("../../workflow/scripts/figure_of_summaries.py", OF_SUMMARIES),
+        ("../../workflow/scripts/summary_of_points.py", OF_POINTS),
     ],
 )
 def test_code_remakes_what_depends_on_it(studied, name, roots):

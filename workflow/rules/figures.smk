@@ -9,8 +9,15 @@ DESCRIPTIONS = [
 SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
     law=STUDY.shown_law, a=STUDY.shown_point, initial="{initial}"
 )
-# Of one initial state, or of each.
-RUNS = {True: SHOWN_RUNS, False: expand(SHOWN_RUNS, initial=STUDY.initial)}
+# Of one initial state if the name of the picture has it, else of each.
+RUNS = {
+    figure.file: (
+        SHOWN_RUNS
+        if "{initial}" in figure.file
+        else expand(SHOWN_RUNS, initial=STUDY.initial)
+    )
+    for figure in DESCRIPTIONS
+}
 
 
 # Without those of the optional stage.
@@ -33,14 +40,9 @@ for figure in DESCRIPTIONS:
         name:
             f"figure_{figure.name}"
         input:
-            [
-                (
-                    RUNS["{initial}" in figure.file]
-                    if name == "runs"
-                    else f"{SUMMARY}/{name}.nc"
-                )
-                for name in figure.inputs
-            ],
+            RUNS[figure.file]
+            if figure.of_runs
+            else [f"{SUMMARY}/{name}.nc" for name in figure.inputs],
         output:
             f"{FIGURES}/{figure.file}.pdf",
             report(
@@ -58,10 +60,10 @@ for figure in DESCRIPTIONS:
         params:
             figure=figure.name,
             caption=figure.caption_of,
-            runs=STUDY.shown_runs if figure.inputs == ("runs",) else None,
+            runs=STUDY.shown_runs if figure.of_runs else None,
             from_study={name: getattr(STUDY, name) for name in figure.from_study},
-            sources=sources("figure", f"figures.{figure.name}"),
+            sources=sources(figure.script, f"figures.{figure.name}"),
         message:
             f"figure: {figure.title.replace('{', '{wildcards.')}"
         script:
-            "../scripts/figure.py"
+            f"../scripts/{figure.script}.py"

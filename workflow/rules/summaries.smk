@@ -70,10 +70,9 @@ for name, row in SUMMARIES.items():
         params:
             **SUMMARY_PARAMS[row["of"]],
             summary=name,
-            of=row["of"],
             config=keys(*row.get("keys", [])),
-            sources=sources("summary", f"summaries.{name}"),
+            sources=sources(f"summary_of_{row['of']}", f"summaries.{name}"),
         message:
             f"summary: {name}"
         script:
-            "../scripts/summary.py"
+            f"../scripts/summary_of_{row['of']}.py"

@@ -57,7 +57,7 @@ def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tu
     """Return (known, values) of a variable on the attractors that an initial state reaches.
 
     attractors : with a, under one convention
-    known : shape (a,); False where no attractor is known to be reached, and the values are those of any
+    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
     values : shape (a, …)
     """
     found = attractors.sel(law=law)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) of the runs from a state; one still on its way to synchrony counts as there."""
+    """Return (a, kind of motion) of the runs from a state; one still on its way to synchrony counts as synchronized."""
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     kind = np.nan_to_num(runs["kind"].values, nan=MotionKind.UNDETERMINED).astype(int)
     if "attractors" in evidence.summaries:

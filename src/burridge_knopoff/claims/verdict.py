@@ -135,7 +135,7 @@ def by_value(value: float, claimed: float, tolerance: float, loose: float) -> st
 def by_interval(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
     """Judge a number that is only known to lie in (low, high]: what holds there for every value of the interval.
 
-    Raises NotTestableError where the interval reaches into and out of what is claimed: the grid of a is too coarse.
+    Raises NotTestableError where only part of the interval is within what is claimed: the grid of a is too coarse.
     """
     # Decimals of a grid and of a claim may differ in their last bit.
     tolerance, loose = tolerance * (1.0 + 1e-9), loose * (1.0 + 1e-9)

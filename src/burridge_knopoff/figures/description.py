@@ -4,7 +4,7 @@ A module of this folder that assigns CAPTION is a figure. It has a function `dra
 
 TITLE, CATEGORY : in words; PAPER : figures of the paper that it shows again, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
-INPUTS : names of the summaries that `draw` takes, in order; `runs` are the point files of single runs
+INPUTS : names of the summaries that `draw` takes, in order; or `runs` alone, the point files of single runs by state
 FROM_STUDY : names of properties of `Study` that it takes besides
 CONDITION : property of `Study` without which there is no such figure
 FILE : name of the picture if it is not that of the module
@@ -31,6 +31,16 @@ class Description:
     condition: str = ""
     paper: str = ""
     file: str = ""
+
+    @property
+    def of_runs(self) -> bool:
+        """Whether it shows single runs and no summary."""
+        return self.inputs == ("runs",)
+
+    @property
+    def script(self) -> str:
+        """Name of the script that draws it."""
+        return "figure_of_runs" if self.of_runs else "figure_of_summaries"
 
     def caption_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the caption of one picture, in one paragraph, with what the paper has of it."""

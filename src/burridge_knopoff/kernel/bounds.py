@@ -27,8 +27,8 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
 class Bounds:
     """Terms of polynomials of order ORDER, in `columns` vectors, and what is known about them over an interval.
 
-    scaled, quotient : the terms of a polynomial at the end of the interval, and those of another that may stand for it
-    lowest, highest : bounds; fall : how fast the polynomials of one column fall at least, everywhere
+    scaled, quotient : the terms of a polynomial at the end of the interval, and those of one that may take its place
+    lowest, highest : bounds; fall : the least rate at which the polynomials of one column fall, anywhere
     """
 
     scaled: Vectors
@@ -123,7 +123,7 @@ class Bounds:
         return guess
 
     def steepness(self, length: cython.double) -> None:
-        """Take how fast the polynomials that were bounded last, as they are, fall at least in an interval this long."""
+        """Set `fall` for the polynomials that were bounded last, not for their quotients, in an interval this long."""
         k: cython.Py_ssize_t
         per_time: cython.double = 1.0 / length
         corner: cython.pointer[vec] = self.corner.at

@@ -86,7 +86,7 @@ class Exponents:
             self.batch_start = clock
 
     def follow(self, state: State, clock: cython.double, completed: cython.bint) -> None:
-        """Look after the perturbations at a time, when all changes of this instant are done."""
+        """Orthonormalise the perturbations if it is time to, after all changes of this instant."""
         stuck: cython.Py_ssize_t = self.stuck(state)
         if stuck > self.most_stuck:
             self.most_stuck = stuck

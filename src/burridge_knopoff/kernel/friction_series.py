@@ -34,10 +34,10 @@ class FrictionSeries:
     """The series of Φ in `columns` columns of vectors, to the given order.
 
     Column c of register r has its coefficient k in register.at[(r·columns + c)·length + k]; Φ begins at `result`, with
-    its column 0. Whoever fills coefficients n of register 0 calls `begin` (n = 0) or `extend`. A law of LINEAR
-    operations only is `affine`, Φ = constant + slope·u, and needs no series.
+    its column 0. Code that fills coefficients n of register 0 calls `begin` (n = 0) or `extend`. A law of only
+    LINEAR operations is `affine`, Φ = constant + slope·u, and needs no series.
 
-    code, first, second (int) and alpha, beta, gamma : the tape, one entry an operation
+    code, first, second (int) and alpha, beta, gamma : the tape, one entry for each operation
     value : the register that is Φ
     """
 
@@ -92,7 +92,7 @@ class FrictionSeries:
             self.constant, self.slope = lines[value]
         size = 0 if self.affine else columns * self.length
         self.register = Vectors((self.operations + 1) * size)
-        # k times the k-th coefficient of a register, for the operations that go by a derivative.
+        # k times the k-th coefficient of a register, for the operations whose recurrence has a derivative in it.
         self.weighted = Vectors(self.operations * size)
         self.inverse = Vectors(self.operations * columns)
         self.result = value * size

@@ -1,6 +1,6 @@
 """Taylor series of the motion in lanes, with a step that leaves no remainder: `series` for many trajectories at once.
 
-Order and truncation are lower than there: every coefficient counts where all lanes take the same time.
+Order and truncation are lower than there, since all lanes pay for each coefficient.
 """
 
 import math
@@ -30,7 +30,7 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
 TRUNCATION = 4e-16
 RATIO = 5.0
 
-# The step where nothing slips, and what is longer: its powers are finite.
+# The longest step, and that of lanes in which nothing slips: its powers are finite.
 LONGEST = 1e12
 
 

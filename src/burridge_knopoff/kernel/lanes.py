@@ -1,7 +1,7 @@
 # cython: auto_pickle=False
 """The states of several trajectories of one chain, one a lane, and the stick-slip rules that change them.
 
-The rules are those of `state`, of which this is the same in lanes: what holds for one lane is a mask. Block i feels the
+The rules are those of `state`, for all lanes at once: what is true of some lanes is a mask. Block i feels the
 spring force s_i = f_i + (l_i x_(i−1) + r_i x_(i+1)) − d_i x_i and sticks until that passes its threshold θ_i; when it
 slips, its friction is θ_i Φ(|U_i'|). The pulls of the neighbours are added first, so that the mirror image of a state
 moves as its mirror image, bit for bit.
@@ -130,7 +130,7 @@ class Lanes:
         velocity: cython.double[::1],
         stuck: cython.int[::1],
     ) -> None:
-        """Let a member begin in a lane at τ = 0, from positions x_i, velocities U_i' and which blocks are stuck."""
+        """Start a trajectory in a lane at τ = 0, from positions x_i, velocities U_i' and which blocks are stuck."""
         i: cython.Py_ssize_t
         self.member[lane] = member
         for i in range(self.blocks):

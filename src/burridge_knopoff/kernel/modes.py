@@ -14,9 +14,9 @@ and with K = Q diag(λ) Qᵀ each mode q = Qᵀx is a particular solution p + r 
     r = −v Qᵀg / λ,     p = (a r + Qᵀb) / λ.
 
 No λ is less than the weakest spring to the driver, because K is that of the springs between blocks plus diag(D): all
-modes oscillate if a < 2 √min D, a < 2 in the paper's chain. The matrix of a run depends on its
-length and on the ends of the chain that it contains only: there are at most 4N of them for any set of slipping blocks,
-each solved once, when it is first met.
+modes oscillate if a < 2 √min D, a < 2 in the paper's chain. The matrix of a run depends only
+on its length and on the ends of the chain that it contains: there are at most 4N of them for any set of slipping
+blocks, each solved once, when it is first met.
 """
 
 import cython

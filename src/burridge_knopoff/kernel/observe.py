@@ -96,7 +96,7 @@ class Observer:
         self._sample(piece, clock, clock_rest, length)
 
     def _load_distance(self, piece: Piece, length: cython.double) -> None:
-        """Load the distance of this piece, once, and only if something asks for it."""
+        """Load the distance of this piece, once, and only if it is needed."""
         if not self.loaded:
             self.distance.load(piece)
             self.loaded = True

@@ -22,7 +22,7 @@ class Piece:
 
     `direction` (0 where a block sticks) and `stuck` (1 there, and in lanes without a block) hold for the whole piece.
     `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used;
-    `crossing` when W = Σ x_i changes its sign in that time, −1.0 if it does not, UNCERTAIN if that is to be looked for.
+    `crossing` when W = Σ x_i changes its sign in that time, −1.0 if it does not, UNCERTAIN if it has to be looked for.
     """
 
     blocks: cython.Py_ssize_t

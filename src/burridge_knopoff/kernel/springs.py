@@ -13,8 +13,8 @@ import numpy as np
 from cython.cimports.burridge_knopoff.kernel.springs import SLIDING, THRESHOLD
 from cython.cimports.burridge_knopoff.kernel.vector import LANES, Vectors
 
-# Steps of the power method to a bound on the eigenvalues: they better it in chains of a few blocks. In long ones the
-# first, which is that of Gershgorin, is good already.
+# Steps of the power method, which tighten a bound on the eigenvalues in chains of a few blocks. In long ones the first
+# bound, that of Gershgorin, is good already.
 WIELANDT = 3
 
 

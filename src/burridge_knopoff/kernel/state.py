@@ -1,7 +1,7 @@
 """The state of a chain as a solver moves it on, and the stick-slip rules that change it.
 
-It is taken from a `model.Instant`, and read out as one: beside positions, velocities and which blocks stick it has what
-the next event depends on, and it changes all the time. (An `InitialState` gives U(0) and U'(0) as the paper does.)
+It is set from a `model.Instant` and read out as one. Besides positions, velocities and which blocks stick it holds what
+the next event depends on, and it is changed in place. (An `InitialState` gives U(0) and U'(0), as the paper does.)
 
 Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −Φ(av)·1, velocity is U_i' itself, so that a
 stuck block has velocity exactly 0. Because K·1 = D the spring force on block i is

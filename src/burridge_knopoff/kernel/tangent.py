@@ -138,7 +138,7 @@ class Tangent:
         return np.concatenate([table[: self.vectors, : self.blocks].T for table in tables])
 
     def forget_stops(self) -> None:
-        """Time moves on, or begins again: what stops have taken away does not come back."""
+        """Forget what stops have taken away, as time moves on or begins again."""
         i: cython.Py_ssize_t
         for i in range(self.blocks):
             self.deceleration[i] = 0.0

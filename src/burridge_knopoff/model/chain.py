@@ -140,15 +140,15 @@ class Chain:
             strength = self.before[0]
             load += strength * other * (load[0] + load[-1]) / (1.0 - strength * (other[0] + other[-1]))
         if self.is_mirror_symmetric:
-            # To the bit, as the chain is.
+            # Mirror-symmetric to the bit, as the chain is.
             load = 0.5 * (load + load[::-1])
         return -friction * load
 
     def _solve(self, load: np.ndarray) -> np.ndarray:
         """Return the solution for the tridiagonal part of K; in a ring with its corner strength added at both ends.
 
-        By elimination: LAPACK's last bit depends on where in memory its arguments lie, and with it would every number
-        of a study that is run from another folder.
+        By elimination: LAPACK's last bit depends on where in memory its arguments lie, and all numbers of a study would
+        change with the folder that it is run from.
         """
         pivot = self.diagonal
         strength = self.after

@@ -29,8 +29,6 @@ class Symmetry(IntEnum):
 class Attractor:
     """A settled motion with what distinguishes it from others.
 
-    symmetry : synchronized (mirror blocks move as one), symmetric (the set is its own mirror image) or asymmetric, as
-        all are in a chain that is not its own mirror image
     partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set, or
         where there is none
     radius : distance from its returns within which trajectories are captured
@@ -62,7 +60,7 @@ def pushed(start: Instant, size: float, generator: np.random.Generator) -> Insta
 
 
 def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning: Tuning = TUNING) -> SteadyMotion:
-    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, for its own.
+    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, as its own.
 
     Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
     itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.

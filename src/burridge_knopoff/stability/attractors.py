@@ -216,7 +216,9 @@ class Search:
         if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
             return False
         symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
-        slow = Attractor(spread(self.model, motion, settings, tuning), symmetry, index, slow=True)
+        slow = Attractor(
+            spread(self.model, motion, settings, tuning), symmetry, index, slow=True, close_returns=tuning.close_returns
+        )
         return self._accept([slow], tuning.smallest_radius) or (closed and self._accept(new, tuning.tiny_radius))
 
     def _accept(self, new: Sequence[Attractor], least: float) -> bool:

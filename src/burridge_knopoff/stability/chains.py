@@ -2,7 +2,8 @@
 
 Blocks i and j = N + 1 − i are mirror blocks. The distance of a pair is J_i = sqrt((U_i' − U_j')² + (U_i − U_j)²), J of
 the paper for the end blocks; the mirror distance is the largest of them. For odd N the middle block belongs to no pair.
-All of this is for chains that are their own mirror images; others are refused.
+All of this is for chains that are their own mirror images; others are refused. `summaries.chains` writes what is
+found to files, and `figures.chains` draws it.
 """
 
 from __future__ import annotations

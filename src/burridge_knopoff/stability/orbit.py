@@ -188,10 +188,10 @@ def _middle(orbit: Orbit) -> float:
     """
     if any(len(orbit.times(block, kind)) != 1 for block in (0, 2) for kind in (0, 1)):
         raise OrbitError(f"a = {orbit.model.a!r}: an outer block stops more than once a period, or not at all")
-    begin = max(orbit.times(block, 0)[0] for block in (0, 2)) - orbit.period
+    start = max(orbit.times(block, 0)[0] for block in (0, 2)) - orbit.period
     end = min(orbit.times(block, 1)[0] for block in (0, 2))
-    middle = 0.5 * (begin + end)
-    return middle if abs(middle) > 0.1 * (end - begin) else 0.0
+    middle = 0.5 * (start + end)
+    return middle if abs(middle) > 0.1 * (end - start) else 0.0
 
 
 def transverse_multiplier(orbit: Orbit) -> float:

@@ -103,7 +103,7 @@ class Grid:
 def read_point(grid: Grid, law: str, initial: str, a: str, names: Sequence[str]) -> dict[str, np.ndarray]:
     """Return the named variables of one point.
 
-    Raises BadFile, one line, if the file is missing, damaged, or another one than the study would make now.
+    Raises BadFile, one line, if the file is missing, damaged, or not the one that the study would make now.
     """
     return read_run(grid.path(law, initial, a), grid.command(law, initial, a), names)
 
@@ -139,7 +139,7 @@ def open_runs(grid: Grid) -> dict[str, xarray.Dataset]:
 
 
 def check_run(path: Path, command: str) -> Seal:
-    """Return the seal of the point file of a run after holding it against the command and the sources of now.
+    """Return the seal of the point file of a run after comparing it with the command and the present sources.
 
     Raises BadFile as `read_point` does.
     """
@@ -150,7 +150,7 @@ def check_run(path: Path, command: str) -> Seal:
 
 
 def _other(path: Path, command: str) -> str:
-    """Return in words what else a sealed file is than the run of a command."""
+    """Return in words how a sealed file differs from the run of a command."""
     try:
         with netCDF4.Dataset(path) as dataset:
             found, software = dataset.history, dataset.software

@@ -106,16 +106,16 @@ def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:
     return float(stops[-1] - stops[0]) / len(cycles), error
 
 
-def stick_fraction(time: np.ndarray, kind: np.ndarray, begin: float, end: float, ends_stuck: bool) -> float:
-    """Return the share of [begin, end] in which a block sticks.
+def stick_fraction(time: np.ndarray, kind: np.ndarray, start: float, end: float, ends_stuck: bool) -> float:
+    """Return the share of [start, end] in which a block sticks.
 
     time, kind : all its stops and starts from τ = 0 on, in order
     ends_stuck : whether it sticks at the end, which decides if it has neither stopped nor started
     """
     before = kind[0] == START if len(kind) else ends_stuck
-    edge = np.clip(np.concatenate([[begin], time, [end]]), begin, end)
+    edge = np.clip(np.concatenate([[start], time, [end]]), start, end)
     stuck = np.concatenate([[before], kind == STOP])
-    return float(np.diff(edge)[stuck].sum()) / (end - begin)
+    return float(np.diff(edge)[stuck].sum()) / (end - start)
 
 
 def leading_frequency(values: np.ndarray, duration: float) -> float:

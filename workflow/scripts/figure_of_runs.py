@@ -1,0 +1,15 @@
+"""Figure: drawn by the module of its name, of single runs."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from importlib import import_module
+
+from burridge_knopoff.figures.style import write_figure
+from burridge_knopoff.summaries.points import Grid, open_runs
+
+params = snakemake.params
+module = import_module(f"burridge_knopoff.figures.{params.figure}")
+runs = open_runs(Grid.of(params.runs["folder"], params.runs))
+write_figure(module.draw(runs), *snakemake.output)
