@@ -2,44 +2,103 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import json
 
 import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.claims.ledger import judge, ledger, read_claims
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
-from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at, reached
+from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
+from burridge_knopoff.claims.ledger import judge, ledger
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, Measured, Verdict
+from tests.claims import alterations
+from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
+from tests.claims.said import CLAIMS, FILE, altered, said
 from tests.claims.worlds import evidence, paper_world
 
-ROOT = Path(__file__).parents[2]
-CLAIMS = {
-    claim.name: claim
-    for claim in read_claims(ROOT / "config/claims.yaml", ROOT / "workflow/schemas/claims.schema.yaml")
-}
 # What no study can judge as yet.
 UNJUDGED = {"phases_decide": "the states of this study differ in positions, not in the phase of an oscillation about"}
 JUDGED = [name for name in CLAIMS if name not in UNJUDGED]
+SAID = json.loads(FILE.read_text(encoding="utf-8"))
+#: (claim, its number there, verdict, alteration): first no alteration, for each claim.
+TOLD = [(name, 0, HOLDS, lambda world: None) for name in JUDGED]
+TOLD += [(case[0], [one[0] for one in CASES[: k + 1]].count(case[0]), *case[1:]) for k, case in enumerate(CASES)]
 
 
-@pytest.mark.parametrize("name", JUDGED)
-def test_every_claim_holds_where_the_paper_is_right(name: str) -> None:
-    verdict = judge(CLAIMS[name], evidence(paper_world()))
-    assert verdict.verdict == HOLDS, verdict.reason
-
-
-@pytest.mark.parametrize(("name", "expected", "alteration"), CASES, ids=[f"{c[0]}-{c[1]}" for c in CASES])
-def test_altered_data_alter_the_verdict(name: str, expected: str, alteration: Alteration) -> None:
-    world = paper_world()
-    alteration(world)
-    verdict = judge(CLAIMS[name], evidence(world))
+@pytest.mark.parametrize(("name", "number", "expected", "alteration"), TOLD, ids=[f"{c[0]}-{c[2]}" for c in TOLD])
+def test_altered_data_alter_the_verdict(name: str, number: int, expected: str, alteration: Alteration) -> None:
+    """Every claim holds where the paper is right; what is said, and the numbers that it rests on, lie in said.json."""
+    verdict = altered(name, alteration)
     assert verdict.verdict == expected, verdict.reason
-    assert verdict.reason
+    assert said(verdict) == SAID[name][number]
+    assert len(SAID[name]) == 1 + [case[0] for case in CASES].count(name)
     if expected == CONVENTION:
         judged = set(verdict.conventions.values())
         assert FAILS in judged
         assert judged & {HOLDS, LOOSELY}
+
+
+@pytest.mark.parametrize(
+    ("own", "others", "expected", "changes"),
+    [
+        (HOLDS, (HOLDS, HOLDS, HOLDS), HOLDS, "but"),
+        (HOLDS, (HOLDS, FAILS, HOLDS), CONVENTION, "but; symmetric, moving: fails (2)"),
+        (
+            FAILS,
+            (FAILS, "", LOOSELY),
+            CONVENTION,
+            "but; symmetric, tested: holds loosely (3); not judged under symmetric, moving",
+        ),
+        (FAILS, (FAILS, FAILS, FAILS), FAILS, "but"),
+        (
+            LOOSELY,
+            (HOLDS, "", ""),
+            LOOSELY,
+            "but; one_sided, tested: holds (1); not judged under symmetric, moving and symmetric, tested",
+        ),
+        (
+            FAILS,
+            ("", "", ""),
+            FAILS,
+            "but; not judged under one_sided, tested and symmetric, moving and symmetric, tested",
+        ),
+    ],
+)
+def test_a_claim_depends_on_convention_where_it_holds_and_fails(
+    own: str, others: tuple[str, ...], expected: str, changes: str
+) -> None:
+    names = ["one_sided, tested", "symmetric, moving", "symmetric, tested"]
+    figures = [Measured("number", 1.0)]
+
+    def judged(attractors: xarray.Dataset) -> tuple[str, str]:
+        number = names.index(f"{attractors['contact'].item()}, {attractors['start'].item()}")
+        return others[number], str(number + 1)
+
+    found = under_conventions(evidence(paper_world()), own, "why", figures, ["but"], judged)
+    told = {"one_sided, moving": own, **{name: one for name, one in zip(names, others, strict=True) if one}}
+    assert found == Verdict(expected, "why", figures, changes, told, own)
+    alone = under_conventions(evidence({}), own, "why", figures, [], judged)
+    assert alone == Verdict(own, "why", figures, "", {"one_sided, moving": own}, own)
+
+
+def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
+    slots = ("law", "a", "attractor")
+    found = xarray.Dataset(
+        {
+            "branch": (slots, [[[0, 2, 2], [0, 2, 2], [0, -1, -1], [0, 1, -1]]]),
+            "side": (slots, [[[0, 1, -1], [0, 1, -1], [0, 0, 0], [0, 0, 0]]]),
+            "value": (slots, np.arange(12.0).reshape(1, 4, 3)),
+            "initial_branch": (("law", "initial", "a"), [[[2, 0, -1, 2]]]),
+            "initial_side": (("law", "initial", "a"), [[[-1, 0, 0, 0]]]),
+        },
+        {"law": ["linearized"], "initial": ["plus"]},
+    )
+    known, values = reached(found, "plus", "linearized", "value")
+    assert known.tolist() == [True, True, False, False]
+    assert values[known].tolist() == [2.0, 3.0]
+    assert judge_shares({}, 0.9) == ("", "")
+    assert judge_shares({"one": 1.0, "other": 0.9}, 0.9) == (LOOSELY, "100.0 % (one), 90.0 % (other)")
+    assert judge_shares({"one": 1.0, "other": 0.89}, 0.9)[0] == FAILS
 
 
 def test_every_claim_is_seen_to_fail() -> None:
@@ -188,7 +247,7 @@ def test_runs_that_did_not_complete_are_no_evidence() -> None:
 
 def test_conventions_are_those_of_the_study() -> None:
     world = paper_world()
-    reached(0, initial="plus", contact="symmetric", start="moving")(world)
+    alterations.reached(0, initial="plus", contact="symmetric", start="moving")(world)
     own = judge(CLAIMS["plus_does_not_synchronize"], evidence(world, contact="symmetric"))
     # Under its own convention a study is judged by its runs, in which plus does not synchronize here.
     assert own.verdict == HOLDS

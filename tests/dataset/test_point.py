@@ -33,8 +33,12 @@ def test_the_file_and_the_dataset_are_the_same(trajectory, path):
         assert (file.attrs["law"], file.attrs["law_formula"]) == ("linearized", "1 - a*u")
         assert (file.attrs["chain_coupling"], file.attrs["chain_pulling"]) == (1.0, "neighbours")
         assert (file.attrs["chain_threshold"], file.attrs["chain_ends"]) == (1.0, "open")
-        assert file.attrs["initial"] == "plus"
-        assert file["a"].item() == 0.08
+        assert (file.attrs["initial"], file.attrs["transient"], file.attrs["window"]) == ("plus", 100.0, 200.0)
+        assert (file["a"].item(), file["v"].item(), file["block"].values.tolist()) == (0.08, 0.1, [1, 2, 3])
+        assert tuple(file["initial_position"].values) == trajectory.initial.position
+        assert tuple(file["initial_velocity"].values) == trajectory.initial.velocity
+        assert file["batch"].values.tolist() == [125.0, 175.0, 225.0, 275.0]
+        assert file["status"].item() == 0
         for name, variable in file.variables.items():
             assert variable.attrs["long_name"], name
             assert "_FillValue" not in variable.encoding or np.isnan(variable.encoding["_FillValue"]) is None

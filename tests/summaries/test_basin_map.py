@@ -1,38 +1,27 @@
 """A map of basins in one call: the settings are the config's defaults, and the labels those of whole runs."""
 
-from dataclasses import asdict, fields
+import inspect
 
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.chains import Sample, Watch
-from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings
 from burridge_knopoff.summaries.basin_map import basin_map
 
 
-def test_settings_are_the_schema_defaults(repository):
-    from burridge_knopoff.study import read_schema
-
-    schema = read_schema(repository / "workflow" / "schemas" / "config.schema.yaml")["properties"]
-    motion = {**schema["motion"]["properties"], "synchronization_threshold": schema["synchronization_threshold"]}
-    chains = schema["chains"]["properties"]
-    watched = {key: chains[key] for key in ("time_limit", "synchronization_distance")}
-    drawn = {key: item for key, item in chains.items() if key in {item.name for item in fields(Sample)}}
-    basins = {key: item for key, item in schema["basins"]["properties"].items() if key in asdict(BasinSettings())}
-    for mine, theirs, other in (
-        (SEARCH, schema["attractors"]["properties"], set()),
-        (MOTION, motion, set()),
-        (BasinSettings(), basins, {"initial"}),
-        (Watch(), watched, {"pair_distance"}),
-        (Sample(), drawn, {"start"}),
-    ):
-        values = asdict(mine)
-        assert set(theirs) | other == set(values)
-        for key in set(values) - other:
-            assert list(np.atleast_1d(values[key])) == list(np.atleast_1d(theirs[key]["default"])), key
-    assert Watch().pair_distance == schema["synchronization_threshold"]["default"]
+def test_what_is_taken_if_nothing_is_said():
+    defaults = {
+        "pixels": 64,
+        "v": 0.1,
+        "contact": "one_sided",
+        "start": "moving",
+        "samples": 100,
+        "seed": 1,
+        "threads": 1,
+    }
+    parameters = inspect.signature(basin_map).parameters
+    assert {name: parameters[name].default for name in defaults} == defaults
 
 
 def test_labels_are_those_of_whole_runs():
