@@ -16,6 +16,7 @@ import ast
 import os
 import queue
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -216,12 +217,21 @@ class Copy:
                 item.write_bytes(content)
 
 
-def equivalents() -> dict[tuple[str, str, str], str]:
-    """Return {(file, line, changed line): why it changes no result}."""
+def equivalents() -> list[tuple[str, str, str]]:
+    """Return the patterns (file, line, changed line) of the changes that change no result."""
     listed = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-    return {
-        (item["file"], item["line"], change): item["why"] for item in listed["equivalent"] for change in item["changes"]
-    }
+    return [(item["file"], item["line"], becomes) for item in listed["equivalent"] for becomes in item["becomes"]]
+
+
+def is_equivalent(mutant: Mutant, listed: list[tuple[str, str, str]]) -> bool:
+    """Tell whether a change is among those listed; in a pattern … is any text."""
+    texts = (mutant.file, mutant.before, mutant.after)
+    return any(all(map(matches, item, texts)) for item in listed)
+
+
+def matches(pattern: str, text: str) -> bool:
+    """Tell whether a text is that of a pattern."""
+    return re.fullmatch(".*".join(map(re.escape, pattern.split("…"))), text) is not None
 
 
 def main() -> int:
@@ -232,9 +242,9 @@ def main() -> int:
     parser.add_argument("--rooms", nargs="+", default=ROOMS, choices=ROOMS)
     parser.add_argument("--copies", type=int, default=2, help="changes that are tried at a time")
     chosen = parser.parse_args()
-    known = equivalents()
+    listed = equivalents()
     mutants = sample(chosen.rooms, chosen.count, chosen.seed)
-    tried = [item for item in mutants if (item.file, item.before, item.after) not in known]
+    tried = [item for item in mutants if not is_equivalent(item, listed)]
     with tempfile.TemporaryDirectory(prefix="mutants") as folder:
         copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
         for number in range(chosen.copies):
@@ -248,21 +258,21 @@ def main() -> int:
                 return 1
             limits[room] = 60.0 + 5.0 * (time.monotonic() - begin)
         copies.put(first)
-        survived = []
+        verdicts: list[bool] = []
 
         def attempt(mutant: Mutant) -> None:
             copy = copies.get()
             try:
-                if copy.survives(mutant, limits[mutant.file.split("/")[0]]):
-                    survived.append(mutant)
-                    print(mutant, flush=True)
+                noticed = not copy.survives(mutant, limits[mutant.file.split("/")[0]])
             finally:
                 copies.put(copy)
+            verdicts.append(noticed)
+            if not noticed:
+                print(f"{len(verdicts)} of {len(tried)} tried; not noticed: {mutant}", flush=True)
 
         with ThreadPoolExecutor(chosen.copies) as pool:
             list(pool.map(attempt, tried))
-    noticed = len(tried) - len(survived)
-    print(f"{noticed} of {len(tried)} changes noticed, {noticed / max(1, len(tried)):.1%};", end=" ")
+    print(f"{sum(verdicts)} of {len(tried)} changes noticed, {sum(verdicts) / max(1, len(tried)):.1%};", end=" ")
     print(f"{len(mutants) - len(tried)} more change no result (seed {chosen.seed}, {' '.join(chosen.rooms)})")
     return 0
 

@@ -10,7 +10,6 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Instant
 from burridge_knopoff.stability import attractors
 from burridge_knopoff.stability.attractors import Search, find_attractors
-from burridge_knopoff.stability.continuation import branches, same_numbers
 from burridge_knopoff.stability.labels import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, label
 from burridge_knopoff.stability.motion import CHAOTIC, QUASIPERIODIC
 from burridge_knopoff.stability.motion import SYNCHRONIZED as KIND_SYNCHRONIZED
@@ -149,50 +148,6 @@ def test_nothing_is_reached_where_nothing_ever_stops():
     assert found.attractors == []
 
 
-def test_branches_at_a_pitchfork():
-    """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
-    before = [stand_in(SYNCHRONIZED, 0.0, 0), stand_in(SYMMETRIC, 0.14, 1)]
-    pair = [stand_in(ASYMMETRIC, 0.01, 1, -1.0), stand_in(ASYMMETRIC, 0.01, 0, 1.0)]
-    after = [*pair, stand_in(SYMMETRIC, 0.15, 2)]
-    upward = [np.array([0, 2]), np.array([1, 0, 2]), np.array([-1, -1, -1])]
-    downward = [np.array([-1, -1]), np.array([0, 0, 1]), np.array([1, 0, 2])]
-    later = [stand_in(ASYMMETRIC, 0.01, 1, 1.0), stand_in(ASYMMETRIC, 0.01, 0, -1.0), after[2]]
-    branch, side = branches([before, after, later], upward, downward)
-    assert [list(row) for row in branch] == [[0, 1], [2, 2, 1], [2, 2, 1]]
-    assert [list(row) for row in side] == [[0, 0], [-1, 1, 0], [1, -1, 0]]
-
-
-@pytest.mark.parametrize(
-    ("upward", "downward", "expected"),
-    [
-        ([0, 0], [1], [[1, 2], [2]]),  # hysteresis: going up leads from A to B, going down from B to B
-        ([0, -1], [1], [[1, 2], [3]]),  # not reached back
-        ([0, 0], [-1], [[1, 2], [3]]),
-        ([0, 0], [0], [[1, 2], [1]]),
-    ],
-)
-def test_an_attractor_that_is_not_reached_back_is_a_new_branch(upward, downward, expected):
-    first = [stand_in(SYMMETRIC, 0.1, 0), stand_in(SYMMETRIC, 0.2, 1)]
-    second = [stand_in(SYMMETRIC, 0.21, 0)]
-    up, down = [np.array(upward), np.array([-1])], [np.array([-1, -1]), np.array(downward)]
-    branch, _ = branches([first, second], up, down)
-    assert [list(row) for row in branch] == expected
-
-
-def test_branches_are_numbered_by_their_mean_distance():
-    """Of one a in that order; two that come from one share its number only once."""
-    first = [stand_in(SYMMETRIC, mean, k) for k, mean in enumerate((0.3, 0.1, 0.2))]
-    second = [stand_in(SYMMETRIC, mean, k) for k, mean in enumerate((0.31, 0.32))]
-    up, down = [np.array([0, 0, 1]), np.array([-1, -1])], [np.full(3, -1), np.array([0, 0])]
-    branch, side = branches([first, second], up, down)
-    assert [list(row) for row in branch] == [[3, 1, 2], [3, 4]]
-    assert not np.concatenate(side).any()
-    # Synchrony is branch 0, and what comes from it is not.
-    still = [stand_in(SYNCHRONIZED, 0.0, 0)]
-    branch, _ = branches([still, first[:1], still], [np.array([0])] * 3, [np.array([0])] * 3)
-    assert [list(row) for row in branch] == [[0], [1], [0]]
-
-
 @pytest.mark.parametrize(
     ("spacing", "symmetric", "drifts", "windows", "transients", "found"),
     [
@@ -222,6 +177,101 @@ def test_a_motion_is_given_time_to_settle(monkeypatch, spacing, symmetric, drift
     assert asked == list(zip(transients, windows, strict=True))
 
 
+CLOSED, WIDE = 1e-7, 0.01
+ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.0, 0.0, 0.1, 0.1]])
+
+
+@pytest.fixture
+def scripted(monkeypatch):
+    """Return how a motion is added: what it is measured to be, where it is after a while, and the radii that are found.
+
+    What is asked for is kept in `asked`, transients and windows in those of the settings.
+    """
+    asked = []
+
+    def add(measured, lasting, radii, found_model=None, mirror=OTHER, spacing=CLOSED):
+        measured, radii = list(measured), list(radii)
+
+        def measure(of_model, start, transient, window, motion):
+            asked.append(("measure", transient / SETTINGS.transient, window / SETTINGS.window))
+            return measured.pop(0)
+
+        def visit(of_model, start, transient, window):
+            asked.append(("visit", transient / SETTINGS.transient, window / SETTINGS.window))
+            return lasting
+
+        def captured(of_model, known, index, least, tolerance, settings):
+            asked.append(("captured", index, least))
+            return radii.pop(0)
+
+        for name, item in (("measure", measure), ("visit", visit), ("captured", captured)):
+            monkeypatch.setattr(attractors, name, item)
+        monkeypatch.setattr(attractors, "bounded", lambda of_model, known, tolerance: list(known))
+        monkeypatch.setattr(attractors, "midst", lambda known, index, tolerance: [])
+        monkeypatch.setattr(
+            attractors, "spread", lambda of_model, motion, settings: dataclasses.replace(motion, returns=ONE)
+        )
+        search = Search(found_model or model(), SETTINGS)
+        added = search._add(Returns(ONE, mirror, spacing, 0.0))
+        assert not measured
+        assert not radii
+        assert added == bool(search.attractors)
+        return search.attractors, asked
+
+    return add
+
+
+def motion(mean_distance=0.1, **told):
+    return stand_in(ASYMMETRIC, mean_distance, 0, returns=ONE, mirror_returns=OTHER, **told).motion
+
+
+def test_a_motion_is_added_with_its_mirror_image(scripted):
+    pair, asked = scripted([motion()], None, [0.02])
+    assert [(item.symmetry, item.partner, item.radius) for item in pair] == [
+        (ASYMMETRIC, 1, 0.02),
+        (ASYMMETRIC, 0, 0.02),
+    ]
+    assert [item.motion.returns.tolist() for item in pair] == [ONE.tolist(), OTHER.tolist()]
+    assert asked == [("measure", 1, 1), ("captured", 0, attractors.SMALLEST_RADIUS)]
+    # Within the resolution of its mirror image it is its own.
+    (own,), _ = scripted([motion()], None, [0.02], mirror=ONE + 9e-4)
+    assert (own.symmetry, own.partner) == (SYMMETRIC, 0)
+    assert own.motion.returns.tolist() == [*ONE.tolist(), *OTHER.tolist()]
+    (still,), _ = scripted([motion(9e-7)], None, [0.02])
+    assert (still.symmetry, still.partner) == (SYNCHRONIZED, 0)
+    unequal = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.08))
+    (alone,), _ = scripted([motion(9e-7)], None, [0.02], found_model=unequal, mirror=ONE[:0])
+    assert (alone.symmetry, alone.partner) == (ASYMMETRIC, 0)
+
+
+def test_chaos_has_to_last(scripted):
+    chaos = motion(kind=CHAOTIC)
+    closed, open_still = (Returns(OTHER, ONE, spacing, 0.0) for spacing in (CLOSED, WIDE))
+    (first, _), asked = scripted([chaos], open_still, [0.02], spacing=WIDE)
+    assert first.motion is chaos
+    assert asked == [("measure", 1, 4), ("visit", 33, 1), ("captured", 0, attractors.SMALLEST_RADIUS)]
+    orbit = motion()
+    (first, _), _ = scripted([chaos, orbit], closed, [0.02], spacing=WIDE)
+    assert first.motion is orbit
+    assert scripted([chaos], None, [], spacing=WIDE)[0] == []
+    # A closed orbit is none, and needs not last; what cannot be measured is nothing.
+    assert len(scripted([chaos], None, [0.02])[0]) == 2
+    assert scripted([None], None, [])[0] == []
+
+
+def test_what_attracts_as_a_whole_is_a_slow_set(scripted):
+    smallest, tiny = attractors.SMALLEST_RADIUS, attractors.TINY_RADIUS
+    (slow,), asked = scripted([motion()], None, [0.0, 0.02])
+    assert (slow.slow, slow.symmetry, slow.partner, slow.motion.returns.tolist()) == (True, SYMMETRIC, 0, ONE.tolist())
+    assert asked[1:] == [("captured", 0, smallest)] * 2
+    # A closed orbit may attract from one side only; next to synchrony what does not attract is unstable.
+    pair, asked = scripted([motion()], None, [0.0, 0.0, 1e-7])
+    assert (len(pair), asked[-1]) == (2, ("captured", 0, tiny))
+    assert scripted([motion()], None, [0.0, 0.0], spacing=WIDE)[0] == []
+    assert scripted([motion(9.9e-3)], None, [0.0])[0] == []
+    assert len(scripted([motion(1.01e-2)], None, [0.0, 0.02])[0]) == 1
+
+
 def test_samples_and_intervals():
     position, velocity = sample_states(4, 500, (-1.5, 1.5), (0.0, 0.2), 7)
     assert position.shape == velocity.shape == (500, 4)
@@ -237,27 +287,6 @@ def test_samples_and_intervals():
     half = z / (1 + z * z / 10) * np.sqrt(0.9 * 0.1 / 10 + z * z / 400)
     assert (fraction, low, high) == pytest.approx((0.9, centre - half, centre + half))
     assert np.isnan(fraction_interval(0, 0)).all()
-
-
-def test_branches_of_two_laws_that_look_alike_carry_one_number():
-    """By ⟨J⟩ and by which blocks stick, at most values of a; the rest is numbered on."""
-    free, middle = (True, False, True), (True, True, True)
-    first = {
-        0: {0: (0.0, middle)},
-        1: dict.fromkeys(range(4), (0.14, middle)),
-        2: dict.fromkeys(range(3), (0.18, free)),
-    }
-    second = {
-        0: {0: (0.0, middle)},
-        1: dict.fromkeys(range(3), (0.181, free)),
-        2: dict.fromkeys(range(4), (0.142, middle)),
-        3: {1: (0.141, free), 2: (0.3, middle)},
-    }
-    assert same_numbers(first, second, 0.01, 2) == {0: 0, 1: 2, 2: 1, 3: 3}
-    assert same_numbers(first, first, 0.01, 2) == {0: 0, 1: 1, 2: 2}
-    assert same_numbers({}, second, 0.01, 0) == {0: 0, 1: 1, 2: 2, 3: 3}
-    # Numbers that a law between them has taken are left to it.
-    assert same_numbers(first, second, 0.01, 5) == {0: 0, 1: 2, 2: 1, 3: 6}
 
 
 def test_weak_chaos_is_told_from_a_torus():
