@@ -141,6 +141,9 @@ def test_json_is_strict_and_whole(content: dict) -> None:
         raise AssertionError(name)
 
     read = json.loads(as_json(content), parse_constant=refuse)
+    assert as_json(content).startswith(
+        '{\n "study": "test",\n "v": 0.1,\n "contact": "one_sided",\n "start": "moving",\n'
+    )
     assert read == {**content, "digest": content_digest(content)}
     assert content_digest(read) == read["digest"]
 
@@ -164,7 +167,26 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     assert len(rows) == len(content["claims"])
     # A bar inside a cell is escaped.
     assert all(row.replace("\\|", "").count("|") == 6 for row in rows)
-    assert "[orbits](figures/orbits.png)" in text
+    assert text.startswith("34 holds; 0 holds loosely; 0 depends on convention; 0 fails; 1 not testable.\n\n### Sync")
+    claim = next(claim for claim in content["claims"] if claim["figure"])
+    claim |= {"verdict": "fails", "reason": "a|b", "changes": "nowhere"}
+    assert (
+        f"| {claim['statement']} *{claim['place']}* | **fails** (here: holds) | a\\|b | nowhere | "
+        "[orbits](figures/orbits.png) |"
+    ) in as_markdown({**content, "claims": [claim]}, "figures").splitlines()
+    assert as_markdown({**content, "claims": [claim]}, "figures").count("###") == 1
+
+
+def test_counts_are_those_of_the_verdicts(content: dict) -> None:
+    assert content["counts"] == {
+        "holds": 34,
+        "holds loosely": 0,
+        "depends on convention": 0,
+        "fails": 0,
+        NOT_TESTABLE: 1,
+    }
+    assert len(content["claims"]) == 35
+    assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
 
 
 def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:

@@ -17,10 +17,7 @@ from burridge_knopoff.stability.sampling import fraction_interval, sample_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import (
     Returns,
-    distance,
     instant_of,
-    is_near,
-    least_distance,
     lies_on,
     measure,
     visit,
@@ -341,15 +338,3 @@ def test_synchrony_of_a_long_period_is_synchrony():
     assert len(as_one) == 1
     assert as_one[0].motion.section_period == 0
     assert as_one[0].motion.kind == KIND_SYNCHRONIZED
-
-
-def test_a_bound_changes_no_distance_within_it():
-    """And whether a set is near another is what its distance says, at the limit and either side of it."""
-    generator = np.random.default_rng(8)
-    for size in (9, 20, 21, 200):
-        first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))
-        least, far = least_distance(first, second), distance(first, second)
-        assert least_distance(first, second, least) == least
-        assert least_distance(first, second, 0.999 * least) == np.inf
-        for limit in (0.5 * far, 0.9999 * far, far, 1.0001 * far, 2.0 * far):
-            assert is_near(first, second, limit) == (far <= limit)
