@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff import Chain, Model, Settings, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
 from burridge_knopoff.stability.labels import ASYMMETRIC
@@ -40,7 +40,7 @@ def nearest(first, second, rank):
 def test_returns_are_the_stops_of_the_first_block(threshold):
     chain = model(threshold)
     start = chain.begin(PAPER_STATES["plus"])
-    run = simulate(chain, PAPER_STATES["plus"], transient=500.0, window=300.0, batches=6, events="all", sampling=800.0)
+    run = simulate(chain, PAPER_STATES["plus"], Settings(transient=500.0, window=300.0, batches=6, events="all"))
     found = visit(chain, start, 500.0, 300.0)
     stops = {}
     for block in (1, 3):
