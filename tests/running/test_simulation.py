@@ -208,6 +208,13 @@ def test_bad_input_is_refused_in_one_line(options, words):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("options", [{"window": 10.0}, {"windows": 10.0}, {"v": 0.2}, {"chain": Chain(3)}])
+def test_settings_by_name_are_refused_beside_a_model(options):
+    """They would have no effect."""
+    with pytest.raises(ValueError, match="not allowed beside a model"):
+        simulate(Model(Chain(3), LAWS["linearized"](0.08)), "plus", **options)
+
+
 def test_settings_are_the_schema_defaults(repository):
     from burridge_knopoff.study import read_schema
     from burridge_knopoff.study.checks import RUN_KEYS
