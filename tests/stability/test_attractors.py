@@ -269,6 +269,82 @@ def test_what_attracts_as_a_whole_is_a_slow_set(scripted):
     assert len(scripted([motion(1.01e-2)], None, [0.0, 0.02])[0]) == 1
 
 
+@pytest.fixture
+def told_search(monkeypatch):
+    """A search that knows a mirror pair and a slow set, and whose trajectories reach what is told."""
+    search = Search(model(), SETTINGS)
+    pair = [stand_in(ASYMMETRIC, 0.1, partner, returns=place, radius=0.01) for partner, place in ((1, ONE), (0, OTHER))]
+    search.attractors = [*pair, stand_in(SYMMETRIC, 0.2, 2, returns=3.0 * ONE, slow=True, radius=0.01)]
+    search.told, search.followed = [], []
+
+    def reach(start):
+        search.followed.append(start)
+        answer = search.told.pop(0)
+        if answer == "new":
+            search.attractors = [*search.attractors, search.attractors[2]]
+        return answer
+
+    monkeypatch.setattr(search, "reach", reach, raising=False)
+    return search
+
+
+@pytest.mark.parametrize(
+    ("place", "spacing", "expected"),
+    [(ONE, CLOSED, 0), (OTHER + 5e-4, CLOSED, 1), (3.0 * ONE, CLOSED, 2), (5.0 * ONE, WIDE, -1)],
+)
+def test_what_a_state_reaches(told_search, monkeypatch, place, spacing, expected):
+    sizes = []
+    monkeypatch.setattr(attractors, "pushed", lambda start, size, generator: sizes.append(size) or start)
+    monkeypatch.setattr(told_search, "_settle", lambda start: Returns(place, -place, spacing, 0.0))
+    monkeypatch.setattr(told_search, "_add", lambda found: False)
+    assert Search.reach(told_search, None) == expected
+    # Off a motion that is none it is pushed twice, by a tenth of the resolution.
+    assert sizes == pytest.approx([1e-4, 1e-4] if expected < 0 else [])
+    monkeypatch.setattr(told_search, "_settle", lambda start: None)
+    assert Search.reach(told_search, None) == -1
+
+
+def test_states_are_followed_until_something_is_found(told_search):
+    told_search.told = [-1, 0, "new", -1, -1, -1, 0]
+    assert told_search._discover("abcd")
+    assert (told_search.followed, told_search.vain) == (["a", "b", "c"], 2)
+    # No more than three at a time, and six in all, in vain.
+    assert not told_search._discover("efgh")
+    assert (told_search.followed[3:], told_search.vain) == (["e", "f", "g"], 5)
+    assert not told_search._discover("ij")
+    assert (told_search.followed[6:], told_search.vain) == (["i"], 6)
+
+
+def test_labels_are_verified_much_closer_to_the_attractors(told_search, monkeypatch):
+    narrow = []
+
+    def label(of_model, known, starts, time_limit):
+        narrow.append([item.radius for item in known])
+        return np.array([0, 2, 1, 0, 2]), None
+
+    monkeypatch.setattr(attractors, "label", label)
+    labels = np.array([0, 1, 1, -1, 2])
+    for answer in (1, -1):
+        told_search.told = [answer]
+        assert told_search._verified("abcde", labels)
+    assert told_search.followed == ["b", "b"]
+    assert narrow[0] == pytest.approx([0.001, 0.001, 0.001])
+    # One that settles elsewhere halves the radius of what it was ascribed to, and of its mirror image.
+    told_search.told = [2]
+    assert not told_search._verified("abcde", labels)
+    assert [item.radius for item in told_search.attractors] == [0.005, 0.005, 0.01]
+
+
+def test_states_that_are_ascribed_to_chaos_are_followed(told_search):
+    chaos = stand_in(SYMMETRIC, 0.2, 2, kind=CHAOTIC)
+    told_search.attractors[1:] = [chaos, dataclasses.replace(chaos, slow=True)]
+    told_search.told = [1] * 6
+    assert told_search._single("abcdefghij", np.array([1, 0, 1, 1, 1, 2, 1, 1, 1, 1]))
+    assert told_search.followed == list("acdegh")
+    told_search.told = ["new"]
+    assert not told_search._single("ab", np.array([0, 1]))
+
+
 def test_samples_and_intervals():
     position, velocity = sample_states(4, 500, (-1.5, 1.5), (0.0, 0.2), 7)
     assert position.shape == velocity.shape == (500, 4)

@@ -63,6 +63,7 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     assert motion.mean_distance == pytest.approx(run.mean_distance, abs=1e-9)
     assert motion.mean_distance_error == pytest.approx(run.mean_distance_error, abs=1e-9)
     assert motion.exponent.shape == (3,)
+    assert motion.instant().vector().tolist() == motion.returns[-1].tolist()
     # Too few returns say nothing.
     assert visit(chain, start, 500.0, 20.0) is None
     assert measure(chain, start, 500.0, 20.0, MOTION) is None

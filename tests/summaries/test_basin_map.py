@@ -74,8 +74,8 @@ def test_a_model_of_its_own():
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))
     model = Model(chain, law, v=0.12)
-    basins, attractors = basin_map(model, pixels=4, samples=10, transient=2000.0)
-    again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, pixels=4, samples=10, transient=2000.0)
+    basins, attractors = basin_map(model, pixels=4, samples=10, transient=1000.0, window=1000.0)
+    again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, pixels=4, samples=10, transient=1000.0, window=1000.0)
     assert basins.identical(again[0])
     assert attractors.identical(again[1])
     assert attractors["law"].values.tolist() == ["formula"]
