@@ -39,9 +39,34 @@ def test_the_file_and_the_dataset_are_the_same(trajectory, path):
         assert tuple(file["initial_velocity"].values) == trajectory.initial.velocity
         assert file["batch"].values.tolist() == [125.0, 175.0, 225.0, 275.0]
         assert file["status"].item() == 0
+        for name, coordinates in {
+            "mean_distance": "a v",
+            "event_position": "event_time a v",
+            "distance": "time a v",
+        }.items():
+            assert file[name].encoding["coordinates"] == coordinates
+        for name, dimensions in {"position": ("trajectory_time", "block"), "batch_mean_distance": ("batch",)}.items():
+            assert file[name].dims == dimensions
+            assert file[name].encoding["coordinates"] == "a v"
         for name, variable in file.variables.items():
             assert variable.attrs["long_name"], name
             assert "_FillValue" not in variable.encoding or np.isnan(variable.encoding["_FillValue"]) is None
+
+
+def test_what_flags_mean():
+    """A change of these breaks whoever reads the files."""
+    found = {
+        name: dict(zip(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"].split(), strict=True))
+        for name, item in POINT_VARIABLES.items()
+        if "flag_values" in item.attributes
+    }
+    event = {0: "stop", 1: "start"}
+    assert found == {
+        "status": {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"},
+        "earlier_event_kind": event,
+        "event_kind": event,
+        "crossing_direction": {-1: "downward", 1: "upward"},
+    }
 
 
 def test_events_of_the_whole_run(trajectory):

@@ -4,12 +4,9 @@ import importlib
 
 import pytest
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES
-
 YES_NO = {0: "no", 1: "yes"}
 STATUS = {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"}
 MOTION = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
-EVENT = {0: "stop", 1: "start"}
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}
 AGREEMENT = {"kind": MOTION, "same_kind": VERDICT, "agrees": VERDICT}
@@ -34,20 +31,18 @@ EXPECTED = {
     "stick_slip": {},
     "equilibrium": {},
 }
-POINT = {"status": STATUS, "earlier_event_kind": EVENT, "event_kind": EVENT, "crossing_direction": DIRECTION}
 
 
-@pytest.mark.parametrize("name", [*EXPECTED, "point"])
+@pytest.mark.parametrize("name", EXPECTED)
 def test_flags(name):
-    own = name == "point"
-    variables = POINT_VARIABLES if own else importlib.import_module(f"burridge_knopoff.summaries.{name}").VARIABLES
+    variables = importlib.import_module(f"burridge_knopoff.summaries.{name}").VARIABLES
     found = {
         key: (item.dtype, item.attributes["flag_values"].dtype, list(zip(values, meanings.split(), strict=True)))
         for key, item in variables.items()
         if "flag_values" in item.attributes
         for values, meanings in [(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"])]
     }
-    expected = POINT if own else EXPECTED[name]
+    expected = EXPECTED[name]
     assert found == {key: ("i1", "i1", list(meanings.items())) for key, meanings in expected.items()}
     for key, item in variables.items():
         assert ("units" in item.all_attributes()) == (key not in expected)
