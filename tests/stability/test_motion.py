@@ -5,6 +5,7 @@ import pytest
 
 from burridge_knopoff.stability.motion import (
     CHAOTIC,
+    KINDS,
     PERIODIC,
     QUASIPERIODIC,
     SYNCHRONIZED,
@@ -38,6 +39,12 @@ def test_quasiperiodic_and_short_sequences_have_no_period():
     assert section_period(np.tile(np.arange(70.0), 20), 1e-6, 60) == 0
     # A slow drift is no period.
     assert section_period(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
+
+
+def test_the_numbers_of_the_kinds():
+    names = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
+    assert names == KINDS
+    assert tuple(names) == (UNDETERMINED, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC)
 
 
 @pytest.mark.parametrize(
@@ -82,3 +89,9 @@ def test_sections_that_repeat_after_however_many_points():
     assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
     assert not section_closed(random.random(2000), 1e-6)
     assert not section_closed(np.ones(5), 1e-6)
+    # Of the second half all but a twentieth have a neighbour, among twelve points at least.
+    assert [section_closed(np.ones(count), 1e-6) for count in (22, 24)] == [False, True]
+    pairs = np.repeat(np.arange(50.0), 2)
+    for alone, closed in ((4, True), (6, False)):
+        section = pairs + np.where(np.arange(100) < alone, 0.25 * (np.arange(100) % 2), 0.0)
+        assert section_closed(np.concatenate([pairs, section]), 1e-6) == closed

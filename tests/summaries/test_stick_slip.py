@@ -89,6 +89,9 @@ def test_correlation():
     )
     assert np.isnan(correlation(one, np.zeros(500)))
     assert np.isnan(correlation(np.full(500, 0.1), one))
+    # Rounding has no correlation, in either of the two.
+    constant = 0.1 + 1e-12 * one
+    assert np.isnan([correlation(constant, one), correlation(one, constant)]).all()
 
 
 SETTINGS = {"transient": 1500.0, "window": 400.0, "batches": 4}
