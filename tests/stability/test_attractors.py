@@ -14,11 +14,7 @@ from burridge_knopoff.stability.motion import CHAOTIC, QUASIPERIODIC
 from burridge_knopoff.stability.motion import SYNCHRONIZED as KIND_SYNCHRONIZED
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states, sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
-from burridge_knopoff.stability.steady import (
-    lies_on,
-    measure,
-    visit,
-)
+from burridge_knopoff.stability.steady import lies_on, measure, visit
 
 SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, pushes=8)
 

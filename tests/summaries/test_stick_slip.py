@@ -10,13 +10,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.summaries.stick_slip import (
-    correlation,
-    cycle_time,
-    leading_frequency,
-    stick_fraction,
-    summarize,
-)
+from burridge_knopoff.summaries.stick_slip import correlation, cycle_time, leading_frequency, stick_fraction, summarize
 from tests.grids import grid_of
 from tests.summaries.points import write_points
 
