@@ -165,7 +165,7 @@ SPRINGS = "the study's chain has other springs or static friction than the paper
             "a statement on all 0.005 ≤ a ≤ 0.08 takes 10 values of a; the grid has 2",
         ),
     ],
-)  # fmt: skip
+)
 def test_nothing_is_judged_by_what_is_not_the_papers(
     names: Iterable[str], world: Callable[[], Summaries], config: dict[str, object], reason: str
 ) -> None:

@@ -105,7 +105,7 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
 def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
     """Nonlinear law, a = 0.2075: `minus` ends on an orbit of period 11 returns, most neighbours in chaos around it."""
     found = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
-    starts = [found.model.begin(state) for state in (*states(30), PAPER_STATES["minus"], PAPER_STATES["plus"])]
+    starts = [found.model.begin(state) for state in (*states(5), PAPER_STATES["minus"], PAPER_STATES["plus"])]
     labels = found.labels(starts)
     means = [attractor.motion.mean_distance for attractor in found.attractors]
     for initial, index in (("minus", labels[-2]), ("plus", labels[-1])):
