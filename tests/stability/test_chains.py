@@ -120,7 +120,6 @@ def test_two_blocks_synchronize_below_the_critical_a_only():
     assert fate(model(2, critical - 1e-4), state, watch).outcome == UNDETERMINED
 
 
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 @pytest.mark.parametrize("blocks", [4, 7, 8, 10])
 def test_transverse_exponent_against_two_trajectories(blocks, law):
     """A second trajectory is kept 1e-7 beside the symmetric one: the rate of growth of their distance is the same.
@@ -165,7 +164,6 @@ def test_the_mirrored_sample_has_the_mirrored_fate(blocks, a):
             assert one.distance == pytest.approx(two.distance, rel=1e-6)
 
 
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_three_blocks_against_whole_runs(law):
     """For three blocks the mirror distance is J: outcome, largest and mean distance are those of a run."""
     watch = Watch(time_limit=3000.0)

@@ -36,7 +36,6 @@ def one_by_one(model, attractors, starts, end):
     return labels, times
 
 
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 @pytest.mark.parametrize(("a", "share"), [(0.08, 1.0), (0.15, 0.98)])
 def test_labels_are_those_of_one_by_one(law, a, share):
     """In chaos the two kernels part ways, so that a state near a boundary of basins may come to the other side."""
