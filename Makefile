@@ -2,6 +2,7 @@
 # `make kernel`: compile the kernel again.  `make test-oldest`: the workflow with the oldest Snakemake that is allowed.
 # `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
 # `make faults`, `make fuzz`, `make size`: a study killed 20 times and more; an hour of broken input; 10,000 points.
+# `make mutants`: 300 random changes of the sources, do the tests notice? (up to two hours)
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -9,7 +10,7 @@ KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kerne
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup kernel test test-oldest benchmark faults fuzz size docs lock clean
+.PHONY: study setup kernel test test-oldest benchmark faults fuzz mutants size docs lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -88,6 +89,15 @@ size: .venv/kernel
 fuzz: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/fuzz.py
 
+# Cosmic Ray lives apart as well; the tests run in the study's environment.
+.venv-mutants/ready: requirements/mutants.lock
+	$(PYTHON) -m venv .venv-mutants
+	.venv-mutants/bin/python -m pip --disable-pip-version-check --quiet install --require-hashes --requirement $<
+	@touch $@
+
+mutants: .venv/kernel .venv/test .venv-mutants/ready
+	.venv-mutants/bin/python benchmarks/mutants.py
+
 # The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains; the tables of keys.
 docs: setup
 	$(BIN)/snakemake -c2 chains
@@ -99,9 +109,9 @@ docs: setup
 lock:
 	cd requirements && uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 		--no-emit-find-links --no-annotate --no-header study.in -o study.lock
-	cd requirements && for name in test benchmark; do uv pip compile --universal --python-version 3.11 \
+	cd requirements && for name in test benchmark mutants; do uv pip compile --universal --python-version 3.11 \
 		--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header -c study.lock \
 		$$name.in -o $$name.lock; done
 
 clean:
-	rm -rf .venv .venv-benchmark .venv-oldest build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so
+	rm -rf .venv .venv-benchmark .venv-oldest .venv-mutants build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so

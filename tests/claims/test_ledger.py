@@ -8,6 +8,7 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
@@ -137,6 +138,9 @@ def test_json_is_strict_and_whole(content: dict) -> None:
         raise AssertionError(name)
 
     read = json.loads(as_json(content), parse_constant=refuse)
+    assert as_json(content).startswith(
+        '{\n "study": "test",\n "v": 0.1,\n "contact": "one_sided",\n "start": "moving",\n'
+    )
     assert read == {**content, "digest": content_digest(content)}
     assert content_digest(read) == read["digest"]
 
@@ -144,9 +148,14 @@ def test_json_is_strict_and_whole(content: dict) -> None:
 def test_csv_has_a_line_for_each_figure(content: dict) -> None:
     rows = list(csv.DictReader(io.StringIO(as_csv(content))))
     assert len(rows) == sum(max(1, len(claim["measured"])) for claim in content["claims"])
-    assert [row["claim"] for row in rows if row["claim"] == "antiphase"]
-    (row,) = (row for row in rows if row["claim"] == "antiphase")
-    assert float(row["value"]) == -0.9
+    for claim in content["claims"]:
+        own = [row for row in rows if row["claim"] == claim["name"]]
+        measured = claim["measured"] or [{"quantity": "", "value": None, "error": None}]
+        for row, item in zip(own, measured, strict=True):
+            assert {key: row[key] for key in row if key not in ("claim", *item)} == {
+                key: claim[key] for key in row if key not in ("claim", *item)
+            }
+            assert [row[key] for key in item] == ["" if value is None else str(value) for value in item.values()]
 
 
 def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
@@ -155,13 +164,36 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     assert len(rows) == len(content["claims"])
     # A bar inside a cell is escaped.
     assert all(row.replace("\\|", "").count("|") == 6 for row in rows)
-    assert "[orbits](figures/orbits.png)" in text
+    assert text.startswith("34 holds; 0 holds loosely; 0 depends on convention; 0 fails; 1 not testable.\n\n### Sync")
+    claim = next(claim for claim in content["claims"] if claim["figure"])
+    claim |= {"verdict": "fails", "reason": "a|b", "changes": "nowhere"}
+    assert (
+        f"| {claim['statement']} *{claim['place']}* | **fails** (here: holds) | a\\|b | nowhere | "
+        "[orbits](figures/orbits.png) |"
+    ) in as_markdown({**content, "claims": [claim]}, "figures").splitlines()
+    assert as_markdown({**content, "claims": [claim]}, "figures").count("###") == 1
+
+
+def test_counts_are_those_of_the_verdicts(content: dict) -> None:
+    assert content["counts"] == {
+        "holds": 34,
+        "holds loosely": 0,
+        "depends on convention": 0,
+        "fails": 0,
+        NOT_TESTABLE: 1,
+    }
+    assert len(content["claims"]) == 35
+    assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
 
 
 def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
     assert with_error(0.140640595, 9.5e-6) == "0.1406406 ± 0.0000095"
     assert with_error(5.7, 0.2) == "5.70 ± 0.20"
     assert with_error(123.4, 20.0) == "123 ± 20"
+    assert with_error(-0.25, 0.01) == "−0.250 ± 0.010"
+    assert with_error(-1 / 3) == "−0.333333"
+    assert with_error(1 / 3, 1e-11) == "0.333333333333 ± 0.000000000010"
+    assert with_error(-1 / 3, 1e-12) == "−0.333333333333"
     assert with_error(0.25) == with_error(0.25, 0.0) == with_error(0.25, math.nan) == "0.25"
     assert with_error(math.nan) == "nan"
 
@@ -169,7 +201,11 @@ def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
 def test_values_join_neighbours_and_count_many() -> None:
     assert at_values(A, (A > 0.0) & (A < 0.025)) == "at a = 0.0025 to 0.02"
     assert at_values(A, (A == 0.05) | (A > 0.285)) == "at a = 0.05, 0.29 to 0.3"
+    assert at_values(A, (A == 0.05) | (A > 0.29)) == "at a = 0.05, 0.295, 0.3"
     assert at_values(A, [k % 3 == 0 for k in range(len(A))]) == "at 22 values of a from 0 to 0.3"
+    assert at_values(np.arange(20.0), np.arange(20) % 2 == 0) == "at 10 values of a from 0 to 18"
+    assert at_values(np.arange(17.0), np.arange(17) % 2 == 1) == "at a = 1, 3, 5, 7, 9, 11, 13, 15"
+    assert at_values(A, A > 1.0) == "at a = "
 
 
 def test_a_coarse_grid_neither_helps_nor_harms_a_claim() -> None:
@@ -185,11 +221,22 @@ def test_ranges_have_open_and_closed_ends() -> None:
     assert A[Range(first=0.01, below=0.02).choose(A)].tolist() == [0.01, 0.015]
     assert A[Range(above=0.01, last=0.02).choose(A)].tolist() == [0.015, 0.02]
     assert Range().choose(A).all()
-    assert [str(Range(first=0.005, last=0.08)), str(Range(above=0.1)), str(Range(below=0.1))] == [
-        "0.005 ≤ a ≤ 0.08",
-        "a > 0.1",
-        "a < 0.1",
-    ]
+    for text, ends in {
+        "0.005 ≤ a ≤ 0.08": {"first": 0.005, "last": 0.08},
+        "0 < a < 0.1": {"above": 0.0, "below": 0.1},
+        "0 < a ≤ 0.1": {"above": 0.0, "last": 0.1},
+        "0.1 ≤ a": {"first": 0.1},
+        "a > 0.1": {"above": 0.1},
+        "a < 0.1": {"below": 0.1},
+        "a ≤ 0.1": {"last": 0.1},
+        "a": {},
+    }.items():
+        assert str(Range(**ends)) == text
+    assert not Range(first=0.1, last=0.1).empty
+    assert not Range(above=0.2).empty
+    for ends in ({"first": 0.1, "below": 0.1}, {"above": 0.1, "last": 0.1}, {"above": 0.1, "below": 0.1}):
+        assert Range(**ends).empty
+    assert Range(first=0.2, last=0.1).empty
 
 
 def test_a_number_holds_within_its_tolerance() -> None:

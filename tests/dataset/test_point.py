@@ -33,11 +33,40 @@ def test_the_file_and_the_dataset_are_the_same(trajectory, path):
         assert (file.attrs["law"], file.attrs["law_formula"]) == ("linearized", "1 - a*u")
         assert (file.attrs["chain_coupling"], file.attrs["chain_pulling"]) == (1.0, "neighbours")
         assert (file.attrs["chain_threshold"], file.attrs["chain_ends"]) == (1.0, "open")
-        assert file.attrs["initial"] == "plus"
-        assert file["a"].item() == 0.08
+        assert (file.attrs["initial"], file.attrs["transient"], file.attrs["window"]) == ("plus", 100.0, 200.0)
+        assert (file["a"].item(), file["v"].item(), file["block"].values.tolist()) == (0.08, 0.1, [1, 2, 3])
+        assert tuple(file["initial_position"].values) == trajectory.initial.position
+        assert tuple(file["initial_velocity"].values) == trajectory.initial.velocity
+        assert file["batch"].values.tolist() == [125.0, 175.0, 225.0, 275.0]
+        assert file["status"].item() == 0
+        for name, coordinates in {
+            "mean_distance": "a v",
+            "event_position": "event_time a v",
+            "distance": "time a v",
+        }.items():
+            assert file[name].encoding["coordinates"] == coordinates
+        for name, dimensions in {"position": ("trajectory_time", "block"), "batch_mean_distance": ("batch",)}.items():
+            assert file[name].dims == dimensions
+            assert file[name].encoding["coordinates"] == "a v"
         for name, variable in file.variables.items():
             assert variable.attrs["long_name"], name
             assert "_FillValue" not in variable.encoding or np.isnan(variable.encoding["_FillValue"]) is None
+
+
+def test_what_flags_mean():
+    """A change of these breaks whoever reads the files."""
+    found = {
+        name: dict(zip(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"].split(), strict=True))
+        for name, item in POINT_VARIABLES.items()
+        if "flag_values" in item.attributes
+    }
+    event = {0: "stop", 1: "start"}
+    assert found == {
+        "status": {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"},
+        "earlier_event_kind": event,
+        "event_kind": event,
+        "crossing_direction": {-1: "downward", 1: "upward"},
+    }
 
 
 def test_events_of_the_whole_run(trajectory):
@@ -102,16 +131,15 @@ def test_exponents_that_were_not_computed_are_nan(tmp_path):
         assert dataset["lyapunov_infinite_count"].item() == -1
 
 
-@pytest.mark.parametrize("chain", [None, Chain(3, (1.0, 2.0, 3.0), (0.5, 1.0, 0.5), (1.0, 2.0, 1.0), "ring")])
-def test_no_cf_error(tmp_path, chain):
-    path = tmp_path / "point.nc"
+def test_no_cf_error(tmp_path):
     law = FormulaLaw(0.08, "1 - c*tanh(a*u/c)", name="soft", c=0.1)
-    write_point(simulate(law, 0.08, "plus", chain=chain, transient=10.0, window=50.0), path)
-    checker = str(Path(sys.executable).parent / "compliance-checker")
-    run = subprocess.run(
-        [checker, "--test=cf:1.11", "--criteria=strict", str(path)], capture_output=True, text=True, cwd=tmp_path
-    )
-    assert "All tests passed!" in run.stdout, run.stdout
+    files = [str(tmp_path / name) for name in ("open.nc", "ring.nc")]
+    ring = Chain(3, (1.0, 2.0, 3.0), (0.5, 1.0, 0.5), (1.0, 2.0, 1.0), "ring")
+    for chain, file in zip((None, ring), files, strict=True):
+        write_point(simulate(law, 0.08, "plus", chain=chain, transient=10.0, window=50.0), file)
+    checker = [str(Path(sys.executable).parent / "compliance-checker"), "--test=cf:1.11", "--criteria=strict"]
+    run = subprocess.run([*checker, *files], capture_output=True, text=True, cwd=tmp_path)
+    assert run.stdout.count("All tests passed!") == 2, run.stdout
     assert run.returncode == 0
 
 

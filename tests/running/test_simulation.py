@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.simulation import simulate
 
 
@@ -204,3 +205,10 @@ def test_bad_input_is_refused_in_one_line(options, words):
         simulate(**options)
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("options", [{"window": 10.0}, {"windows": 10.0}, {"v": 0.2}, {"chain": Chain(3)}])
+def test_settings_by_name_are_refused_beside_a_model(options):
+    """They would have no effect."""
+    with pytest.raises(ValueError, match="not allowed beside a model"):
+        simulate(Model(Chain(3), LAWS["linearized"](0.08)), "plus", **options)

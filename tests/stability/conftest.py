@@ -15,3 +15,9 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 def families():
     """{law: Family} of the paper's laws at v = 0.1."""
     return {law: Family(Model(Chain(3), law_of(law, 0.0))) for law in PAPER_LAWS}
+
+
+@pytest.fixture(params=PAPER_LAWS)
+def law(request):
+    """The name of each of the paper's laws in turn."""
+    return request.param

@@ -36,24 +36,24 @@ def one_by_one(model, attractors, starts, end):
     return labels, times
 
 
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 @pytest.mark.parametrize(("a", "share"), [(0.08, 1.0), (0.15, 0.98)])
 def test_labels_are_those_of_one_by_one(law, a, share):
     """In chaos the two kernels part ways, so that a state near a boundary of basins may come to the other side."""
     model = Model(Chain(3), law_of(law, a))
     search = Search(model, SETTINGS, MotionSettings())
-    position, velocity = sample_states(3, 400, (-1.5, 1.5), (0.0, 0.2), 5)
+    position, velocity = sample_states(3, 200, (-1.5, 1.5), (0.0, 0.2), 5)
     starts = [model.begin(InitialState("sample", tuple(x), tuple(w))) for x, w in zip(position, velocity, strict=True)]
     for start in starts[:12]:
         search.reach(start)
     assert search.attractors
+    decided, when = one_by_one(model, search.attractors, starts, 1500.0)
     for end in (150.0, 1500.0):
-        expected, when = one_by_one(model, search.attractors, starts, end)
+        expected = np.where(when <= end, decided, -1)
         labels, times = label_states(model, search.attractors, position, velocity, time_limit=end)
         same = labels == expected
         assert same.mean() >= share
         assert (expected >= 0).mean() > (0.2 if end < 1000 else 0.5)
-        assert np.mean(np.abs(times - when)[same] < 1e-9) >= share - 0.05
+        assert np.mean(np.abs(times - np.minimum(when, end))[same] < 1e-9) >= share - 0.05
         assert (times[labels < 0] == end).all()
 
 

@@ -10,13 +10,11 @@ from burridge_knopoff.model.model import Instant
 from burridge_knopoff.stability.family import Family, synchronized_orbit
 from burridge_knopoff.stability.orbit import OrbitError, find_orbit, flow, multipliers, transverse_multiplier
 from burridge_knopoff.stability.transition import finite_difference_multiplier
-from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 VALUES = (1e-4, 0.0025, 0.02, 0.0355, 0.036, 0.05, 0.0869, 0.1, 0.2, 0.3)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 @pytest.mark.parametrize("a", VALUES)
 def test_the_state_returns(families, law, a):
     orbit = families[law].at(a)
@@ -28,7 +26,6 @@ def test_the_state_returns(families, law, a):
     assert multipliers(orbit)[1] == pytest.approx(1.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
 def test_the_state_returns_in_exact_arithmetic(families, law, a):
     orbit = families[law].at(a)
@@ -40,7 +37,6 @@ def test_the_state_returns_in_exact_arithmetic(families, law, a):
     assert len(run.events) == len(orbit.events)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
 def test_transverse_multiplier_in_exact_arithmetic(families, law, a):
     orbit = families[law].at(a)
@@ -55,7 +51,6 @@ def test_transverse_multiplier_in_closed_form(families, a):
     assert transverse_multiplier(orbit) == pytest.approx(closed, abs=1e-12)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 @pytest.mark.parametrize("a", [0.02, 0.05, 0.15])
 def test_multipliers_against_finite_differences(families, law, a):
     """The eigenvalues of the differenced period map are the multipliers; of stuck velocities there is no difference."""
@@ -80,7 +75,6 @@ def test_multipliers_against_finite_differences(families, law, a):
     )
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_a_run_from_the_initial_state_ends_on_the_orbit(families, law):
     run = simulate(law, 0.05, "minus", transient=4000.0, window=200.0)
     stops = run.event_time[(run.event_block == 1) & (run.event_kind == 0)]
@@ -88,7 +82,6 @@ def test_a_run_from_the_initial_state_ends_on_the_orbit(families, law):
     assert len(stops) > 30
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_small_a_is_a_grazing_normal_mode(families, law):
     """As a falls to 0 the orbit becomes the slow symmetric mode, λ = 3 − √3, in which block 1 just comes to rest."""
     omega = np.sqrt(3.0 - np.sqrt(3.0))
@@ -101,7 +94,6 @@ def test_small_a_is_a_grazing_normal_mode(families, law):
     assert abs(errors[1]) < 0.02 * abs(errors[0])
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_the_linearized_law_has_no_scale(families, law):
     """Divided by v, the linearized equations do not contain v: period and multipliers do not depend on it."""
     orbit = families[law].at(0.1)
@@ -171,7 +163,6 @@ def test_any_law_has_an_orbit_that_runs_end_on(law):
         assert np.diff(stops)[-10:] == pytest.approx(orbit.period, abs=1e-7)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(families, law):
     flip = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
     for a, doubled in ((flip - 0.002, False), (flip + 0.002, True)):

@@ -28,7 +28,6 @@ def critical(families):
     return {law: critical_a(families[law]) for law in PAPER_LAWS}
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_critical_a_to_ten_digits(families, critical, law):
     """In 40-digit arithmetic the multiplier at a_c is 1, and its slope tells what that means for a_c."""
     family, a = families[law], critical[law]
@@ -38,7 +37,6 @@ def test_critical_a_to_ten_digits(families, critical, law):
     assert critical_a_error(family, a) < 1e-11
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_grazing_a_to_ten_digits(families, law):
     """In 40-digit arithmetic block 2 sticks on one side of it and does not on the other."""
     family = families[law]
@@ -59,7 +57,6 @@ def test_least_center_speed(families):
     assert least_center_speed(families["nonlinear"].at(0.05)) == 0.0
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_symmetric_multiplier_at_the_flip(families, law):
     a = symmetric_flip_a(families[law])
     assert multipliers(families[law].at(a))[2] == pytest.approx(-1.0, abs=1e-12)
@@ -69,14 +66,12 @@ def test_no_change_is_told(families):
     assert np.isnan(change_point(families["linearized"], lambda orbit: orbit.period))
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
 def test_finite_differences_agree_with_the_tangent_map(families, law, a):
     orbit = families[law].at(a)
     assert finite_difference_multiplier(orbit) == pytest.approx(transverse_multiplier(orbit), abs=1e-9)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_differences_of_blocks_1_and_3_fade_below_and_grow_above(families, critical, law):
     for offset in (-0.002, 0.002):
         orbit = families[law].at(critical[law] + offset)
@@ -87,7 +82,6 @@ def test_differences_of_blocks_1_and_3_fade_below_and_grow_above(families, criti
         assert (factor > 1.0) == (offset > 0.0)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_the_branch_is_the_attractor_beyond(families, critical, law):
     """A run of its own, from a state that is only slightly asymmetric, ends on the orbit found by Newton's method."""
     orbit = branch_orbit(families[law], critical[law], 1e-2)
@@ -108,7 +102,6 @@ def test_the_branch_is_the_attractor_beyond(families, critical, law):
     assert np.abs(both[stuck]) == pytest.approx(1e-2, abs=1e-9)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_the_pitchfork(families, critical, law):
     """Offsets are positive and go like d², to the next even order; the orbits attract as much as they should."""
     d = np.array([2e-4, 4e-4, 8e-4])
@@ -130,7 +123,6 @@ def test_mirror_images_exist_together(families, critical):
     assert one.reference.mirrored().vector() == pytest.approx(other.reference.vector(), abs=1e-12)
 
 
-@pytest.mark.parametrize("law", PAPER_LAWS)
 def test_no_hysteresis(families, critical, law):
     values = critical[law] + np.array([-2e-3, -1e-3, 1e-3, 2e-3])
     up, down = sweep(families[law], values), sweep(families[law], values[::-1])[::-1]
@@ -158,3 +150,6 @@ def test_power_law_of_a_power_law():
     assert fit.error < 1e-9
     noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99]))
     assert 1e-4 < noisy.error < 1e-2
+    # To ten decimals, on which all machines agree.
+    told = noisy.exponent, noisy.error, noisy.coefficient
+    assert told == tuple(round(value, 10) for value in told)

@@ -4,32 +4,48 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.running.simulation import run, simulate
+from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import agreement, lyapunov, mean_distance
+from burridge_knopoff.summaries.judgement import judge
 from tests.grids import grid_of
 from tests.sections import AGREEMENT, MOTION
+from tests.summaries.points import write_points
+
+SETTINGS = {"transient": 2000.0, "window": 400.0, "batches": 4}
 
 
-def compare(grid):
+@pytest.fixture(scope="module")
+def runs():
+    """Runs from one initial state at two a under both laws."""
+    return {(law, a): simulate(law, a, "minus", **SETTINGS) for law in PAPER_LAWS for a in (0.05, 0.08)}
+
+
+@pytest.fixture
+def compare(runs, tmp_path):
+    """Write the runs, some of them altered, and return their grid with the comparison."""
+
+    def compared(altered=()):
+        grid = grid_of(tmp_path, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
+        for _, (law, initial, a) in grid:
+            here = law, grid.a[a]
+            write_point(dataclasses.replace(runs[here], **dict(altered).get(here, {})), grid.path(law, initial, a))
+        return grid, summarized(grid)
+
+    return compared
+
+
+def summarized(grid):
     return agreement.summarize(grid, lyapunov.summarize(grid, 3, 1e-6, MOTION), 1e-6, AGREEMENT)
 
 
-def written(folder, change=lambda law, trajectory: trajectory):
-    """Write a grid of one initial state and two a, with altered nonlinear points if asked."""
-    settings = {"transient": 2000.0, "window": 400.0, "batches": 4}
-    grid = grid_of(folder, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **settings)
-    for _, (law, initial, a) in grid:
-        trajectory = simulate(law, grid.a[a], initial, **settings)
-        write_point(change(law, trajectory), grid.path(law, initial, a))
-    return grid
-
-
-def test_two_synchronized_laws_agree(tmp_path):
-    dataset = compare(written(tmp_path))
+def test_two_synchronized_laws_agree(compare, runs):
+    _, dataset = compare()
     assert (dataset["agrees"] == 1).all()
     assert (dataset["kind"] == 0).all()
     assert np.isnan(dataset["parting_a"].item())
@@ -37,32 +53,53 @@ def test_two_synchronized_laws_agree(tmp_path):
         "minus, nonlinear law compared with the linearized law: they agree at all 2 values of a that were compared, "
         "0.05 to 0.08.\n"
     )
+    for k, a in enumerate((0.05, 0.08)):
+        first, other = (runs[law, a] for law in PAPER_LAWS)
+        upward = [run.crossing_velocity[run.crossing_direction > 0] for run in (first, other)]
+        assert dataset["section_distance"].values[0, 0, k] == float(f"{wasserstein_distance(*upward):.12g}")
+        assert dataset["mean_distance_error"].values[:, 0, k].tolist() == [
+            r.mean_distance_error for r in (first, other)
+        ]
+        # The laws do not stop and start the blocks at the same times, but at first in the same order.
+        count, until = dataset["event_order_count"].values[0, 0, k], dataset["event_order_time"].values[0, 0, k]
+        assert 4 < count <= min(first.event_count, other.event_count)
+        assert 0.0 < until <= 2400.0
+    head, *rows = agreement.table(dataset).splitlines()
+    assert head == (
+        "initial,a,mean_distance_linearized,mean_distance_nonlinear,difference,difference_error,section_distance,"
+        "event_order_time,kind_linearized,kind_nonlinear,agrees"
+    )
+    one = dataset.isel(initial=0, other_law=0, a=1)
+    assert rows[1] == (
+        f"minus,0.08,{one['mean_distance'].values[0]:.8e},{one['mean_distance'].values[1]:.8e},"
+        f"{one['difference'].item():.8e},{one['difference_error'].item():.2e},{one['section_distance'].item():.6e},"
+        f"{one['event_order_time'].item():.3f},synchronized,synchronized,yes"
+    )
 
 
-def test_altered_data_changes_the_verdict(tmp_path):
-    def change(law, trajectory):
-        if law == "nonlinear" and trajectory.model.a == 0.08:
-            return dataclasses.replace(trajectory, mean_distance=0.2)
-        return trajectory
-
-    dataset = compare(written(tmp_path, change))
+def test_altered_data_changes_the_verdict(compare):
+    _, dataset = compare({("nonlinear", 0.08): {"mean_distance": 0.2}, ("nonlinear", 0.05): {"end_time": 7.0}})
     assert dataset["agrees"].sel(other_law="nonlinear").values.tolist() == [[1, 0]]
     assert dataset["parting_a"].item() == 0.08
-    assert "agree up to a = 0.05 and part at a = 0.08" in agreement.digest(dataset)
+    assert dataset["difference"].values[0, 0, 1] == 0.2 - dataset["mean_distance"].values[0, 0, 1]
+    # No later than the end of either run.
+    assert dataset["event_order_time"].values[0, 0, 0] == 7.0
+    words = "they agree up to a = 0.05 and part at a = 0.08; they disagree at 1 of 2 values of a, the last 0.08"
+    assert agreement.digest(dataset).endswith(f": {words}; the kind of motion differs at 1.\n")
+    _, dataset = compare({("nonlinear", a): {"mean_distance": 0.2} for a in (0.05, 0.08)})
+    assert "they part at a = 0.05; they disagree at 2 of 2 values of a, the last 0.08" in agreement.digest(dataset)
 
 
-def test_a_run_without_result_agrees_with_nothing(tmp_path):
-    def change(law, trajectory):
-        if law == "linearized":
-            return dataclasses.replace(trajectory, status="step_limit", mean_distance=np.nan)
-        return trajectory
-
-    grid = written(tmp_path, change)
-    dataset = compare(grid)
+def test_a_run_without_result_agrees_with_nothing(compare):
+    failed = {"status": "step_limit", "mean_distance": np.nan}
+    failed |= {f"crossing_{name}": np.zeros(0) for name in ("time", "velocity", "direction")}
+    grid, dataset = compare({("linearized", a): failed for a in (0.05, 0.08)})
     assert (dataset["agrees"] == -1).all()
     assert (dataset["same_kind"] == -1).all()
+    assert np.isnan(dataset["section_distance"]).all()
     assert np.isnan(dataset["parting_a"].item())
-    assert "2 values of a are undetermined: a run did not complete," in agreement.digest(dataset)
+    words = agreement.digest(dataset)
+    assert "no value of a could be compared. 2 values of a are undetermined: a run did not complete," in words
     assert agreement.table(dataset).count("undetermined") == 4
     assert (dataset["kind"].sel(law="linearized") == -1).all()
     means = mean_distance.summarize(grid, 1e-6)
@@ -71,8 +108,8 @@ def test_a_run_without_result_agrees_with_nothing(tmp_path):
     assert (means["status"].sel(law="linearized") == 1).all()
 
 
-def test_a_missing_point_is_named(tmp_path):
-    grid = written(tmp_path)
+def test_a_missing_point_is_named(compare):
+    grid, _ = compare()
     grid.path("nonlinear", "minus", "0.0800").unlink()
     with pytest.raises(
         BadFile, match=r"nonlinear/minus/a0\.0800\.nc: is missing; remake it: snakemake -c2 -R .*/a0\.0800\.nc$"
@@ -80,18 +117,14 @@ def test_a_missing_point_is_named(tmp_path):
         mean_distance.summarize(grid, 1e-6)
 
 
-def three_laws(folder, laws):
+def of_laws(folder, laws):
     settings = {"transient": 100.0, "window": 100.0, "batches": 2}
-    grid = grid_of(folder, ["minus"], {"0.0500": 0.05, "0.2000": 0.2}, {"laws": laws}, **settings)
-    for _, (law, initial, a) in grid:
-        model = grid.model(law, grid.a[a])
-        write_point(run(model, grid.initial[initial], grid.settings[law]), grid.path(law, initial, a))
-    return grid
+    return summarized(write_points(grid_of(folder, ["minus"], {"0.05": 0.05, "0.2": 0.2}, {"laws": laws}, **settings)))
 
 
 def test_each_law_is_compared_with_the_first(tmp_path):
     laws = {"smooth": {"law": "nonlinear"}, "linearized": {}, "same": {"formula": "1/(1 + a*u)"}}
-    dataset = compare(three_laws(tmp_path, laws))
+    dataset = of_laws(tmp_path, laws)
     assert dataset["law"].values.tolist() == list(laws)
     assert dataset["other_law"].values.tolist() == ["linearized", "same"]
     mean = dataset["mean_distance"]
@@ -112,16 +145,8 @@ def test_each_law_is_compared_with_the_first(tmp_path):
     assert [row.count(",") for row in rows] == [head.count(",")] * 2
 
 
-def test_two_laws_have_the_columns_of_the_paper(tmp_path):
-    head = agreement.table(compare(written(tmp_path))).splitlines()[0]
-    assert head == (
-        "initial,a,mean_distance_linearized,mean_distance_nonlinear,difference,difference_error,section_distance,"
-        "event_order_time,kind_linearized,kind_nonlinear,agrees"
-    )
-
-
 def test_one_law_has_nothing_to_be_compared_with(tmp_path):
-    dataset = compare(three_laws(tmp_path, {"linearized": {}}))
+    dataset = of_laws(tmp_path, {"linearized": {}})
     assert dataset.sizes["other_law"] == 0
     assert agreement.digest(dataset) == "The linearized law is the only one: there is nothing to compare.\n"
     assert agreement.table(dataset).startswith("initial,a,mean_distance_linearized,kind_linearized\nminus,0.05,")
@@ -129,3 +154,34 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
     found = open_summary(tmp_path / "agreement.nc")
     assert found["difference"].shape == (0, 1, 2)
     assert found["law"].values.tolist() == ["linearized"]
+
+
+@pytest.mark.parametrize(
+    ("means", "errors", "kinds", "agrees"),
+    [
+        ((1.0, 1.111), (0.0, 0.0), (2, 2), 1),  # a tenth of the larger one
+        ((1.111, 1.0), (0.0, 0.0), (2, 2), 1),
+        ((1.0, 1.112), (0.0, 0.0), (2, 2), 0),
+        ((1.0, 1.15), (0.03, 0.041), (2, 2), 1),  # three errors of the difference
+        ((1.0, 1.16), (0.03, 0.04), (2, 2), 0),
+        ((0.0, 1e-6), (0.0, 0.0), (0, 0), 1),  # no more than the threshold of synchrony
+        ((0.0, 2e-6), (0.0, 0.0), (1, 1), 0),
+        ((1.0, 1.0), (0.0, 0.0), (1, 2), 0),
+        ((1.0, 1.0), (0.0, 0.0), (1, -1), -1),
+        ((1.0, 1.0), (0.0, 0.0), (-1, -1), -1),
+    ],
+)
+def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
+    names = ("mean_distance", "mean_distance_error", "kind")
+    # The same at the first a of each state; at the second one the first state agrees with itself.
+    pair = {name: np.array(item)[:, None, None] for name, item in zip(names, (means, errors, kinds), strict=True)}
+    same = {"mean_distance": 1.0, "mean_distance_error": 0.0, "kind": 3}
+    values = {name: np.concatenate([item, np.full((2, 1, 1), same[name])], axis=2) for name, item in pair.items()}
+    filled = ("difference", "difference_error", "same_kind", "agrees")
+    values |= {name: np.zeros((1, 2)) for name in filled} | {"parting_a": np.zeros(1)}
+    judge(values, np.array([0.1, 0.2]), 1e-6, AGREEMENT)
+    assert values["agrees"].tolist() == [[agrees, 1]]
+    assert values["same_kind"].tolist() == [[-1 if -1 in kinds else int(kinds[0] == kinds[1]), 1]]
+    assert values["difference"].tolist() == [[means[1] - means[0], 0.0]]
+    assert values["difference_error"].tolist() == [[np.hypot(*errors), 0.0]]
+    assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)

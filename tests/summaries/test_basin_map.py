@@ -1,11 +1,27 @@
 """A map of basins in one call: the settings are the config's defaults, and the labels those of whole runs."""
 
+import inspect
+
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.summaries.basin_map import basin_map
+
+
+def test_what_is_taken_if_nothing_is_said():
+    defaults = {
+        "pixels": 64,
+        "v": 0.1,
+        "contact": "one_sided",
+        "start": "moving",
+        "samples": 100,
+        "seed": 1,
+        "threads": 1,
+    }
+    parameters = inspect.signature(basin_map).parameters
+    assert {name: parameters[name].default for name in defaults} == defaults
 
 
 def test_labels_are_those_of_whole_runs():
@@ -58,8 +74,8 @@ def test_a_model_of_its_own():
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))
     model = Model(chain, law, v=0.12)
-    basins, attractors = basin_map(model, pixels=4, samples=10, transient=2000.0)
-    again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, pixels=4, samples=10, transient=2000.0)
+    basins, attractors = basin_map(model, pixels=4, samples=10, transient=1000.0, window=1000.0)
+    again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, pixels=4, samples=10, transient=1000.0, window=1000.0)
     assert basins.identical(again[0])
     assert attractors.identical(again[1])
     assert attractors["law"].values.tolist() == ["formula"]

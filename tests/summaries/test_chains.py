@@ -1,15 +1,19 @@
 """Fractions and intervals follow from the outcomes; two blocks under both laws."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.stability.chains import Sample, Watch
+from burridge_knopoff.stability.motion import motion_kind, section_period
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.summaries import chains, two_blocks
+from burridge_knopoff.summaries.event_order import common_order
 from tests.sections import AGREEMENT
 
 SAMPLE = Sample(samples=5, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=1)
@@ -32,12 +36,14 @@ def files(tmp_path_factory):
     return paths
 
 
+SETTINGS = two_blocks.run_settings(transient=1500.0, window=400.0, batches=4)
+LAWS, GRID = ("linearized", "nonlinear", "exponential"), (0.03, 0.15, 0.3)
+STATES = Sample(samples=2, symmetric_samples=0).initial(2)
+
+
 @pytest.fixture(scope="module")
 def compared():
-    settings = two_blocks.run_settings(transient=1500.0, window=400.0, batches=4)
-    initial = Sample(samples=2, symmetric_samples=0).initial(2)
-    laws = ("linearized", "nonlinear", "exponential")
-    return two_blocks.summarize(models(2, laws), initial, [0.03, 0.15, 0.3], settings, MOTION, AGREEMENT)
+    return two_blocks.summarize(models(2, LAWS), STATES, GRID, SETTINGS, MOTION, AGREEMENT)
 
 
 def test_chains_are_ordered_by_their_number_of_blocks(files):
@@ -62,9 +68,14 @@ def test_fractions_count_outcomes(files):
     assert point["synchronized_fraction"] == 0.4
     assert point["undetermined_fraction"] == 0.2
     assert point["partial_fraction"] == 0.2
-    assert point["mean_mirror_distance"] == pytest.approx(0.12)
+    assert point["mean_mirror_distance"].item() == pytest.approx(0.12, abs=1e-15)
     assert point["synchronized_low"] == fraction_interval(2, 5)[1]
     assert point["synchronized_high"] == fraction_interval(3, 5)[2]
+    assert point["state"].values.tolist() == [1, 2, 3, 4, 5]
+    assert point["symmetric_state"].values.tolist() == [1]
+    told = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
+    assert {key: point.attrs[key] for key in told} == told
+    assert "blocks" not in point.attrs
 
 
 def test_a_damaged_chain_file_is_named(files):
@@ -86,12 +97,41 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     assert compared["other_law"].values.tolist() == ["nonlinear", "exponential"]
     assert compared["agrees"].sel(a=0.03).values.tolist() == [[1, 1]] * 2
     assert (compared["kind"].sel(a=0.03) == 0).all()
-    assert (compared["agreeing_fraction"].sel(a=0.03) == 1.0).all()
     assert (np.isnan(compared["parting_a"]) | (compared["parting_a"] > 0.03)).all()
-    low = fraction_interval(2, 2)[1]
-    assert (compared["agreeing_low"].sel(a=0.03) == low).all()
     mean = compared["mean_distance"].values
     assert np.array_equal(compared["difference"].values, mean[1:] - mean[0])
+    for other, a in product(range(2), range(3)):
+        agrees = compared["agrees"].values[other, :, a]
+        expected = fraction_interval(int((agrees == 1).sum()), int((agrees >= 0).sum()))
+        told = [compared[f"agreeing_{name}"].values[other, a] for name in ("fraction", "low", "high")]
+        assert told == pytest.approx(expected, nan_ok=True)
+    assert len(np.unique(compared["agreeing_fraction"])) > 1
+
+
+def test_two_blocks_are_whole_runs(compared):
+    for (j, state), (k, a) in product(enumerate(STATES), enumerate(GRID)):
+        assert tuple(compared["initial_position"].values[j]) == state.position
+        assert tuple(compared["initial_velocity"].values[j]) == state.velocity
+        runs = [simulate(model.at(a), state, SETTINGS) for model in models(2, LAWS)]
+        for i, run in enumerate(runs):
+            section = run.crossing_velocity[run.crossing_direction > 0]
+            period = section_period(section, 1e-6, 60)
+            exponents = run.lyapunov_exponent, run.lyapunov_error
+            expected = {
+                "mean_distance": run.mean_distance,
+                "mean_distance_error": run.mean_distance_error,
+                "section_period": period,
+                "kind": motion_kind(run.mean_distance, period, *exponents, MOTION),
+            }
+            assert {name: compared[name].values[i, j, k] for name in expected} == expected
+        first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
+        for i, other in enumerate(others):
+            count, until = common_order(first, other)
+            assert compared["event_order_count"].values[i, j, k] == count
+            assert compared["event_order_time"].values[i, j, k] == min(until, 1900.0)
+    told = {"transient": 1500.0, "window": 400.0, "agreement_standard_errors": 3.0, "motion_longest_period": 60}
+    assert {name: compared.attrs[name] for name in told} == told
+    assert compared["state"].values.tolist() == [1, 2]
 
 
 def test_one_law_has_nothing_to_be_compared_with():

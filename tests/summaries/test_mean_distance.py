@@ -1,19 +1,20 @@
-"""When J settles: hand-made samples."""
+"""When J settles, which motions the exponents and section points tell, and where the section points are kept."""
 
 import dataclasses
 
 import numpy as np
 import pytest
 
-from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.running.simulation import run, simulate
+from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.summaries import lyapunov
+from burridge_knopoff.summaries import bifurcation, lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
-from tests.grids import grid_of
+from tests.grids import PAPER_MODELS, grid_of
 from tests.sections import MOTION
+from tests.summaries.points import write_points
 
 TIME = np.array([0.0, 5.0, 10.0, 15.0])
+SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
 
 
 @pytest.mark.parametrize(
@@ -34,39 +35,101 @@ def test_settling_time(distance, expected):
 
 def test_settling_times_of_runs(tmp_path):
     settings = {"transient": 1500.0, "window": 100.0, "batches": 2}
+    run = simulate("linearized", 0.08, "minus", **settings)
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
-    runs = {}
-    for _, (law, initial, a) in grid:
-        runs[law] = simulate(law, 0.08, initial, **settings)
-        if law == "nonlinear":
-            runs[law] = dataclasses.replace(runs[law], status="step_limit")
-        write_point(runs[law], grid.path(law, initial, a))
-    found = summarize(grid, 1e-6)["settling_time"]
-    assert found.sel(law="linearized").values.ravel().tolist() == settling_time(
-        runs["linearized"].time, runs["linearized"].distance, LEVELS
+    write_points(
+        grid, lambda own: dataclasses.replace(own, status="step_limit") if own.model.law.name[0] == "n" else own
     )
+    found = summarize(grid, 1e-6)["settling_time"]
     # J at synchrony dies out like the transverse multiplier to the power of the number of periods.
     settled = found.sel(law="linearized", initial="minus", a=0.08)
+    assert settled.values.tolist() == settling_time(run.time, run.distance, LEVELS)
     assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
     assert settled.sel(level=1e-2) <= settled.sel(level=1e-3) < settled.sel(level=1e-6)
     assert np.isnan(found.sel(law="nonlinear")).all()
 
 
+def same_section(trajectory, **values):
+    """Return a run with twenty upward section points at one velocity, as a closed orbit has them."""
+    section = {"velocity": np.full(20, 0.1), "direction": np.ones(20, np.int8), "time": np.arange(20.0)}
+    return dataclasses.replace(trajectory, **{f"crossing_{key}": item for key, item in section.items()}, **values)
+
+
 @pytest.mark.parametrize(("thresholds", "synchronized"), [([1.0, 1.1, 1.0], 1), ([1.0, 1.0, 1.1], 0)])
 def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresholds, synchronized):
     """Whatever J is: here runs of the third block have been given that of synchrony."""
-    settings = {"transient": 50.0, "window": 50.0, "batches": 2}
-    chain = {"coupling": 1.0, "pulling": "neighbours", "threshold": thresholds, "ends": "open"}
-    models = {"laws": {"linearized": {}}, "chain": chain}
-    grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **settings)
-    for _, (law, initial, a) in grid:
-        trajectory = run(grid.model(law, grid.a[a]), grid.initial[initial], grid.settings[law])
-        same = dataclasses.replace(trajectory, mean_distance=1e-9, crossing_velocity=np.full(20, 0.1))
-        same = dataclasses.replace(same, crossing_direction=np.ones(20, np.int8), crossing_time=np.arange(20.0))
-        same = dataclasses.replace(same, lyapunov_exponent=np.array([0.0, -0.1, -0.2]))
-        write_point(same, grid.path(law, initial, a))
+    models = {"laws": {"linearized": {}}, "chain": {**PAPER_MODELS["chain"], "threshold": thresholds}}
+    grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **SHORT)
+    given = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
+    write_points(grid, lambda trajectory: same_section(trajectory, **given))
     found = summarize(grid, 1e-6)["synchronized"]
     assert found.values.ravel().tolist() == [synchronized]
     assert ("comment" in found.attrs) == (not synchronized)
     kind = lyapunov.summarize(grid, 3, 1e-6, MOTION)["kind"]
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
+
+
+#: {a: exponents, upward section points, status of a run, and the kind, the zero exponents and the period they tell}.
+ORBIT = np.random.default_rng(1).random(150)
+GOLDEN = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(1200))
+TOLD = {
+    0.1: ((0.0, -0.1, -0.2), np.tile([0.1, 0.3], 10), "completed", MotionKind.PERIODIC, 1, 2),
+    0.2: ((1e-4, -1e-4, -0.2), GOLDEN, "completed", MotionKind.QUASIPERIODIC, 2, 0),
+    # Section points that repeat after more of them than are looked for.
+    0.3: ((1e-4, -1e-4, -0.2), np.tile(ORBIT, 8), "completed", MotionKind.PERIODIC, 2, 0),
+    0.4: ((0.02, 0.0, -0.3), ORBIT, "completed", MotionKind.CHAOTIC, 1, 0),
+    0.5: ((0.0, -0.1, -0.2), np.tile([0.1, 0.3], 10), "step_limit", MotionKind.UNDETERMINED, 1, 2),
+}
+
+
+@pytest.fixture
+def told(tmp_path):
+    """Points whose every second section point is a downward one, at −1, −2, …"""
+
+    def alter(trajectory):
+        exponent, upward, status, *_ = TOLD[trajectory.model.a]
+        section = np.stack([upward, -1.0 - np.arange(len(upward))], axis=1).ravel()
+        return dataclasses.replace(
+            trajectory,
+            status=status,
+            mean_distance=trajectory.model.a,
+            lyapunov_exponent=np.array(exponent),
+            lyapunov_error=np.full(3, 1e-5),
+            crossing_time=np.arange(len(section), dtype=float),
+            crossing_velocity=section,
+            crossing_direction=np.tile(np.array([1, -1], np.int8), len(upward)),
+        )
+
+    grid = grid_of(tmp_path, ["minus", "plus"], {f"{a:.4f}": a for a in TOLD}, **SHORT)
+    return write_points(grid, alter)
+
+
+def test_kinds_of_motion_of_runs(told):
+    found = lyapunov.summarize(told, 3, 1e-6, MOTION)
+    assert (found.attrs["synchronization_threshold"], found.attrs["longest_period"]) == (1e-6, 60)
+    for point in (found.sel(law=law, initial=state) for law in found["law"].values for state in ("minus", "plus")):
+        expected = list(zip(*TOLD.values(), strict=True))
+        assert point["lyapunov_exponent"].values.tolist() == [list(exponent) for exponent in expected[0]]
+        assert (point["lyapunov_error"] == 1e-5).all()
+        names = ("kind", "zero_exponent_count", "section_period")
+        assert tuple(tuple(point[name].values.tolist()) for name in names) == tuple(expected[3:])
+        assert point["mean_distance"].values.tolist() == list(TOLD)
+        assert point["status"].values.tolist() == [0, 0, 0, 0, 1]
+
+
+def test_section_points_are_kept_run_by_run(told):
+    found = bifurcation.summarize(told)
+    counts = [2 * len(upward) for _, upward, *_ in TOLD.values()]
+    assert found["crossing_count"].values.tolist() == 4 * counts
+    assert found["a"].values.tolist() == 4 * list(TOLD)
+    assert found["law"].values.tolist() == [0] * 10 + [1] * 10
+    assert found["initial"].values.tolist() == 2 * ([0] * 5 + [1] * 5)
+    # Each run of the second state and law has velocities of its own.
+    chosen = np.repeat((found["law"].values == 1) & (found["initial"].values == 1), found["crossing_count"].values)
+    found["crossing_velocity"].values[chosen] *= 2.0
+    upward = np.concatenate([item[1] for item in TOLD.values()])
+    for law, initial, factor in (("nonlinear", "plus", 2.0), ("nonlinear", "minus", 1.0), ("linearized", "plus", 1.0)):
+        a, velocity = bifurcation.section_points(found, law, initial, 1)
+        assert velocity.tolist() == (factor * upward).tolist()
+        assert a.tolist() == np.repeat(list(TOLD), np.array(counts) // 2).tolist()
+        assert (bifurcation.section_points(found, law, initial, -1)[1] <= -1.0).all()

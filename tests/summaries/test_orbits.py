@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, FormulaLaw, Model, law_of
+from burridge_knopoff.stability.branch import branch_orbit, leading_modulus, mean_distance, sweep
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import multipliers, transverse_multiplier
+from burridge_knopoff.stability.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.orbits import COMPARISON, effective_a, summarize
+from burridge_knopoff.summaries import orbits
+from burridge_knopoff.summaries.orbits import COMPARISON, Bifurcation, BifurcationSide, effective_a, summarize
 
 
 def models(laws=PAPER_LAWS, chain=None, **options):
@@ -36,12 +39,8 @@ def test_the_curve_is_that_of_the_orbits(found):
 
 
 def test_the_bifurcation_is_told_from_the_orbits(found):
-    meanings = {
-        name: dict(zip(found[name].attrs["flag_values"], found[name].attrs["flag_meanings"].split(), strict=True))
-        for name in ("bifurcation_kind", "bifurcation_side")
-    }
-    assert [meanings["bifurcation_kind"][value] for value in found["bifurcation_kind"].values] == ["pitchfork"] * 2
-    assert [meanings["bifurcation_side"][value] for value in found["bifurcation_side"].values] == ["supercritical"] * 2
+    assert (found["bifurcation_kind"] == Bifurcation.PITCHFORK).all()
+    assert (found["bifurcation_side"] == BifurcationSide.SUPERCRITICAL).all()
     assert (found["branch_offset"] > 0.0).all()
     assert (found["branch_multiplier"] < 1.0).all()
     assert (found["branch_residual"] <= 1e-14).all()
@@ -49,6 +48,43 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
     assert (found["hysteresis"] < 1e-9).all()
     ends = found["sweep_asymmetry"]
     assert (ends.sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
+
+
+def test_the_transition_is_that_of_the_stability_room(found):
+    """Each number for itself, the fit by another routine."""
+    family, one = Family(models()[1]), found.sel(law="nonlinear")
+    critical = critical_a(family)
+    assert one["critical_a"].item() == pytest.approx(critical, abs=1e-14)
+    assert one["critical_a_error"].item() == pytest.approx(critical_a_error(family, critical), abs=1e-11)
+    assert one["grazing_a"].item() == pytest.approx(grazing_a(family), abs=1e-12)
+    assert one["symmetric_flip_a"].item() == pytest.approx(symmetric_flip_a(family), abs=1e-12)
+    d = one["branch_asymmetry"].values
+    # From a thousandth of v on, five in a decade.
+    assert d == pytest.approx(0.1 * 10 ** (np.arange(13) / 5 - 3), rel=1e-3)
+    assert d[::5] == pytest.approx([1e-4, 1e-3, 1e-2], rel=1e-12)
+    orbit = branch_orbit(family, critical, d[7])
+    for name, value in {
+        "offset": orbit.model.a - critical,
+        "period": orbit.period,
+        "residual": orbit.residual,
+        "multiplier": leading_modulus(orbit),
+        "mean_distance": mean_distance(orbit),
+    }.items():
+        assert one[f"branch_{name}"].values[7] == pytest.approx(value, rel=1e-7, abs=1e-14), name
+    small = slice(0, 6)
+    line, covariance = np.polyfit(np.log(one["branch_offset"].values[small]), np.log(d[small]), 1, cov=True)
+    assert one["amplitude_exponent"].item() == pytest.approx(line[0], abs=1e-9)
+    assert one["amplitude_exponent_error"].item() == pytest.approx(covariance[0, 0] ** 0.5, rel=1e-3)
+    assert one["amplitude_coefficient"].item() == pytest.approx(np.exp(line[1]), rel=1e-8)
+    offsets = [-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2]
+    assert one["sweep_offset"].values.tolist() == offsets
+    up, down = (
+        one["sweep_asymmetry"].sel(direction="upward").values,
+        one["sweep_asymmetry"].sel(direction="downward").values,
+    )
+    assert up == pytest.approx(sweep(family, critical + np.array(offsets)), abs=1e-9)
+    assert down == pytest.approx(sweep(family, critical + np.array(offsets[::-1]))[::-1], abs=1e-9)
+    assert one["hysteresis"].item() == np.abs(up - down).max()
 
 
 def test_the_law_at_the_same_slope(found):
@@ -77,8 +113,11 @@ def test_no_orbit_is_told_not_a_crash(blocks, v, status):
     assert (none["bifurcation_side"] == -1).all()
 
 
-def test_other_laws_have_their_rows(found):
+def test_other_laws_have_their_rows(found, monkeypatch):
     """In the order of the study, without a comparison that is the paper's."""
+    # What branches off is told of the paper's laws.
+    monkeypatch.setattr(orbits, "ASYMMETRIES", orbits.ASYMMETRIES[:2])
+    monkeypatch.setattr(orbits, "OFFSETS", orbits.OFFSETS[:1])
     other = summarize(models(("exponential", "nonlinear", "carlson_langer")), [0.0, 0.1])
     assert other["law"].values.tolist() == ["exponential", "nonlinear", "carlson_langer"]
     # Static friction that drops at the start of a slip feeds motion at a = 0 too.
@@ -96,6 +135,14 @@ def test_other_laws_have_their_rows(found):
 
 
 def test_an_asymmetric_chain_has_no_synchronized_orbit():
-    none = summarize(models(chain=Chain(3, threshold=(1.0, 1.0, 0.9))), [0.1])
-    assert (none["status"] == 2).all()
+    none = summarize(models(("linearized",), chain=Chain(3, threshold=(1.0, 1.0, 0.9))), [0.1])
+    assert none["status"].values.tolist() == [[2]]
     assert np.isnan(none["critical_a"]).all()
+
+
+@pytest.mark.parametrize(
+    ("formula", "status"), [("1 + 0*u", 1), ("1 + 0.1*u", 2), ("0.9 + 0*u", 2), ("1 - a*u", 1), ("1 - (1 - a)*u", 2)]
+)
+def test_friction_that_is_the_same_at_every_speed_is_neutral(formula, status):
+    model = Model(Chain(3), FormulaLaw(0.1, formula, name="mine"))
+    assert summarize([model], [0.0])["status"].values.tolist() == [[status]]

@@ -55,6 +55,8 @@ def simulate(
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
     if isinstance(law, Model):
+        if settings or (chain, v, contact) != (None, 0.1, "one_sided"):
+            raise ValueError("chain, v, contact, settings by name: not allowed beside a model, which takes a Settings")
         return run(law, _state(a), initial)
     state = _state(initial)
     known = {item.name for item in fields(Settings)}

@@ -1,0 +1,281 @@
+"""Do the tests notice? Random single changes of the sources, each met by the tests of its room.
+
+    make mutants                                         # 300 changes: up to two hours on two idle cores
+    .venv-mutants/bin/python benchmarks/mutants.py --count 40 --rooms kernel --seed 7
+
+Cosmic Ray makes the changes (an operator, a comparison, a constant, a condition); mutmut 3 calls its mutants through
+wrappers of Python functions, which a compiled kernel does not have. Each runs in a copy of the tree, where the changed
+module of the kernel is compiled. Printed are the changes that no test noticed, and the share that was. A change that
+changes no result is listed in mutants.toml, with why. The declarations of the kernel (.pxd) are not changed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import os
+import queue
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from collections import defaultdict
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import parso
+from cosmic_ray.ast import ast_nodes
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.plugins import get_operator, operator_names
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = Path("src/burridge_knopoff")
+PYTHON = ROOT / ".venv/bin/python"
+LEFT_OUT = (".git", ".snakemake", "results", "build", "fuzzed", ".venv*", "__pycache__", ".*_cache")
+ROOMS = ("summaries", "stability", "claims", "dataset", "model", "laws", "running", "kernel")
+
+#: What else meets a change in a room, quick tests first. Whether builds agree is no question to a changed source.
+TESTS = {
+    "model": ("running", "stability"),
+    "laws": ("model", "running/test_simulation.py"),
+    "running": ("dataset", "kernel/test_exponents.py"),
+    "kernel": ("running", "stability/test_orbit.py"),
+}
+DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
+
+#: Operators that give a number where there was one; every other replacement is a TypeError that any test notices.
+ARITHMETIC = ("Add", "Sub", "Mul", "Div")
+LEFT_ALONE = ("RemoveDecorator", "ExceptionReplacer", "VariableReplacer", "VariableInserter")
+
+COMPILE = """
+import sys
+sys.path.insert(0, "src")
+from pathlib import Path
+from Cython.Build import cythonize
+from setuptools import Distribution, Extension
+from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
+from burridge_knopoff.provenance.kernel_build import KERNEL, write_record
+path = Path(sys.argv[1])
+name = f"burridge_knopoff.kernel.{path.stem}"
+extension = Extension(name, [str(path)], extra_compile_args=[*COMPILER_FLAGS, *vector_flags()])
+shared = "burridge_knopoff.kernel._shared"
+built = cythonize([extension], force=True, quiet=True, build_dir="build/cython", shared_utility_qualified_name=shared,
+                  compiler_directives=DIRECTIVES)
+command = Distribution({"ext_modules": built, "package_dir": {"": "src"}}).get_command_obj("build_ext")
+command.inplace = command.force = 1
+command.ensure_finalized()
+command.run()
+write_record(KERNEL)
+"""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one file of the package: the whole text, and the line that differs before and after."""
+
+    file: str
+    number: int
+    before: str
+    after: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.number}\n  - {self.before}\n  + {self.after}"
+
+
+def sample(rooms: list[str], count: int, seed: int) -> list[Mutant]:
+    """Return changes at places drawn at random, of a kind drawn at random, no two at one place."""
+    places = sorted({place for room in rooms for path in (ROOT / PACKAGE / room).glob("*.py") for place in spots(path)})
+    generator = random.Random(seed)
+    generator.shuffle(places)
+    found: list[Mutant] = []
+    for path, position in places:
+        if len(found) == count:
+            break
+        mutant = change(path, *generator.choice(changes(path)[position]))
+        if mutant:
+            found.append(mutant)
+    return found
+
+
+def spots(path: Path) -> list[tuple[Path, tuple[int, int]]]:
+    """Return where a file can be changed."""
+    return [(path, position) for position in changes(path)]
+
+
+KNOWN: dict[Path, dict[tuple[int, int], list[tuple[str, int]]]] = {}
+
+
+def changes(path: Path) -> dict[tuple[int, int], list[tuple[str, int]]]:
+    """Return {(line, column): [(operator, occurrence), …]} of a file."""
+    if path not in KNOWN:
+        KNOWN[path] = defaultdict(list)
+        nodes = list(ast_nodes(parso.parse(path.read_text(encoding="utf-8"))))
+        for name in filter(is_used, operator_names()):
+            operator = get_operator(name)()
+            spans = [span for node in nodes for span in operator.mutation_positions(node)]
+            for occurrence, (begin, _) in enumerate(spans):
+                KNOWN[path][begin].append((name, occurrence))
+    return KNOWN[path]
+
+
+def is_used(name: str) -> bool:
+    """Tell whether an operator of Cosmic Ray says something about tests."""
+    kind, *operators = name.split("/")[1].split("_")
+    if kind == "ReplaceBinaryOperator":
+        return set(operators) <= set(ARITHMETIC)
+    return kind not in LEFT_ALONE
+
+
+def change(path: Path, operator: str, occurrence: int) -> Mutant | None:
+    """Return a changed file, or None if it is no Python any more or changed in annotations only."""
+    original = path.read_text(encoding="utf-8")
+    text = mutate_code(original, get_operator(operator)(), occurrence)
+    try:
+        if bare(text) == bare(original):
+            return None
+    except SyntaxError:
+        return None
+    lines = original.splitlines(), text.splitlines()
+    number = next(k for k, pair in enumerate(zip(*lines, strict=False)) if pair[0] != pair[1])
+    file = path.relative_to(ROOT / PACKAGE).as_posix()
+    return Mutant(file, number + 1, lines[0][number].strip(), " ".join(lines[1][number].split()), text)
+
+
+def bare(text: str) -> str:
+    """Return the syntax tree of a text without annotations."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        for name in ("annotation", "returns"):
+            if isinstance(getattr(node, name, None), ast.AST):
+                setattr(node, name, ast.Constant(None))
+    return ast.dump(tree)
+
+
+def tests_of(file: str) -> list[str]:
+    """Return the tests that meet a change of a file, those of the file itself first."""
+    room, name = file.split("/")
+    wanted = [f"{room}/test_{name}", room, *TESTS.get(room, ())]
+    return [f"tests/{test}" for test in wanted if (ROOT / "tests" / test).exists()]
+
+
+class Copy:
+    """A copy of the tree in which changes are tried."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*LEFT_OUT))
+        self.environment = {
+            **os.environ,
+            "PYTHONPATH": str(folder / "src"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+
+    def run(self, command: list[str], limit: float) -> bool:
+        """Return whether a command ends well within a time."""
+        process = subprocess.Popen(
+            [str(PYTHON), *command],
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        try:
+            return process.wait(limit) == 0
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            return False
+
+    def passes(self, file: str, limit: float) -> bool:
+        """Return whether the tests of a file pass; also False if they take too long."""
+        folder = self.folder.with_name(self.folder.name + "-pytest")
+        options = ["-x", "-n", "0", "-p", "no:cacheprovider", "--basetemp", str(folder), *DESELECTED]
+        return self.run(["-m", "pytest", *options, *tests_of(file)], limit)
+
+    def survives(self, mutant: Mutant, limit: float) -> bool:
+        """Return whether the tests do not notice a change."""
+        path = self.folder / PACKAGE / mutant.file
+        kept = {item: item.read_bytes() for item in [path, *path.parent.glob(f"{path.stem}.*.so")]}
+        kept.update({item: item.read_bytes() for item in path.parent.glob("build.json")})
+        try:
+            path.write_text(mutant.text, encoding="utf-8")
+            compiled = path.parent.name == "kernel"
+            if compiled and not self.run(["-c", COMPILE, str(path.relative_to(self.folder))], limit):
+                return False
+            return self.passes(mutant.file, limit)
+        finally:
+            for item, content in kept.items():
+                item.write_bytes(content)
+
+
+def equivalents() -> list[tuple[str, str, str]]:
+    """Return the patterns (file, line, changed line) of the changes that change no result."""
+    listed = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+    return [(item["file"], item["line"], becomes) for item in listed["equivalent"] for becomes in item["becomes"]]
+
+
+def is_equivalent(mutant: Mutant, listed: list[tuple[str, str, str]]) -> bool:
+    """Tell whether a change is among those listed; in a pattern … is any text."""
+    texts = (mutant.file, mutant.before, mutant.after)
+    return any(all(map(matches, item, texts)) for item in listed)
+
+
+def matches(pattern: str, text: str) -> bool:
+    """Tell whether a text is that of a pattern."""
+    return re.fullmatch(".*".join(map(re.escape, pattern.split("…"))), text) is not None
+
+
+def main() -> int:
+    """Try the changes and print what came out; return 1 if the tests fail on the sources as they are."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rooms", nargs="+", default=ROOMS, choices=ROOMS)
+    parser.add_argument("--copies", type=int, default=2, help="changes that are tried at a time")
+    chosen = parser.parse_args()
+    listed = equivalents()
+    mutants = sample(chosen.rooms, chosen.count, chosen.seed)
+    tried = [item for item in mutants if not is_equivalent(item, listed)]
+    with tempfile.TemporaryDirectory(prefix="mutants") as folder:
+        copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
+        for number in range(chosen.copies):
+            copies.put(Copy(Path(folder) / f"copy{number}"))
+        limits = {}
+        first = copies.get()
+        for room in sorted({item.file.split("/")[0] for item in tried}):
+            begin = time.monotonic()
+            if not first.passes(f"{room}/", 3600.0):
+                print(f"the tests of {room} fail on the sources as they are", file=sys.stderr)
+                return 1
+            limits[room] = 60.0 + 5.0 * (time.monotonic() - begin)
+        copies.put(first)
+        verdicts: list[bool] = []
+
+        def attempt(mutant: Mutant) -> None:
+            copy = copies.get()
+            try:
+                noticed = not copy.survives(mutant, limits[mutant.file.split("/")[0]])
+            finally:
+                copies.put(copy)
+            verdicts.append(noticed)
+            if not noticed:
+                print(f"{len(verdicts)} of {len(tried)} tried; not noticed: {mutant}", flush=True)
+
+        with ThreadPoolExecutor(chosen.copies) as pool:
+            list(pool.map(attempt, tried))
+    print(f"{sum(verdicts)} of {len(tried)} changes noticed, {sum(verdicts) / max(1, len(tried)):.1%};", end=" ")
+    print(f"{len(mutants) - len(tried)} more change no result (seed {chosen.seed}, {' '.join(chosen.rooms)})")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

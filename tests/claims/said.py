@@ -1,0 +1,45 @@
+"""What each verdict says, word for word and number for number, beside the cases that it is said of.
+
+`python -m tests.claims.said` writes said.json anew; read what has changed there before it is kept.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from burridge_knopoff.claims.ledger import Claim, judge, read_claims
+from burridge_knopoff.claims.verdict import Verdict
+from tests.claims.alterations import CASES, Alteration
+from tests.claims.worlds import evidence, paper_world
+
+ROOT = Path(__file__).parents[2]
+FILE = Path(__file__).with_name("said.json")
+CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(ROOT / "config/claims.yaml")}
+
+
+def altered(name: str, alteration: Alteration) -> Verdict:
+    """Return the verdict on a claim in the world in which the paper is right, but for an alteration."""
+    world = paper_world()
+    alteration(world)
+    return judge(CLAIMS[name], evidence(world))
+
+
+def said(verdict: Verdict) -> str:
+    """Return a verdict with all that it rests on as a line."""
+    errors = ["" if item.error is None else f" ± {item.error:.3g}" for item in verdict.measured]
+    measured = [f"{item.quantity}: {item.value:.7g}{end}" for item, end in zip(verdict.measured, errors, strict=True)]
+    return " | ".join([verdict.verdict, verdict.own, verdict.reason, verdict.changes, *measured])
+
+
+def write() -> None:
+    """Write what is said of each claim: first where the paper is right, then in the order of the cases."""
+    cases = [(name, lambda world: None) for name in CLAIMS] + [(name, alteration) for name, _, alteration in CASES]
+    found: dict[str, list[str]] = {name: [] for name in CLAIMS}
+    for name, alteration in cases:
+        found[name].append(said(altered(name, alteration)))
+    FILE.write_text(json.dumps(found, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write()

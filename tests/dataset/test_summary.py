@@ -1,0 +1,77 @@
+"""Summaries: what is described is what is written, read back and refused."""
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray
+
+from burridge_knopoff.dataset.summary import axes, open_summary, summary, write_summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.provenance.seal import BadFile
+
+VARIABLES = {
+    "value": Variable(("law", "a"), "f8", "a value"),
+    "verdict": Variable(("a",), "i1", "a verdict", flag("i1", {-1: "none", 2: "yes"})),
+}
+
+
+def made(count=64, **attributes):
+    values = {"value": np.arange(2.0 * count).reshape(2, count), "verdict": [2.0] * count, "other": 1}
+    coordinates = axes([], np.arange(count) / 8, ["linearized", "nonlinear"])
+    del coordinates["initial"]
+    module = "burridge_knopoff.summaries.lyapunov"
+    return summary("A title", VARIABLES, values, coordinates, {"v": 0.1, **attributes}, module=module)
+
+
+def test_what_is_described_is_in_the_dataset():
+    found = made()
+    assert list(found.data_vars) == ["value", "verdict"]
+    assert found["value"].dims == ("law", "a")
+    assert found["value"].values[1].tolist() == list(range(64, 128))
+    assert found["value"].attrs == {"long_name": "a value", "units": "1"}
+    # A flag has no unit.
+    assert list(found["verdict"].attrs) == ["long_name", "flag_values", "flag_meanings"]
+    assert found["verdict"].attrs["flag_values"].tolist() == [-1, 2]
+    assert (found["verdict"].dtype, found["verdict"].attrs["flag_meanings"]) == (np.int8, "none yes")
+    assert found["a"].values.tolist() == [k / 8 for k in range(64)]
+    assert found["a"].attrs == {"long_name": "friction parameter a", "units": "1"}
+    assert found["law"].values.tolist() == ["linearized", "nonlinear"]
+    assert found["law"].attrs == {"long_name": "friction law"}
+    assert axes(["minus"], [], [])["initial"][1].tolist() == ["minus"]
+    head = {
+        "Conventions": "CF-1.11, ACDD-1.3",
+        "title": "A title",
+        "history": "snakemake, from the point files",
+        "v": 0.1,
+    }
+    assert {key: found.attrs[key] for key in head} == head
+    assert found.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
+    assert made(history="by hand").attrs["history"] == "by hand"
+
+
+def test_what_is_written_is_read_back(tmp_path):
+    for name, count in (("one.nc", 64), ("two.nc", 64), ("short.nc", 63)):
+        write_summary(made(count), tmp_path / name)
+        assert open_summary(tmp_path / name).drop_attrs().identical(made(count).drop_attrs())
+        with netCDF4.Dataset(tmp_path / name) as file:
+            # Short arrays are not worth compressing.
+            assert file["verdict"].filters()["zlib"] == (count >= 64)
+            assert "_FillValue" not in file["value"].ncattrs()
+    assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
+
+
+def test_what_is_no_summary_of_now_is_refused(tmp_path):
+    other, bare = made(source_module="other"), made()
+    other.attrs["source_fingerprint"] = "0" * 16
+    write_summary(other, tmp_path / "other.nc")
+    with pytest.raises(BadFile, match=r"other.nc: was made by other sources \(burridge_knopoff.*lyapunov 0{16}, now"):
+        open_summary(tmp_path / "other.nc")
+    bare.to_netcdf(tmp_path / "bare.nc")
+    for name, reason in (("bare.nc", "has no seal at its end"), ("missing.nc", "is missing")):
+        with pytest.raises(BadFile, match=reason):
+            open_summary(tmp_path / name)
+    write_summary(made(), tmp_path / "cut.nc")
+    (tmp_path / "cut.nc").write_bytes((tmp_path / "cut.nc").read_bytes()[:-100])
+    with pytest.raises(BadFile, match=r"cut\.nc"):
+        open_summary(tmp_path / "cut.nc")
+    assert xarray.load_dataset(tmp_path / "bare.nc").sizes == {"law": 2, "a": 64}

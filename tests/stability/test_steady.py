@@ -1,0 +1,182 @@
+"""Returns and what they tell: from the events of whole runs, and of hand-made sets."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, Settings, law_of, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.stability import steady
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.settings import MOTION
+from burridge_knopoff.stability.steady import (
+    Returns,
+    distance,
+    instant_of,
+    is_near,
+    least_distance,
+    lies_on,
+    measure,
+    orbit_length,
+    visit,
+)
+from tests.stability.stand_in import stand_in
+
+ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
+
+
+def model(threshold=1.0):
+    return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08))
+
+
+def nearest(first, second, rank):
+    """Return, by all differences, how far each row of a set is from its nearest, or next but one, of another."""
+    return np.sort(np.abs(first[:, None] - second[None]).max(axis=2), axis=1)[:, rank]
+
+
+@pytest.mark.parametrize("threshold", [1.0, (1.0, 1.0, 0.9)])
+def test_returns_are_the_stops_of_the_first_block(threshold):
+    chain = model(threshold)
+    start = chain.begin(PAPER_STATES["plus"])
+    run = simulate(chain, PAPER_STATES["plus"], Settings(transient=500.0, window=300.0, batches=6, events="all"))
+    found = visit(chain, start, 500.0, 300.0)
+    stops = {}
+    for block in (1, 3):
+        chosen = (run.event_time >= 500.0) & (run.event_block == block) & (run.event_kind == 0)
+        stops[block] = [run.event_position[chosen] - chain.sliding_offset, run.event_velocity[chosen]]
+    assert found.returns == pytest.approx(np.hstack(stops[1]), abs=1e-9)
+    mirrored = np.hstack([part[:, ::-1] for part in stops[3]]) if threshold == 1.0 else np.zeros((0, 6))
+    assert found.mirror_returns == pytest.approx(mirrored, abs=1e-9)
+    first, second = np.array_split(found.returns, 2)
+    assert found.spacing == pytest.approx(np.quantile(nearest(second, second, 1), 0.95))
+    ways = [np.quantile(nearest(one, other, 0), 0.95) for one, other in ((first, second), (second, first))]
+    assert found.drift == pytest.approx(max(ways))
+    assert found.instant().vector().tolist() == found.returns[-1].tolist()
+
+    motion = measure(chain, start, 500.0, 300.0, MOTION)
+    assert motion.returns == pytest.approx(found.returns, abs=1e-9)
+    assert motion.spacing == pytest.approx(found.spacing, abs=1e-9)
+    counts = [np.sum((run.event_time >= 500.0) & (run.event_block == n) & (run.event_kind == 0)) for n in (1, 2, 3)]
+    assert motion.stop_rate.tolist() == [count / 300.0 for count in counts]
+    assert motion.mean_distance == pytest.approx(run.mean_distance, abs=1e-9)
+    assert motion.mean_distance_error == pytest.approx(run.mean_distance_error, abs=1e-9)
+    assert motion.exponent.shape == (3,)
+    assert motion.instant().vector().tolist() == motion.returns[-1].tolist()
+    # Too few returns say nothing.
+    assert visit(chain, start, 500.0, 20.0) is None
+    assert measure(chain, start, 500.0, 20.0, MOTION) is None
+
+
+def test_mirror_images_of_a_motion():
+    motion = stand_in(Symmetry.ASYMMETRIC, 0.1, 1, stop_rate=np.array([0.1, 0.2, 0.3])).motion
+    mirrored = motion.mirrored()
+    assert (mirrored.returns is motion.mirror_returns, mirrored.mirror_returns is motion.returns) == (True, True)
+    assert mirrored.stop_rate.tolist() == [0.3, 0.2, 0.1]
+    whole = motion.symmetrized()
+    assert (
+        whole.returns.tolist()
+        == whole.mirror_returns.tolist()
+        == [*motion.returns.tolist(), *(-motion.returns).tolist()]
+    )
+    assert whole.spacing == pytest.approx(np.quantile(nearest(whole.returns, whole.returns, 1), 0.95))
+    alone = dataclasses.replace(motion, mirror_returns=np.zeros((0, 6)))
+    assert alone.with_returns(ROWS).mirror_returns.shape == (0, 6)
+
+
+def test_a_block_without_velocity_sticks():
+    found = instant_of(np.array([1.0, 2.0, 3.0, 1e-14, -1e-14, 2e-14]))
+    assert found.position.tolist() == [1.0, 2.0, 3.0]
+    assert found.velocity.tolist() == [0.0, 0.0, 2e-14]
+    assert found.stuck.tolist() == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("spacing", "drift", "closed", "settled"),
+    [
+        (1e-6, 1e-5, True, True),  # a hundredth of the resolution
+        (1e-6, 1.1e-5, True, False),
+        (1.1e-6, 1e-3, False, True),  # the resolution
+        (1.1e-6, 1.1e-3, False, False),
+        (0.01, 0.03, False, True),  # three spacings
+        (0.01, 0.031, False, False),
+    ],
+)
+def test_what_has_settled(spacing, drift, closed, settled):
+    found = Returns(ROWS, ROWS, spacing, drift)
+    assert found.closed(1e-6) == closed
+    assert found.settled(1e-6, 1e-3) == settled
+
+
+@pytest.mark.parametrize(
+    ("away", "kind", "spacing", "own_spacing", "expected"),
+    [
+        (0.9e-3, MotionKind.PERIODIC, 0.0, 0.0, True),
+        (1.1e-3, MotionKind.PERIODIC, 0.0, 0.0, False),
+        (0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
+        (0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
+        (0.0, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
+        (0.0, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
+    ],
+)
+def test_what_lies_on_an_attractor(away, kind, spacing, own_spacing, expected):
+    attractor = stand_in(Symmetry.ASYMMETRIC, 0.1, 0, returns=ROWS, kind=kind, spacing=spacing).motion
+    found = Returns(ROWS + away, ROWS, own_spacing, 0.0)
+    assert lies_on(found, attractor, 1e-3, 1e-6) == expected
+
+
+@pytest.mark.parametrize(
+    ("length", "longest", "expected"), [(1, 60, 1), (3, 60, 3), (7, 7, 7), (9, 8, 8), (13, 60, 60)]
+)
+def test_the_length_of_an_orbit(length, longest, expected):
+    """Of forty returns the first third is left out, and what is left, 27, shows twice what is at most 13 long."""
+    orbit = np.tile(ROWS[:length], (40, 1))[:40]
+    orbit[:13] += 0.5
+    assert orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
+    assert orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
+
+
+def test_a_bound_changes_no_distance_within_it():
+    """And whether a set is near another is what its distance says, at the limit and either side of it."""
+    generator = np.random.default_rng(8)
+    for size in (9, 20, 21, 200):
+        first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))
+        least, far = least_distance(first, second), distance(first, second)
+        assert far == pytest.approx(np.quantile(nearest(first, second, 0), 0.95), rel=1e-12)
+        assert least == nearest(first, second, 0).min()
+        assert least_distance(first, second, least) == least
+        assert least_distance(first, second, 0.999 * least) == np.inf
+        for limit in (0.5 * far, 0.9999 * far, far, 1.0001 * far, 2.0 * far):
+            assert is_near(first, second, limit) == (far <= limit)
+
+
+@pytest.mark.parametrize(
+    ("kind", "exponent", "longer", "expected"),
+    [
+        (MotionKind.QUASIPERIODIC, 6e-4, MotionKind.CHAOTIC, MotionKind.CHAOTIC),
+        (MotionKind.UNDETERMINED, 6e-4, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
+        (MotionKind.QUASIPERIODIC, 6e-4, None, MotionKind.QUASIPERIODIC),
+        (MotionKind.QUASIPERIODIC, 5e-4, "not asked", MotionKind.QUASIPERIODIC),  # no more than what counts as 0
+        (MotionKind.PERIODIC, 6e-4, "not asked", MotionKind.PERIODIC),
+    ],
+)
+def test_weak_chaos_is_looked_for_in_a_longer_window(monkeypatch, kind, exponent, longer, expected):
+    first = stand_in(Symmetry.ASYMMETRIC, 0.1, 0, kind=kind, exponent=np.array([exponent])).motion
+    later = {"kind": longer, "exponent": np.array([0.5]), "section_period": 9, "returns": ROWS, "mean_distance": 5.0}
+    answers = [first, dataclasses.replace(first, **later) if longer is not None else None]
+    asked = []
+
+    def scripted(of_model, start, transient, window, settings, *_):
+        asked.append((transient, window))
+        return answers[len(asked) - 1]
+
+    monkeypatch.setattr(steady, "_measure", scripted)
+    found = measure(model(), None, 50.0, 30.0, MOTION)
+    assert found.kind == expected
+    assert asked == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
+    taken = longer not in (None, "not asked")
+    assert (found.section_period, found.exponent.tolist()) == ((9, [0.5]) if taken else (1, [exponent]))
+    # The returns and the mean distance stay those of the usual window.
+    assert found.returns is first.returns
+    assert found.mean_distance == 0.1

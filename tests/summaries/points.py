@@ -1,0 +1,18 @@
+"""Point files of a grid, as they are run or altered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.trajectory import Trajectory
+from burridge_knopoff.summaries.points import Grid
+
+
+def write_points(grid: Grid, alter: Callable[[Trajectory], Trajectory] = lambda trajectory: trajectory) -> Grid:
+    """Run the points of a grid, write what the alteration makes of them, and return the grid."""
+    for _, (law, initial, a) in grid:
+        trajectory = run(grid.model(law, grid.a[a]), grid.initial[initial], grid.settings[law])
+        write_point(alter(trajectory), grid.path(law, initial, a))
+    return grid

@@ -1,0 +1,48 @@
+"""What the numbers of flag variables mean, in every file: a change of these breaks whoever reads the files."""
+
+import importlib
+
+import pytest
+
+YES_NO = {0: "no", 1: "yes"}
+STATUS = {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"}
+MOTION = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
+DIRECTION = {-1: "downward", 1: "upward"}
+VERDICT = {-1: "undetermined", **YES_NO}
+AGREEMENT = {"kind": MOTION, "same_kind": VERDICT, "agrees": VERDICT}
+EXPECTED = {
+    "agreement": AGREEMENT,
+    "attractors": {
+        "symmetry": {-1: "none", 0: "synchronized", 1: "symmetric", 2: "asymmetric"},
+        "kind": MOTION,
+        "slow": {-1: "none", **YES_NO},
+    },
+    "bifurcation": {"crossing_direction": DIRECTION},
+    "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},
+    "lyapunov": {"kind": MOTION, "status": STATUS},
+    "mean_distance": {"synchronized": YES_NO, "status": STATUS},
+    "orbits": {
+        "status": {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"},
+        "bifurcation_kind": {-1: "undetermined", 1: "pitchfork", 2: "flip"},
+        "bifurcation_side": {-1: "undetermined", 0: "subcritical", 1: "supercritical"},
+    },
+    "solvers": {"status": {-1: "no_such_solver", **STATUS}},
+    "two_blocks": AGREEMENT,
+    "stick_slip": {},
+    "equilibrium": {},
+}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_flags(name):
+    variables = importlib.import_module(f"burridge_knopoff.summaries.{name}").VARIABLES
+    found = {
+        key: (item.dtype, item.attributes["flag_values"].dtype, list(zip(values, meanings.split(), strict=True)))
+        for key, item in variables.items()
+        if "flag_values" in item.attributes
+        for values, meanings in [(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"])]
+    }
+    expected = EXPECTED[name]
+    assert found == {key: ("i1", "i1", list(meanings.items())) for key, meanings in expected.items()}
+    for key, item in variables.items():
+        assert ("units" in item.all_attributes()) == (key not in expected)

@@ -1,0 +1,94 @@
+"""Grids of point files: where they lie, what makes them, and what is refused in their place."""
+
+import netCDF4
+import numpy as np
+import pytest
+
+from burridge_knopoff.provenance.seal import BadFile, seal
+from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, open_point, read_point
+from tests.grids import PAPER_MODELS, grid_of
+from tests.summaries.points import write_points
+
+SETTINGS = {"transient": 10.0, "window": 20.0, "batches": 2, "event_window": 5.0}
+POINT = ("nonlinear", "plus", "0.20")
+
+
+@pytest.fixture
+def grid(tmp_path):
+    models = {"chain": {**PAPER_MODELS["chain"], "threshold": [1.0, 1.0, 0.9]}, "v": 0.2}
+    return write_points(grid_of(tmp_path, ["plus"], {"0.05": 0.05, "0.20": 0.2}, models, **SETTINGS))
+
+
+def test_a_grid_is_its_points_in_order(grid, tmp_path):
+    assert (grid.laws, grid.blocks, grid.shape) == (("linearized", "nonlinear"), 3, (2, 1, 2))
+    expected = [((i, 0, k), (law, "plus", a)) for i, law in enumerate(grid.laws) for k, a in enumerate(grid.a)]
+    assert list(grid) == expected
+    assert grid.path(*POINT) == tmp_path / "nonlinear/plus/a0.20.nc"
+    assert not grid.is_mirror_symmetric
+    assert grid_of(tmp_path, ["plus"], {"0.1": 0.1}).is_mirror_symmetric
+    model = grid.model("nonlinear", 0.2)
+    assert (model.v, model.law.a, model.law.name, model.chain.threshold) == (0.2, 0.2, "nonlinear", (1.0, 1.0, 0.9))
+    for words in ("simulate --law nonlinear --a 0.2", "--initial plus", "--v 0.2", "--transient 10.0", "--window 20.0"):
+        assert words in grid.command(*POINT)
+    other = grid.elsewhere(tmp_path / "other", {"linearized": {**SETTINGS, "solver": "map"}})
+    assert (other.folder, other.settings["linearized"].solver, list(other.settings)) == (
+        tmp_path / "other",
+        "map",
+        ["linearized"],
+    )
+    assert (other.initial, other.a, other.models) == (grid.initial, grid.a, grid.models)
+    state = grid.initial["plus"]
+    told = {
+        "initial": {"plus": {"position": state.position, "velocity": state.velocity}},
+        "a": grid.a,
+        "settings": dict.fromkeys(grid.laws, SETTINGS),
+        **grid.models,
+    }
+    assert Grid.of(tmp_path, told) == grid
+
+
+def test_points_are_read(grid):
+    read = read_point(grid, *POINT, ["mean_distance", "time", *EVENTS])
+    whole = open_point(grid, *POINT)
+    for name, values in read.items():
+        assert np.array_equal(values, whole[name].values), name
+    time, block, kind = all_events(read)
+    # Those with states are the last ones.
+    assert len(time) == len(block) == len(kind) == whole["event_count"].item() > len(read["event_time"]) > 0
+    assert (np.diff(time) >= 0.0).all()
+    assert block[: len(read["earlier_event_block"])].tolist() == read["earlier_event_block"].tolist()
+    assert kind[-len(read["event_kind"]) :].tolist() == read["event_kind"].tolist()
+
+
+def spoil(path, change):
+    """Alter a point file and seal it as what it is not."""
+    with netCDF4.Dataset(path, "a") as dataset:
+        change(dataset)
+    seal(path, "0" * 16, "completed")
+
+
+@pytest.mark.parametrize(
+    "read", [lambda grid: read_point(grid, *POINT, ["mean_distance"]), lambda grid: open_point(grid, *POINT)]
+)
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda dataset: dataset.setncattr("history", "bk simulate"), "is another run: "),
+        (lambda dataset: dataset.setncattr("software", "older 0"), "was made by older 0, now "),
+        (
+            lambda dataset: dataset.setncattr("title", ""),
+            "was made by other sources of the simulation than those of now",
+        ),
+        (lambda dataset: dataset.delncattr("software"), "is not a point file "),
+    ],
+)
+def test_another_file_is_refused(grid, read, change, reason):
+    spoil(grid.path(*POINT), change)
+    with pytest.raises(BadFile) as caught:
+        read(grid)
+    assert f"nonlinear/plus/a0.20.nc: {reason}" in str(caught.value)
+    grid.path(*POINT).unlink()
+    with pytest.raises(BadFile, match="is missing"):
+        read(grid)
+    with pytest.raises(BadFile, match=r"a0\.05\.nc: is not a point file"):
+        read_point(grid, "nonlinear", "plus", "0.05", ["no_such_variable"])
