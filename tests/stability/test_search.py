@@ -82,9 +82,7 @@ def scripted(monkeypatch):
             monkeypatch.setattr(attractors, name, item)
         monkeypatch.setattr(attractors, "bounded", lambda of_model, known, *_: list(known))
         monkeypatch.setattr(attractors, "midst", lambda known, index, *_: [])
-        monkeypatch.setattr(
-            attractors, "spread", lambda of_model, motion, settings: dataclasses.replace(motion, returns=ONE)
-        )
+        monkeypatch.setattr(attractors, "spread", lambda of_model, motion, *_: dataclasses.replace(motion, returns=ONE))
         search = Search(found_model or model(), SETTINGS)
         added = search._add(Returns(ONE, mirror, spacing, 0.0))
         assert not measured
