@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from logging import INFO, Formatter, LogRecord, makeLogRecord
+from pathlib import Path
 from typing import Any
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
@@ -20,7 +21,7 @@ from burridge_knopoff.study.job_log import failure
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import check_command_line, reworded
-from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally, downstream
+from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Job, Rule, Tally, downstream
 from snakemake_logger_plugin_study.wording import job_name, jobs
 
 #: Events that the display does not replace; -p and --verbose bring the others back.
@@ -45,7 +46,7 @@ class LogHandler(LogHandlerBase):
         self._text = ColorizingTextHandler(nocolor=settings.nocolor, stream=self._stream)
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
         self._whole_errors = self._everything or settings.show_failed_logs
-        self._silent = settings.dryrun or is_quiet_about(settings.quiet or set(), "progress")
+        self._quiet = is_quiet_about(settings.quiet or set(), "progress")
         self._begin = time.time()
         self._tally = Tally()
         #: {rule: number of its jobs that are to run}, and {rule of the targets: rules that it needs}.
@@ -133,7 +134,7 @@ class LogHandler(LogHandlerBase):
             if PLAN.results:
                 *stages, total = self._tally.counts()
                 self._say(f"{jobs(total.total)}: {', '.join(f'{stage.name} {stage.total}' for stage in stages)}")
-        if self._silent:
+        if self._quiet:
             return
         if self._text.can_color_tty():
             # Only a terminal needs rich, which takes a while to import.
@@ -161,6 +162,9 @@ class LogHandler(LogHandlerBase):
             self._text.setStream(self._stream)
         if PLAN.results and self._tally.rules:
             tally, self._tally = self._tally, Tally()
+            # `--quiet progress` keeps from the log which jobs were done, but their files are there.
+            for job in tally.jobs(RUNNING) if self._quiet else ():
+                job.state = DONE if all(Path(path).exists() for path in job.output) else RUNNING
             # What comes after a rule that runs, and does not run itself, is left out by --until.
             left_out = downstream(self._counts.keys(), self._needs) - self._counts.keys()
             try:

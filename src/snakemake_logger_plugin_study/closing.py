@@ -11,7 +11,7 @@ import numpy as np
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
 from burridge_knopoff.study.job_log import failure
-from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Tally
+from snakemake_logger_plugin_study.tally import DONE, FAILED, Tally
 from snakemake_logger_plugin_study.wording import elapsed, jobs
 
 #: Verdicts whose claims are named, not only counted.
@@ -33,10 +33,7 @@ def closing_lines(results: str | Path, seconds: float, tally: Tally, wanted: Col
     cannot be read gives a line that says so.
     """
     results = Path(results)
-    failed = tally.jobs(FAILED)
-    # `--quiet progress` keeps from the log which jobs were done, but their files are there.
-    begun = [*tally.jobs(DONE), *tally.jobs(RUNNING)]
-    done = [job for job in begun if all(Path(path).exists() for path in job.output)]
+    failed, done = tally.jobs(FAILED), tally.jobs(DONE)
     missed = tally.counts()[-1].total - len(failed) - len(done)
     made = _made(results, [path for job in done for path in job.output])
     if failed or missed:

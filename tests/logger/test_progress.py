@@ -268,11 +268,12 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     ]
     (tmp_path / "x.nc").touch()
     other = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "jobid": 2})
+    end = record("Finished jobid: 2", LogEvent.JOB_FINISHED, job_id=2)
     # `report` comes after the points and does not run: `--until`. With no rule before it that runs it is up to date.
     for link, told in (("simulate", False), ("orbits", True)):
         nodes = [{"rule": name} for name in ("simulate", "orbits", "report")]
         graph = {"nodes": nodes, "links": [{"sourcerule": link, "targetrule": "report"}]}
-        said = written(record(None, LogEvent.RULEGRAPH, rulegraph=graph), *ROUTINE[1:], other)
+        said = written(record(None, LogEvent.RULEGRAPH, rulegraph=graph), *ROUTINE[1:], other, end)
         assert ("report: results/x/report.html" in said) is told
     # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
     for quiet, lines in ((Quietness.PROGRESS, 3), (Quietness.ALL, 0)):
