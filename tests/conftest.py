@@ -10,6 +10,11 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 # As in a point job: the tests use both cores already.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import fcntl
+import pickle
+import shutil
+import subprocess
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -26,23 +31,50 @@ def repository() -> Path:
     return Path(__file__).parent.parent
 
 
+def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """Return a folder that `make` has filled, once for all workers: whichever comes first, while the others wait."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / f"shared_{name}"
+    with folder.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        done = folder.with_suffix(".done")
+        if not done.exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            make(folder)
+            done.touch()
+    return folder
+
+
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory: pytest.TempPathFactory):
     """A tiny study that has run to its end; tests only read it."""
     from tests.workflow.conftest import Study
 
-    study = Study(tmp_path_factory.mktemp("finished"))
-    study.output = study.ok()
+    made = made_once(
+        tmp_path_factory, "finished", lambda folder: (folder / "output").write_text(Study(folder / "study").ok())
+    )
+    # Snakemake locks its folder: each worker has a copy.
+    folder = tmp_path_factory.mktemp("finished")
+    subprocess.run(["cp", "-a", f"{made}/study/.", str(folder)], check=True)
+    study = Study(folder)
+    study.output = (made / "output").read_text()
     return study
 
 
 @pytest.fixture(scope="session")
 def small_studies(tmp_path_factory: pytest.TempPathFactory):
-    """Return small studies by their names in `tests.small_study`, each run once."""
+    """Return small studies by their names in `tests.small_study`, with all summaries, each made once."""
     from tests.small_study import SMALL, STUDIES, run_study
+
+    def make(name: str, folder: Path) -> None:
+        small = run_study(folder / "results", {**SMALL, "study": name, **STUDIES[name]})
+        assert small.found
+        (folder / "study.pickle").write_bytes(pickle.dumps(small))
 
     @cache
     def small_study(name: str):
-        return run_study(tmp_path_factory.mktemp(name), {**SMALL, "study": name, **STUDIES[name]})
+        folder = made_once(tmp_path_factory, name, lambda folder: make(name, folder))
+        return pickle.loads((folder / "study.pickle").read_bytes())
 
     return small_study

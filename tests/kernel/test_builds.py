@@ -1,15 +1,13 @@
-"""The same bits at every vector width, and with and without optimisation: the kernel is compiled again."""
+"""How the kernel is built: the same bits whatever the vectors and the optimisation, and the flags that choose them."""
 
 import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
-REPOSITORY = Path(__file__).parent.parent.parent
+import pytest
 
-#: Doubles in a vector and optimisation of the builds that are compared with the installed one.
-BUILDS = (("2", "-O1"), ("", "-O0"))
+from burridge_knopoff.provenance.compilation import vector_flags
 
 RUNS = """
 import hashlib
@@ -38,37 +36,37 @@ for blocks, ends in ((3, "open"), (9, "open"), (5, "ring")):
 """
 
 
-def copy(folder: Path, optimisation: str) -> Path:
-    """Return a copy of what the kernel is built from, with another optimisation."""
-    target = folder / f"build{optimisation}"
-    shutil.copytree(REPOSITORY / "src", target / "src", ignore=shutil.ignore_patterns("*.so", "*.egg-info"))
-    for name in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(REPOSITORY / name, target / name)
-    flags = target / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
-    assert '"-O3"' in flags.read_text()
-    flags.write_text(flags.read_text().replace('"-O3"', f'"{optimisation}"'))
-    return target
-
-
-def output(tree: Path) -> list[str]:
+def output(tree):
     environment = {**os.environ, "PYTHONPATH": str(tree / "src")}
     run = subprocess.run([sys.executable, "-c", RUNS], env=environment, check=True, capture_output=True, text=True)
     return run.stdout.splitlines()
 
 
-def test_every_build_makes_the_same_bits(tmp_path):
-    builds = []
-    for lanes, optimisation in BUILDS:
-        tree = copy(tmp_path, optimisation)
-        environment = {**os.environ, **({"BURRIDGE_KNOPOFF_LANES": lanes} if lanes else {})}
-        command = [sys.executable, "setup.py", "-q", "build_ext", "--inplace", "--parallel", "1"]
-        builds.append((tree, subprocess.Popen(command, cwd=tree, env=environment, stderr=subprocess.PIPE, text=True)))
-    width, *expected = output(REPOSITORY)
-    widths = [width]
-    for tree, process in builds:
-        assert process.wait() == 0, process.stderr.read()
-        other, *found = output(tree)
-        widths.append(other)
-        assert found == expected
-    assert widths[1] == "2"
-    assert widths[2] == width
+def test_vectors_of_two_without_optimisation_make_the_bits_of_the_kernel(repository, tmp_path):
+    """A build that differs in both: that is half the time of two builds."""
+    shutil.copytree(repository / "src", tmp_path / "src", ignore=shutil.ignore_patterns("*.so", "*.egg-info"))
+    for name in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(repository / name, tmp_path / name)
+    flags = tmp_path / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
+    assert '"-O3"' in flags.read_text()
+    flags.write_text(flags.read_text().replace('"-O3"', '"-O0"'))
+    build = [sys.executable, "setup.py", "-q", "build_ext", "--inplace"]
+    subprocess.run(build, cwd=tmp_path, env={**os.environ, "BURRIDGE_KNOPOFF_LANES": "2"}, check=True)
+    (width, *found), (_, *expected) = output(tmp_path), output(repository)
+    assert width == "2"
+    assert found == expected
+
+
+@pytest.mark.parametrize("lanes", ["2", "4", "8", None, "3", ""])
+def test_flags_for_vectors(monkeypatch, lanes):
+    monkeypatch.setattr("platform.machine", lambda: "x86_64")
+    monkeypatch.delenv("BURRIDGE_KNOPOFF_LANES", raising=False)
+    if lanes is not None:
+        monkeypatch.setenv("BURRIDGE_KNOPOFF_LANES", lanes)
+    if lanes in ("3", ""):
+        with pytest.raises(ValueError, match=f"BURRIDGE_KNOPOFF_LANES: '{lanes}' is not allowed: 2 | 4 | 8"):
+            vector_flags()
+    else:
+        assert vector_flags()[0].startswith("-march=")
+    monkeypatch.setattr("platform.machine", lambda: "arm64")
+    assert vector_flags() == ()

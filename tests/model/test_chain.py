@@ -5,39 +5,42 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
+
+strength = st.floats(0.1, 5.0)
 
 
 @st.composite
 def chains(draw):
-    blocks = draw(st.integers(2, 9))
-    ends = draw(st.sampled_from(["open", "ring"]))
-    strength = st.floats(0.1, 5.0)
+    blocks, ends = draw(st.integers(2, 9)), draw(st.sampled_from(["open", "ring"]))
 
     def numbers(count):
         return draw(st.one_of(strength, st.lists(strength, min_size=count, max_size=count)))
 
-    pulling = draw(st.booleans())
-    return Chain(
-        blocks,
-        coupling=numbers(blocks - (ends == "open")),
-        pulling=numbers(blocks) if pulling else "neighbours",
-        threshold=numbers(blocks),
-        ends=ends,
-    )
+    coupling, threshold = numbers(blocks - (ends == "open")), numbers(blocks)
+    return Chain(blocks, coupling, numbers(blocks) if draw(st.booleans()) else "neighbours", threshold, ends)
 
 
 @given(chains())
 def test_the_algebra(chain):
     matrix, blocks = chain.stiffness, chain.blocks
-    ones = np.ones(blocks)
     assert (matrix == matrix.T).all()
-    assert np.allclose(matrix @ ones, chain.driving, rtol=0, atol=1e-12)
+    assert np.allclose(matrix @ np.ones(blocks), chain.driving, rtol=0, atol=1e-12)
     assert np.allclose(np.diag(matrix), chain.diagonal) or (blocks == 2 and chain.ends == "ring")
     assert np.linalg.eigvalsh(matrix).min() >= chain.driving.min() - 1e-9
     assert np.allclose(matrix @ chain.sliding_offset(0.7), -0.7 * chain.thresholds, rtol=0, atol=1e-11)
     position = np.sin(1.0 + 3.0 * np.arange(blocks))
     assert np.allclose(chain.force(position), -matrix @ position, rtol=0, atol=1e-12)
+
+
+@given(st.integers(2, 40))
+def test_the_algebra_of_the_papers_chains(blocks):
+    """Exactly: K·1 = D, on which co-moving coordinates rest; K is positive definite with eigenvalues of at least 1."""
+    chain = Chain(blocks)
+    assert (chain.stiffness @ np.ones(blocks) == chain.driving).all()
+    assert np.linalg.eigvalsh(chain.stiffness).min() >= 1.0 - 1e-12
+    assert np.allclose(chain.stiffness @ chain.sliding_offset(0.7), -0.7)
 
 
 @given(chains())
@@ -50,14 +53,13 @@ def test_mirror_symmetry(chain):
         assert (offset == offset[::-1]).all()
 
 
-@given(st.floats(0.1, 5.0), st.floats(0.1, 5.0), st.floats(0.1, 5.0), st.integers(2, 7))
+@given(strength, strength, strength, st.integers(2, 7))
 def test_all_modes_oscillate_below_the_damping_limit(coupling, pulling, threshold, blocks):
-    chain = Chain(blocks, coupling=coupling, pulling=pulling, threshold=threshold)
+    chain = Chain(blocks, coupling, pulling, threshold)
     assert chain.is_uniform
-    matrix = chain.stiffness
     for first in range(blocks):
         for last in range(first + 1, blocks + 1):
-            least = np.linalg.eigvalsh(matrix[first:last, first:last]).min()
+            least = np.linalg.eigvalsh(chain.stiffness[first:last, first:last]).min()
             assert threshold * chain.damping_limit <= 2.0 * np.sqrt(least) + 1e-9
 
 
@@ -65,7 +67,10 @@ def test_the_chain_of_the_paper():
     chain = Chain(3)
     assert chain.stiffness.tolist() == [[2, -1, 0], [-1, 4, -1], [0, -1, 2]]
     assert chain.driving.tolist() == [1, 2, 1]
-    assert chain.sliding_offset(1.0) == pytest.approx([-5 / 6, -2 / 3, -5 / 6], abs=2e-16)
+    for friction in (1.0, float(law_of("linearized", 0.08)(0.1))):
+        expected = friction * np.array([-5 / 6, -2 / 3, -5 / 6])
+        assert chain.sliding_offset(friction) == pytest.approx(expected, rel=0.0, abs=2e-16)
+    assert friction == pytest.approx(1 - 0.008, abs=1e-15)
     assert chain.damping_limit == 2.0
     assert Chain(3, ends="ring").driving.tolist() == [2, 2, 2]
 
@@ -73,8 +78,8 @@ def test_the_chain_of_the_paper():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"blocks": 1}, "blocks: 1 is not allowed"),
-        ({"blocks": 2.0}, "blocks: 2.0 is not allowed: a whole number"),
+        *(({"blocks": blocks}, f"blocks: {blocks} is not allowed") for blocks in (1, 0, -3, 5000)),
+        *(({"blocks": blocks}, f"blocks: {blocks} is not allowed: a whole number") for blocks in (2.0, True)),
         ({"ends": "loose"}, "chain.ends: 'loose'"),
         ({"coupling": [1.0]}, "chain.coupling: 1 numbers for 2 springs"),
         ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: 2 numbers for 3 springs"),

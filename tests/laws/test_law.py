@@ -1,16 +1,21 @@
 """What every law has to do, held against mpmath, SciPy and differences: the laws that are built in, and formulas."""
 
+import copy
+import pickle
+
 import mpmath
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from burridge_knopoff.laws import LAWS, FormulaLaw
+from burridge_knopoff.laws import LAWS, FormulaLaw, law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.running.runner import SERIES_ORDER, Runner, new_friction
-from tests.kernel.flows import carry, directions
-from tests.scipy_flow import scipy_events
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.runner import SERIES_ORDER, new_friction
+from tests.flows import carry, check_events, differences, directions
+from tests.scipy_flow import model_events
 
 #: Every operation and function of a formula, and a drop at the start.
 FORMULAS = {
@@ -81,22 +86,13 @@ def test_series_along_a_motion(law):
 def test_event_times(law):
     """Against SciPy, from both states of the paper; near-coincidences, whose order is nobody's, end the comparison."""
     compared = 0
-    for name in ("minus", "plus"):
-        model = Model(Chain(3), law)
-        start = model.begin(PAPER_STATES[name])
-        expected, _ = scipy_events(model, start, 12.0)
-        solver = Runner(model, keep_events=True)
-        solver.begin(start)
-        solver.run(12.0)
-        time, block, kind = solver.events()
-        times = np.array([event[0] for event in expected])
-        close = np.flatnonzero(np.diff(times) < 1e-4)
-        count = int(close[0]) if len(close) else len(times)
-        assert len(time) >= count
-        assert [(int(i) + 1, int(k)) for i, k in zip(block[:count], kind[:count], strict=True)] == [
-            event[1:] for event in expected[:count]
-        ]
-        assert np.abs(time[:count] - times[:count]).max(initial=0.0) < 1e-7
+    model = Model(Chain(3), law)
+    for state in PAPER_STATES.values():
+        start = model.begin(state)
+        expected, _ = model_events(model, start, 12.0)
+        close = np.flatnonzero(np.diff([time for time, _, _ in expected]) < 1e-4)
+        count = int(close[0]) if len(close) else len(expected)
+        check_events(carry(model, start, 12.0)[1][:count], expected[:count], 1e-7)
         compared += count
     # Without weakening nothing drives the motion: it dies out in sliding.
     assert compared > (3 if law.a > 0.0 else -1)
@@ -109,26 +105,12 @@ def test_tangent_map_through_stops_and_starts(law):
     start = model.begin(PAPER_STATES["plus"])
     checked = 0
     for end in (2.0, 7.0, 13.5, 16.6):
-        solver, events = carry(model, start, end, directions(start))
-        estimates = []
-        for step in (1e-5, 5e-6):
-            columns = []
-            for direction in np.eye(6):
-                ends = []
-                for side in (step, -step):
-                    vector = start.vector() + side * direction
-                    moved, others = carry(model, Instant(vector[:3], vector[3:], start.stuck), end)
-                    same = [event[1:] for event in others] == [event[1:] for event in events]
-                    ends.append(moved.instant().vector() if same else np.full(6, np.nan))
-                columns.append((ends[0] - ends[1]) / (2.0 * step))
-            estimates.append(np.array(columns).T)
-        coarse, fine = estimates
-        found = solver.perturbations
+        found = carry(model, start, end, directions(start))[0].perturbations
+        expected, change = differences(model, start, end, 1e-5) or (None, np.inf)
         scale = max(1.0, np.abs(found).max())
-        if not np.isfinite(coarse).all() or np.abs(coarse - fine).max() > 1e-5 * scale:
-            continue
-        checked += 1
-        assert np.abs(found - (4.0 * fine - coarse) / 3.0).max() < 1e-5 * scale
+        if change <= 1e-5 * scale:
+            checked += 1
+            assert np.abs(found - expected).max() < 1e-5 * scale
     assert checked >= 2
 
 
@@ -138,3 +120,28 @@ def test_starts_with_a_drop_are_met():
     start = model.begin(PAPER_STATES["plus"])
     _, events = carry(model, start, 13.5)
     assert sum(kind for _, _, kind in events) >= 1
+
+
+@given(st.floats(0.0, 1.99), st.floats(0.0, 5.0))
+def test_the_papers_laws_touch_at_rest(a, speed):
+    linearized, nonlinear = law_of("linearized", a), law_of("nonlinear", a)
+    assert linearized(0.0) == nonlinear(0.0) == 1.0
+    assert nonlinear(speed) >= linearized(speed) - 1e-15
+    assert linearized.slope(0.0) == nonlinear.slope(0.0) == -a
+
+
+@pytest.mark.parametrize("a", [-0.1, float("nan"), float("inf"), "x", True, None])
+def test_bad_a(a):
+    with pytest.raises(ValueError, match="a: "):
+        law_of("linearized", a)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_equal_laws(name):
+    law = LAWS[name](0.2)
+    assert law == LAWS[name](0.1).at(0.2)
+    assert law != LAWS[name](0.1)
+    assert len({law, LAWS[name](0.2), LAWS[name](0.3)}) == 2
+    assert pickle.loads(pickle.dumps(law)) == copy.deepcopy(law) == law
+    with pytest.raises(ValueError, match="a"):
+        law.at(-0.1)

@@ -1,0 +1,19 @@
+"""Uniform sliding: eigenvalues, and the growth rates of the simulation."""
+
+from burridge_knopoff.figures.equilibrium import draw
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.equilibrium import summarize
+
+
+def test_equilibrium_draws_eigenvalues_and_simulated_rates():
+    dataset = summarize([Model(Chain(3), law_of(law, 0.1)) for law in PAPER_LAWS], [0.0, 0.1, 0.2])
+    plane, growth = draw(dataset).axes
+    half, *drawn = (line.get_ydata().tolist() for line in growth.get_lines())
+    assert half == [0.0, 0.05, 0.1]
+    assert drawn[3] == dataset["growth_rate"].sel(law="nonlinear").values.tolist()
+    real = dataset["eigenvalue"].sel(part="real", law="nonlinear").max("mode")
+    assert drawn[2] == real.values.tolist()
+    assert len([line for line in plane.get_lines() if len(line.get_xdata()) == 3]) == 12

@@ -1,0 +1,51 @@
+"""⟨J⟩ against a: a gap where a run has no result, and the colours of the branches that are reached."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+
+from burridge_knopoff.figures.branches import branch_colors
+from burridge_knopoff.figures.mean_distance import draw
+
+RUN = {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.1, 0.2]}
+
+
+def means(values):
+    names = ("law", "initial", "a")
+    error = np.full_like(values, 0.01)
+    return xr.Dataset({"mean_distance": (names, values), "mean_distance_error": (names, error)}, RUN)
+
+
+@pytest.fixture
+def attractors():
+    """One branch that exists at two of three values of a, which the run reaches at one under one convention."""
+    reached = np.full((2, 2, 2, 1, 3), -1)
+    reached[:, 0, 0, 0, 1] = 1
+    names = ("law", "a", "attractor")
+    return xr.Dataset(
+        {
+            "branch": (names, np.array([[[-1], [1], [1]]] * 2)),
+            "mean_distance": (names, np.array([[[np.nan], [0.1], [0.2]]] * 2)),
+            "initial_branch": (("law", "contact", "start", "initial", "a"), reached),
+        },
+        {**RUN, "contact": ["one_sided", "symmetric"], "start": ["moving", "tested"]},
+    )
+
+
+def test_a_gap_where_a_run_has_no_result(attractors):
+    values = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
+    panels = draw(means(values), attractors).axes
+    known, run = (line for line in panels[0].get_lines() if len(line.get_ydata()) in (2, 3))
+    assert np.array_equal(run.get_ydata(), values[0, 0], equal_nan=True)
+    assert known.get_ydata().tolist() == [0.1, 0.2]
+    assert panels[0].get_title(loc="left") == "(a) linearized law"
+
+
+def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white(attractors):
+    strips = draw(means(np.zeros((2, 1, 3))), attractors).axes[2]
+    picture = strips.collections[0].get_array()
+    assert picture.shape == (4, 3, 3)
+    assert np.allclose(picture[0, 1], to_rgb(branch_colors(attractors)[1]))
+    assert (picture[0, 0] == 1.0).all()
+    assert (picture[1:] == 1.0).all()

@@ -1,0 +1,40 @@
+"""Motion and distance of one run: the curves are its data, the style is nobody else's, the bytes are the same."""
+
+import matplotlib as mpl
+import pytest
+
+from burridge_knopoff.figures import distance, motion
+from burridge_knopoff.figures.style import write_figure
+from burridge_knopoff.running.simulation import simulate
+
+
+@pytest.fixture(scope="module")
+def point():
+    return simulate("linearized", 0.08, "plus", transient=50.0, window=50.0, batches=2).to_dataset()
+
+
+def test_motion_draws_every_block(point):
+    figure = motion.draw({"plus": point})
+    for panel, name in zip(figure.axes, ("velocity", "position"), strict=True):
+        assert len(panel.get_lines()) == 3
+        assert (panel.get_lines()[2].get_ydata() == point[name].values[:, 2]).all()
+
+
+def test_distance_draws_both_scales(point):
+    figure = distance.draw({"plus": point})
+    assert (figure.axes[0].get_lines()[0].get_ydata() == point["distance"].values).all()
+    assert figure.axes[1].get_yscale() == "log"
+
+
+def test_the_callers_style_is_untouched(point):
+    before = dict(mpl.rcParams)
+    motion.draw({"plus": point})
+    assert dict(mpl.rcParams) == before
+
+
+@pytest.mark.parametrize("suffix", ["pdf", "png"])
+def test_the_same_figure_gives_the_same_bytes(tmp_path, point, suffix):
+    for name in ("one", "two"):
+        write_figure(motion.draw({"plus": point}), tmp_path / f"{name}.{suffix}")
+    assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
+    assert len(list(tmp_path.iterdir())) == 2

@@ -1,0 +1,89 @@
+"""Runs of the kernel, their events as (time, block from 1, 0 stop | 1 start), and starts that many tests use."""
+
+import numpy as np
+
+from burridge_knopoff.kernel.exponents import Exponents
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.running.runner import SERIES_ORDER, Runner
+from burridge_knopoff.running.status import Status
+
+SYMMETRIC = InitialState("symmetric", (-0.99, -0.993, -0.99), (0.1, 0.101, 0.1))
+
+
+def wave(blocks, amplitude=0.1):
+    """Return a state in which no two blocks are alike."""
+    return InitialState("wave", tuple(-0.9 + amplitude * np.sin(1.0 + 2.0 * np.arange(blocks))), (0.1,) * blocks)
+
+
+def listed(run):
+    """Return the events of a trajectory."""
+    return list(zip(run.event_time.tolist(), run.event_block.tolist(), run.event_kind.tolist(), strict=True))
+
+
+def check_events(found, expected, tolerance):
+    """Require the same stops and starts in the same order, and at the same times but for less than the tolerance."""
+    assert [event[1:] for event in found] == [event[1:] for event in expected]
+    error = max((abs(event[0] - other[0]) for event, other in zip(found, expected, strict=True)), default=0.0)
+    assert error < tolerance, float(error)
+
+
+def carry(model, start, end, perturbations=None, solver="series"):
+    """Return the solver at time `end`, and the events on the way."""
+    runner = Runner(model, solver, keep_events=True, perturbations=perturbations)
+    runner.begin(start)
+    assert runner.run(end) == Status.COMPLETED
+    time, block, kind = runner.events()
+    return runner, list(zip(time.tolist(), (block + 1).tolist(), kind.tolist(), strict=True))
+
+
+def later(model, start, end):
+    """Return the instant that a state reaches at time `end`."""
+    reached = Runner(model).after(start, end)
+    assert reached is not None
+    return reached
+
+
+def directions(start):
+    """Return all perturbations that the state allows as columns: a stuck block has no velocity to perturb."""
+    return np.diag(np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
+
+
+def _by_block(events, blocks):
+    """Return the kinds of event of each block in their order: blocks that stop together may come in either order."""
+    return [[kind for _, block, kind in events if block == i + 1] for i in range(blocks)]
+
+
+def differences(model, start, end, step):
+    """Return the tangent map from central differences, extrapolated once, and how far step and half a step differ.
+
+    None where a perturbed run does not have the same events: the flow is not smooth between the two.
+    """
+    blocks = model.blocks
+    expected = _by_block(carry(model, start, end)[1], blocks)
+    estimates = []
+    for size in (step, step / 2):
+        columns = []
+        for direction in directions(start).T:
+            ends = []
+            for side in (size, -size):
+                shifted = start.vector() + side * direction
+                if (start.velocity * shifted[blocks:] < 0.0).any():
+                    return None
+                runner, events = carry(model, Instant(shifted[:blocks], shifted[blocks:], start.stuck), end)
+                if _by_block(events, blocks) != expected:
+                    return None
+                ends.append(runner.instant().vector())
+            columns.append((ends[0] - ends[1]) / (2.0 * size))
+        estimates.append(np.array(columns).T)
+    coarse, fine = estimates
+    return (4.0 * fine - coarse) / 3.0, np.abs(fine - coarse).max()
+
+
+def growth_from(model, start, end, vectors):
+    """Return the exponents' kernel after a run from `start` to `end`, all of it in one batch from τ = 0."""
+    exponents = Exponents(model.blocks, vectors, SERIES_ORDER, 0.0, [0.0, end])
+    runner = Runner(model, exponents=exponents)
+    runner.begin(start)
+    assert runner.run(end) == Status.COMPLETED
+    return exponents.results()

@@ -1,0 +1,83 @@
+"""The closed form between events, solver `map`, against the series of the linearized law."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import CONTACTS, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.simulation import simulate
+from tests.flows import carry, check_events, directions, wave
+
+SOLVERS = ("map", "series")
+SCALED = [{"coupling": 2.5}, {"pulling": 0.7}, {"threshold": 1.6}, {"coupling": 0.4, "pulling": 1.3}]
+
+
+@pytest.mark.parametrize(
+    ("options", "blocks", "tolerance"),
+    [*((options, blocks, 1e-10) for options in SCALED for blocks in (2, 3, 5)), *(({}, n, 1e-11) for n in (2, 5, 12))],
+)
+def test_events_of_uniform_chains(options, blocks, tolerance):
+    model = Model(Chain(blocks, **options), law_of("linearized", 0.2))
+    assert model.has_closed_form
+    start = model.begin(wave(blocks, 0.25))
+    one, other = (carry(model, start, 30.0, solver=solver)[1] for solver in SOLVERS)
+    assert len(one) > 8
+    check_events(one, other, tolerance)
+
+
+@pytest.mark.parametrize("initial", ["minus", "plus"])
+def test_mean_distance_outside_chaos(initial):
+    """To 1e-11 on every grid value of a at which the run is not chaotic.
+
+    Chaos is told without regard to the agreement: a shift of the initial state by 1e-12 changes the mean distance.
+    """
+    state = PAPER_STATES[initial]
+    shifted = InitialState("shifted", (state.position[0] + 1e-12, *state.position[1:]), state.velocity)
+    compared = 0
+    for a in np.arange(0.0, 0.3001, 0.02):
+        runs = [simulate("linearized", a, initial, solver=solver, events="none") for solver in SOLVERS]
+        other = simulate("linearized", a, shifted, events="none")
+        if abs(other.mean_distance - runs[0].mean_distance) > 1e-9:
+            continue
+        compared += 1
+        assert runs[0].mean_distance == pytest.approx(runs[1].mean_distance, rel=0, abs=1e-11), a
+        if runs[0].mean_distance > 1e-3:
+            assert len(runs[0].crossing_time) == len(runs[1].crossing_time)
+    assert compared >= 7
+
+
+@pytest.mark.parametrize(("initial", "a"), [("minus", 0.08), ("plus", 0.08), ("plus", 0.3)])
+def test_exponents(initial, a):
+    runs = [simulate("linearized", a, initial, solver=one, events="none", lyapunov_exponents=4) for one in SOLVERS]
+    assert np.allclose(*(run.lyapunov_exponent for run in runs), rtol=0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_perturbations(contact):
+    model = Model(Chain(3), law_of("linearized", 0.12), contact=contact)
+    start = model.begin(PAPER_STATES["plus"])
+    (one, events), (other, _) = (carry(model, start, 60.0, directions(start), solver) for solver in SOLVERS)
+    assert len(events) > 40
+    scale = np.abs(one.perturbations).max()
+    assert np.allclose(one.perturbations, other.perturbations, rtol=0.0, atol=1e-10 * scale)
+
+
+@pytest.mark.parametrize(
+    ("law", "a", "chain"),
+    [
+        ("nonlinear", 0.1, Chain(3)),
+        ("linearized", 0.1, Chain(3, ends="ring")),
+        ("linearized", 0.1, Chain(2, threshold=[1.0, 2.0])),
+        ("linearized", 2.0, Chain(3)),
+    ],
+)
+def test_where_there_is_no_closed_form(law, a, chain):
+    with pytest.raises(ValueError, match="solver: 'map' is not allowed"):
+        Runner(Model(chain, law_of(law, a)), "map")
+
+
+def test_the_series_go_on_where_there_is_no_closed_form():
+    assert simulate("linearized", 2.5, "minus", transient=5.0, window=20.0).status in ("completed", "diverged")

@@ -1,0 +1,35 @@
+"""Pictures of a report: no pixel is lost, and what is no picture is named."""
+
+import base64
+import io
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from PIL import Image
+
+from burridge_knopoff.figures.branches import COLORS
+from burridge_knopoff.report.pictures import THUMBNAIL_WIDTH, read_picture
+
+
+def test_pictures_keep_every_pixel(tmp_path):
+    """Colours tell curves apart: none may change."""
+    pixels = np.full((900, 2100, 3), 255, dtype="u1")
+    pixels[:300] = np.arange(2100, dtype="u1")[:, None]
+    for n, color in enumerate(COLORS):
+        pixels[400 + 20 * n, 100:1400] = np.round(255 * np.array(to_rgb(color)))
+    path = tmp_path / "bifurcation.png"
+    Image.fromarray(pixels).convert("RGBA").save(path)
+    picture = read_picture(path)
+    content = base64.b64decode(picture.data.split(",")[1])
+    assert (np.asarray(Image.open(io.BytesIO(content)).convert("RGB")) == pixels).all()
+    assert (picture.width, picture.height) == (2100, 900)
+    assert (picture.thumbnail_width, picture.thumbnail_height) == (THUMBNAIL_WIDTH, 171)
+    assert len(picture.thumbnail) < 30_000
+    assert "W'" in picture.alternative
+
+
+def test_a_picture_that_cannot_be_read_is_named(tmp_path):
+    (tmp_path / "noise.png").write_bytes(b"no picture")
+    with pytest.raises(ValueError, match=r"noise\.png: is not a readable picture"):
+        read_picture(tmp_path / "noise.png")

@@ -1,0 +1,68 @@
+"""Verdicts: counted, by topic, and refused in one line where the file is wrong."""
+
+import json
+
+import pytest
+
+from burridge_knopoff.claims.ledger import as_json
+from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
+from tests.report.conftest import CLAIMS
+
+
+def test_verdicts_are_counted_and_put_by_topic():
+    verdicts = read_verdicts(CLAIMS)
+    assert list(verdicts.counts) == list(SIGNS)
+    assert set(verdicts.counts.values()) == {1}
+    assert [(topic, len(claims)) for topic, claims in verdicts.topics.items()] == [
+        ("synchronization", 2),
+        ("friction laws", 1),
+        ("motion", 2),
+    ]
+    assert verdicts.setting["contact"] == "one_sided"
+
+
+def test_one_reason_for_all_is_said_once(tmp_path):
+    content = json.loads(CLAIMS.read_text())
+    assert read_verdicts(CLAIMS).one_reason == ""
+    content["counts"] = {"not testable": len(content["claims"])}
+    for claim in content["claims"]:
+        claim.update(verdict="not testable", reason="Not testable here: short runs.", conventions={})
+    path = tmp_path / "claims.json"
+    path.write_text(as_json(content))
+    assert read_verdicts(path).one_reason == "Not testable here: short runs."
+    content["claims"][0]["reason"] = "Another."
+    path.write_text(as_json(content))
+    assert read_verdicts(path).one_reason == ""
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda content: content["claims"][0].update(own="maybe"), "'maybe' is not allowed"),
+        (lambda content: content["claims"].pop(), "counts"),
+        (lambda content: content["claims"][0].update(verdict="true"), "holds loosely"),
+        (lambda content: content["claims"][0].update(conventions={"x": "maybe"}), "'maybe' is not allowed"),
+        (lambda content: content["claims"][0].pop("reason"), "reason"),
+        (lambda content: content["claims"][0].update(reason=3), "reason: 3 is not allowed: text"),
+        (lambda content: content.pop("counts"), "counts"),
+    ],
+)
+def test_a_wrong_file_of_verdicts_is_one_line(tmp_path, change, words):
+    content = json.loads(CLAIMS.read_text())
+    change(content)
+    path = tmp_path / "claims.json"
+    path.write_text(as_json(content))
+    with pytest.raises(ValueError, match="claims.json: ") as caught:
+        read_verdicts(path)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_changed_verdict_is_not_believed(tmp_path):
+    """One word that is still allowed, and counts that fit: only the digest tells."""
+    path = tmp_path / "claims.json"
+    path.write_text(CLAIMS.read_text().replace("0.0", "0.1", 1))
+    assert path.read_text() != CLAIMS.read_text()
+    with pytest.raises(BadFile, match="has other content than was written; remake it: snakemake -c2 -R "):
+        read_verdicts(path)

@@ -1,0 +1,139 @@
+"""Runs of any model: against SciPy, symmetries, and that to be observed changes no motion."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from burridge_knopoff.kernel import events as kernel_events
+from burridge_knopoff.laws import LAWS, FormulaLaw, law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run, simulate
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.study import load_study, read_config
+from tests.flows import carry, check_events, listed, wave
+from tests.scipy_flow import model_events, scipy_events
+
+UNEQUAL = {
+    "open": {"coupling": [1.3, 0.6, 2.0], "pulling": [1.0, 0.5, 1.5, 0.8], "threshold": [1.0, 1.2, 0.7, 1.1]},
+    "ring": {"coupling": [1.3, 0.6, 2.0, 0.9], "pulling": 0.8, "threshold": [1.0, 1.2, 0.7, 1.1], "ends": "ring"},
+    "equal ring": {"ends": "ring"},
+}
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear", "carlson_langer", "stribeck"])
+@pytest.mark.parametrize("chain", UNEQUAL)
+def test_unequal_chains_and_rings_against_scipy(chain, law):
+    model = Model(Chain(4, **UNEQUAL[chain]), law_of(law, 0.3))
+    assert not model.has_closed_form
+    position = -0.3 + 0.25 * np.sin(1.0 + 2.0 * np.arange(4)) * model.chain.thresholds
+    start = Instant(position, 0.1 + 0.05 * np.cos(3.0 * np.arange(4)), np.zeros(4, dtype=bool))
+    expected, state = model_events(model, start, 10.0)
+    solver, found = carry(model, start, 10.0)
+    assert len(found) >= 4
+    check_events(found, expected, 1e-8)
+    assert np.abs(solver.instant().vector() - state).max() < 1e-8
+
+
+# The example studies with laws and springs of their own: stiffness, static friction and Φ as their pages say.
+
+
+def unequal_blocks(a):
+    return np.array([[2.0, -1.0], [-1.0, 1.8]]), np.array([1.0, 2.25]), lambda u: np.full_like(u, 1.0 / (1.0 + a))
+
+
+def carlson_langer(a):
+    stiffness = np.diag([10.0, *8 * [19.0], 10.0]) - 9.0 * (np.eye(10, k=1) + np.eye(10, k=-1))
+    return stiffness, np.ones(10), lambda u: 0.99 / (1.0 + a * u / 0.99)
+
+
+@pytest.mark.parametrize(
+    ("model", "a", "end", "least", "tolerance"),
+    [
+        (unequal_blocks, 0.1, 500.0, 60, 1e-8),
+        (unequal_blocks, 0.4, 500.0, 20, 1e-8),
+        # Chaos: errors grow by a factor of e in about ten units of time.
+        (carlson_langer, 2.0, 100.0, 40, 1e-6),
+        (carlson_langer, 5.0, 150.0, 40, 1e-6),
+    ],
+)
+def test_example_studies_against_scipy(repository, model, a, end, least, tolerance):
+    file = repository / "config" / "examples" / f"{model.__name__}.yaml"
+    study = load_study(read_config(file), str(file))
+    settings = Settings(start="tested", transient=0.0, window=end, events="all", lyapunov_exponents=0)
+    state = study.state(study.initial[0])
+    found = listed(run(study.model(study.laws[0], a), state, settings))
+    stuck, position = np.zeros(study.blocks, dtype=int), np.array(state.position)
+    stiffness, threshold, friction = model(a)
+    assert (-stiffness @ position < threshold).all()
+    v = study.config["v"]
+    expected, *_ = scipy_events(stiffness, threshold, friction, v, position, 0.0 * position, stuck, end)
+    assert len(expected) >= least
+    check_events(found, expected, tolerance)
+
+
+def test_the_distance_of_unequal_chains_is_that_of_the_end_blocks():
+    model = Model(Chain(4, **UNEQUAL["open"]), law_of("nonlinear", 0.3))
+    state = InitialState("uneven", (-0.4, -0.5, -0.3, -0.6), (0.1, 0.12, 0.1, 0.08))
+    run = simulate(model, state, Settings(transient=10.0, window=20.0, batches=2, sampling=0.5, trajectory=30.0))
+    at = np.searchsorted(run.trajectory_time, run.time - 1e-9)
+    apart = run.position[at, 3] - run.position[at, 0], run.velocity[at, 3] - run.velocity[at, 0]
+    assert np.abs(run.distance - np.hypot(*apart)).max() < 1e-9
+
+
+@pytest.mark.parametrize("law", [kind(0.26) for kind in LAWS.values()] + [FormulaLaw(0.26, "exp(-a*u)/(1 + a*u)")])
+@pytest.mark.parametrize("blocks", [3, 9])
+def test_what_is_observed_does_not_change_the_motion(law, blocks):
+    """Every event time to the bit, whatever is measured or kept, and however long the run is."""
+    state = PAPER_STATES["minus"] if blocks == 3 else wave(blocks, 0.05)
+    model = Model(Chain(blocks), law)
+    everything = simulate(model, state, Settings(transient=100.0, window=700.0, events="all"))
+    for options in (
+        {"transient": 333.3, "window": 91.7},
+        {"transient": 100.0, "window": 200.0, "lyapunov_exponents": 0, "sampling": 0.37},
+        {"transient": 50.0, "window": 650.0, "lyapunov_exponents": 6, "trajectory": 600.0, "lyapunov_alignment": 20.0},
+    ):
+        other = simulate(model, state, Settings(events="all", **options))
+        count = len(other.event_time)
+        assert count > 5
+        for name in ("event_time", "event_block", "event_velocity"):
+            assert getattr(other, name).tobytes() == getattr(everything, name)[:count].tobytes()
+
+
+def test_longer_windows_go_on_where_shorter_ones_end():
+    """In chaos a last bit would soon be another trajectory."""
+    runs = [simulate("nonlinear", 0.26, "minus", window=window, events="all") for window in (900.0, 7000.0)]
+    count = len(runs[0].event_time)
+    assert runs[0].event_time.tobytes() == runs[1].event_time[:count].tobytes()
+
+
+@given(st.integers(2, 11), st.sampled_from(sorted(LAWS)), st.sampled_from(["open", "ring"]), st.integers(0, 2**32 - 1))
+@settings(max_examples=40)
+def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
+    """To the bit, in chains that are their own image; and shifted in time the motion is the same."""
+    generator = np.random.default_rng(seed)
+    strength = generator.uniform(0.5, 2.0, blocks)
+    threshold = float(generator.uniform(0.7, 1.3))
+    chain = Chain(blocks, pulling=strength + strength[::-1], threshold=threshold, ends=ends)
+    assert chain.is_mirror_symmetric
+    model = Model(chain, law_of(law, generator.uniform(0.0, 0.5)))
+    position, velocity = generator.uniform(-0.4, 0.4, blocks), generator.uniform(0.02, 0.3, blocks)
+    start = Instant(position, velocity, np.zeros(blocks, dtype=bool))
+    solver, events = carry(model, start, 12.0)
+    # Which of two events of one instant comes first is nobody's matter.
+    assume(all(gap > 1e-12 for gap in np.diff([time for time, _, _ in events])))
+    mirror, mirrored = carry(model, start.mirrored(), 12.0)
+    assert events == [(time, blocks + 1 - block, kind) for time, block, kind in mirrored]
+    assert (solver.instant().vector() == mirror.instant().mirrored().vector()).all()
+    half, first = carry(model, start, 5.0)
+    second = [(5.0 + time, block, kind) for time, block, kind in carry(model, half.instant(), 7.0)[1]]
+    assume(len(first) + len(second) == len(events) > 0)
+    times = [time for time, _, _ in (*first, *second)]
+    assert np.abs(np.subtract(times, [time for time, _, _ in events])).max() < 1e-11 * np.exp(0.5 * 12.0)
+
+
+def test_the_status_is_the_kernels():
+    assert {item.name: item.value for item in Status} == {item.name: item.value for item in kernel_events.Status}
