@@ -46,12 +46,16 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
         started[i] = clock if kind else -1.0
         found.append((clock, i + 1, int(kind != 0)))
 
+    def starts(force, growth, i):
+        """Whether a stuck block starts: at its threshold only under a force that grows."""
+        return force > threshold[i] + ROUNDING or (force >= threshold[i] - ROUNDING and growth > 0.0)
+
     def settle():
         """Let every block stop or start that does so at this instant."""
         changed = True
         while changed:
             changed = False
-            force = -stiffness @ state[:blocks]
+            force, growth = -stiffness @ state[:blocks], -stiffness @ (state[blocks:] - v)
             for i in range(blocks):
                 speed = slip[i] * state[blocks + i]
                 if slip[i] and started[i] != clock and speed <= ROUNDING:
@@ -59,7 +63,7 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
                     if speed > -ROUNDING and slip[i] * force[i] > threshold[i] * friction(abs(speed)):
                         continue
                     change(i, 0)
-                elif not slip[i] and max(sign * force[i] for sign in signs) >= threshold[i] - ROUNDING:
+                elif not slip[i] and any(starts(sign * force[i], sign * growth[i], i) for sign in signs):
                     change(i, int(np.sign(force[i])))
                 else:
                     continue

@@ -58,6 +58,7 @@ for figure in DESCRIPTIONS:
         group:
             group("figures")
         params:
+            script=figure.script,
             figure=figure.name,
             caption=figure.caption_of,
             runs=STUDY.shown_runs if figure.of_runs else None,
@@ -66,4 +67,4 @@ for figure in DESCRIPTIONS:
         message:
             f"figure: {figure.title.replace('{', '{wildcards.')}"
         script:
-            f"../scripts/{figure.script}.py"
+            "../scripts/{params.script}.py"

@@ -69,10 +69,11 @@ for name, row in SUMMARIES.items():
             runtime=30,
         params:
             **SUMMARY_PARAMS[row["of"]],
+            script=f"summary_of_{row['of']}",
             summary=name,
             config=keys(*row.get("keys", [])),
             sources=sources(f"summary_of_{row['of']}", f"summaries.{name}"),
         message:
             f"summary: {name}"
         script:
-            f"../scripts/summary_of_{row['of']}.py"
+            "../scripts/{params.script}.py"

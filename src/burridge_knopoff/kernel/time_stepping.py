@@ -98,6 +98,10 @@ class TimeStepping:
                 if not abs(self.state.velocity[i]) < ABSURD_SPEED:
                     return DIVERGED
             self._slope(3)
+            for i in range(n):
+                # A step so long that a block passes its stop meets friction where the law does not describe any.
+                if not abs(self.acceleration[3, i]) * step < ABSURD_SPEED:
+                    return DIVERGED
             self._interpolate(step)
             self.observer.observe(self.state, self.piece, self.clock, 0.0, step)
             self.clock = after
