@@ -48,6 +48,7 @@ class LogHandler(LogHandlerBase):
         self._whole_errors = self._everything or settings.show_failed_logs
         self._quiet = is_quiet_about(settings.quiet or set(), "progress")
         self._begin = time.time()
+        self._stopped = False
         self._tally = Tally()
         #: {rule: number of its jobs that are to run}, and {rule of the targets: rules that it needs}.
         self._counts: dict[str, int] = {}
@@ -122,6 +123,8 @@ class LogHandler(LogHandlerBase):
             self._tally.end(record.job_id, DONE, record.created)
         elif event == LogEvent.JOB_ERROR:
             self._tally.end(record.jobid, FAILED)
+        elif event == LogEvent.ERROR:
+            self._stopped = True
 
     def _expect(self) -> None:
         """Begin to show a run, whose first jobs start."""
@@ -168,7 +171,8 @@ class LogHandler(LogHandlerBase):
             # What comes after a rule that runs, and does not run itself, is left out by --until.
             left_out = downstream(self._counts.keys(), self._needs) - self._counts.keys()
             try:
-                lines = closing_lines(PLAN.results, time.time() - self._begin, tally, self._needs.keys() - left_out)
+                wanted = self._needs.keys() - left_out
+                lines = closing_lines(PLAN.results, time.time() - self._begin, tally, wanted, stopped=self._stopped)
             except Exception as error:
                 lines = [f"what the run left cannot be told: {error}"]
             for line in lines:

@@ -22,12 +22,15 @@ MOST_NAMES, MOST_FAILED = 8, 10
 FEW_FILES = 3
 
 
-def closing_lines(results: str | Path, seconds: float, tally: Tally, wanted: Collection[str]) -> list[str]:
+def closing_lines(
+    results: str | Path, seconds: float, tally: Tally, wanted: Collection[str], *, stopped: bool = False
+) -> list[str]:
     """Return the last lines of a run, plain text.
 
     results : folder of the study, results/<study>
     seconds : how long the run took
     wanted : rules of all files that the run was to make or found up to date
+    stopped : whether Snakemake ended with an error, as after a signal that came when the last job was done
 
     Summaries are read only if they are wanted and all jobs were done: older ones say nothing about the run. A file that
     cannot be read gives a line that says so.
@@ -36,10 +39,10 @@ def closing_lines(results: str | Path, seconds: float, tally: Tally, wanted: Col
     failed, done = tally.jobs(FAILED), tally.jobs(DONE)
     missed = tally.counts()[-1].total - len(failed) - len(done)
     made = _made(results, [path for job in done for path in job.output])
-    if failed or missed:
+    if failed or missed or stopped:
         counts = ((len(failed), "failed"), (missed, "did not run"))
         reasons = [f"{jobs(count)} {what}" for count, what in counts if count]
-        lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons)}"]
+        lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons) or 'not at its end'}"]
         told = sorted((job.name, job.log) for job in failed)
         lines += [failure(*job) for job in told[:MOST_FAILED]]
         if len(told) > MOST_FAILED:

@@ -134,3 +134,12 @@ def test_a_run_that_was_interrupted(summary):
     Path("x.nc").touch()
     said = lines(("x", "running", ("x.nc",)))
     assert said[:2] == ["study paper: stopped after 1 s: 1 job did not run", "made: nothing"]
+
+
+def test_a_run_that_is_stopped_when_its_last_job_was_done(summary):
+    tally = Tally()
+    assert closing_lines("results/paper", 3.0, tally, (), stopped=True) == [
+        "study paper: stopped after 3 s: not at its end",
+        "made: nothing",
+        "the same command goes on where this run stopped",
+    ]

@@ -278,7 +278,7 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
     for quiet, lines in ((Quietness.PROGRESS, 3), (Quietness.ALL, 0)):
         assert len(written(*ROUTINE[:5], other, quiet={quiet}).splitlines()) == lines
-    monkeypatch.setattr(plugin, "closing_lines", lambda *given: 1 / 0)
+    monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
     assert "what the run left cannot be told: division by zero" in written(*ROUTINE)
 
 
@@ -300,7 +300,7 @@ def test_a_failed_log_is_shown(written, tmp_path):
 
 
 def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
-    monkeypatch.setattr(Tally, "end", lambda *given: 1 / 0)
+    monkeypatch.setattr(Tally, "end", lambda *given, **options: 1 / 0)
     text = written(START, ERROR)
     assert "ZeroDivisionError" in text
     assert TOLD in text

@@ -26,7 +26,7 @@ def test_pictures_keep_every_pixel(tmp_path):
     assert (picture.width, picture.height) == (2100, 900)
     assert (picture.thumbnail_width, picture.thumbnail_height) == (THUMBNAIL_WIDTH, 171)
     assert len(picture.thumbnail) < 30_000
-    assert "W'" in picture.alternative
+    assert "W'" in picture.caption
 
 
 def test_a_picture_that_cannot_be_read_is_named(tmp_path):

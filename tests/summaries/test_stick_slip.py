@@ -98,7 +98,7 @@ def points(folder, initial, a, alter=lambda trajectory: trajectory, **settings):
 
 def test_the_synchronized_orbit(tmp_path):
     """Its period and slip time come from Newton's method, without an event list or a window."""
-    dataset = summarize(points(tmp_path, "minus", 0.05), 3, **SETTINGS)
+    dataset = summarize(points(tmp_path, "minus", 0.05), **SETTINGS)
     for law in ("linearized", "nonlinear"):
         orbit = Family(Model(Chain(3), law_of(law, 0.0))).at(0.05)
         run = dataset.sel(law=law, initial="minus", a=0.05)
@@ -117,7 +117,7 @@ def test_the_synchronized_orbit(tmp_path):
 def test_events_before_those_with_states_count_as_well(tmp_path):
     """However the events are kept, the same stops are counted."""
     kept = [
-        summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), 3, **SETTINGS)
+        summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), **SETTINGS)
         for events, width in (("window", 50.0), ("window", 400.0), ("all", 1.0))
     ]
     assert kept[0].identical(kept[1])
@@ -132,7 +132,7 @@ def test_a_block_that_never_moves_and_one_that_never_stops(tmp_path):
     """The first block is pulled back and sticks; the second one slips for half a period of its own, π/√2."""
     held = InitialState("held", (3.0, -1.0), (0.0, 0.1))
     grid = points(tmp_path, held, 0.05, transient=0.5, window=1.0, start="tested", trajectory=1.0)
-    run = summarize(grid, 2, 0.5, 1.0, 2).sel(law="linearized", a=0.05, initial="held")
+    run = summarize(grid, 0.5, 1.0, 2).sel(law="linearized", a=0.05, initial="held")
     assert run["stick_fraction"].values.tolist() == [1.0, 0.0]
     assert run["stop_rate"].values.tolist() == [0.0, 0.0]
     assert run["least_velocity"].values[0] == 0.0 < run["least_velocity"].values[1]
@@ -145,7 +145,7 @@ def test_a_run_that_did_not_complete_has_nothing(tmp_path):
     def change(run):
         return dataclasses.replace(run, status="diverged") if run.model.law.name == "linearized" else run
 
-    dataset = summarize(points(tmp_path, "minus", 0.05, change), 3, **SETTINGS)
+    dataset = summarize(points(tmp_path, "minus", 0.05, change), **SETTINGS)
     for variable in dataset.data_vars.values():
         assert np.isnan(variable.sel(law="linearized")).all()
         assert np.isfinite(variable.sel(law="nonlinear")).all()
