@@ -3,11 +3,19 @@
 import json
 import subprocess
 
+# With nothing but a shell.
+NOTE = """#!/bin/sh
+while read -r line; do
+    case $line in "# properties = "*) printf '%s\\n' "${line#"# properties = "}" >> groups.txt ;; esac
+done < "$1"
+exit 1
+"""
+
 
 def groups(study, size, seed):
     """Return the groups of points that a run would submit, each as the set of its files."""
     note = study.folder / "note.sh"
-    note.write_text("#!/bin/sh\nsed -n 's/^# properties = //p' \"$1\" >> groups.txt\nexit 1\n")
+    note.write_text(NOTE)
     note.chmod(0o755)
     cluster = ("--executor", "cluster-generic", "--cluster-generic-submit-cmd", str(note), "--jobs", "20")
     command = study.command("--until", "points", *cluster, "--group-components", f"points={size}")

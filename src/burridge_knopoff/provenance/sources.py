@@ -22,9 +22,9 @@ COMPILATION = PACKAGE / "provenance/compilation.py"
 #: What a module of a folder reads there besides Python.
 ASSETS = (".css", ".jinja", ".js")
 
-# Comments, brackets and texts. Python's own tokenizer and parser take ten times as long, in every job.
+# Comments and texts. Python's own tokenizer and parser take ten times as long, in every job.
 _WORD = re.compile(
-    r"""#[^\n]*|[([{]|[)\]}]|[rRbBuUfF]{0,2}(?:\"{3}(?:[^"\\]|\\.|"(?!""))*\"{3}|'{3}(?:[^'\\]|\\.|'(?!''))*'{3}|"""
+    r"""#[^\n]*|(?:\"{3}(?:[^"\\]|\\.|"(?!""))*\"{3}|'{3}(?:[^'\\]|\\.|'(?!''))*'{3}|"""
     r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')""",
     re.DOTALL,
 )
@@ -99,18 +99,19 @@ def _code(path: Path) -> str:
 
 def code_of(text: str) -> str:
     """Return Python or Cython code without comments, docstrings, empty lines and blanks at the ends of lines."""
-    parts, kept, depth = [], 0, 0
+    parts, kept, seen, depth = [], 0, 0, 0
     for found in _WORD.finditer(text):
         word, (start, end) = found[0], found.span()
-        if len(word) == 1 and word != "#":
-            depth += 1 if word in "([{" else -1
-            continue
+        between, seen = text[seen:start], end
+        depth += sum(map(between.count, "([{")) - sum(map(between.count, ")]}"))
         if word[0] == "#":
             idle = not _DIRECTIVE.match(word)
         else:
             # A text is a statement of its own if no bracket is open, nothing stands beside it and no line goes on.
             line = text.rfind("\n", 0, start) + 1
-            idle = not (depth or text[line:start].strip() or text.endswith("\\\n", 0, line))
+            before = text[line:start].lstrip()
+            idle = not (depth or before.strip("rRbBuUfF") or text.endswith("\\\n", 0, line))
+            start -= len(before)
             idle = idle and _LINE_ENDS.match(text, end) is not None
         if idle:
             parts.append(text[kept:start])
