@@ -1,9 +1,12 @@
-# Attractors: found for each law along the whole grid of a, then put together.
+# Attractors: found for each law along the whole grid of a and between its values, then put together.
+
+
+OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
 
 
 rule attractors_of_law:
     output:
-        f"{RESULTS}/attractors/{{law}}.nc",
+        OF_LAW,
     log:
         f"{RESULTS}/logs/attractors/{{law}}.log",
     benchmark:
@@ -14,7 +17,7 @@ rule attractors_of_law:
         mem_mb=400,
         runtime=240,
     params:
-        **keys("initial", "start", "attractors"),
+        **keys("initial", "start", "attractors", "refine"),
         grid=list(STUDY.grid.values()),
         model=lambda wildcards: model_config([wildcards.law]),
         motion=motion_config(),
@@ -27,7 +30,8 @@ rule attractors_of_law:
 
 rule attractors:
     input:
-        expand(rules.attractors_of_law.output, law=STUDY.laws),
+        grid=expand(OF_LAW[0], law=STUDY.laws),
+        refined=expand(OF_LAW[1], law=STUDY.laws),
     output:
         f"{SUMMARY}/attractors.nc",
         report(
@@ -36,6 +40,7 @@ rule attractors:
             category="Attractors",
             labels={"result": "attractors in words", "paper": "none"},
         ),
+        f"{SUMMARY}/refined.nc",
     log:
         f"{RESULTS}/logs/attractors.log",
     benchmark:
@@ -44,9 +49,12 @@ rule attractors:
         mem_mb=400,
         runtime=10,
     params:
-        summary="attractors",
-        sources=sources("merge", "summaries.attractors"),
+        **keys("attractors"),
+        model=model_config(),
+        a=list(STUDY.grid.values())[0],
+        blocks=STUDY.blocks,
+        sources=sources("attractors"),
     message:
         "attractors of all laws"
     script:
-        "../scripts/merge.py"
+        "../scripts/attractors.py"

@@ -1,4 +1,4 @@
-"""Attractors of one law along a."""
+"""Attractors of one law along a, at the values of the grid and at those put in between."""
 
 import sys
 
@@ -6,12 +6,16 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+from burridge_knopoff.stability.continuation import continue_attractors
+from burridge_knopoff.stability.settings import MotionSettings, Refine, SearchSettings
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries.attractors import one_law
+from burridge_knopoff.summaries import attractors, refined
 
 params, law = snakemake.params, snakemake.wildcards.law
 initial = [InitialState(name, **state) for name, state in params.initial.items()]
-model = model_of(params.model, law, params.grid[0], len(initial[0].position))
+models = [model_of(params.model, law, a, len(initial[0].position)) for a in params.grid]
 settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
-write_summary(one_law(model, params.grid, initial, settings, motion, params.start), snakemake.output[0])
+refine = Refine(**params.refine)
+found = continue_attractors(models, settings, motion, refine, starts=initial, start=params.start)
+write_summary(attractors.one_law(found, initial, settings, motion, params.start), snakemake.output[0])
+write_summary(refined.one_law(found, settings, motion, refine, params.start), snakemake.output[1])

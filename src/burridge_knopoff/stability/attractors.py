@@ -13,10 +13,13 @@ import numpy as np
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractor import Attractor, Symmetry, close_returns, pushed, spread
-from burridge_knopoff.stability.labels import UNDETERMINED, label
+from burridge_knopoff.stability.branch import leading_modulus
+from burridge_knopoff.stability.family import synchronized_orbit
+from burridge_knopoff.stability.labels import UNDETERMINED, label, label_together
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
-from burridge_knopoff.stability.sampling import sampled_states
+from burridge_knopoff.stability.sampling import sample_states, sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import (
     Returns,
@@ -55,12 +58,13 @@ def find_attractors(
     return search.attractors, labels
 
 
-@dataclass
+@dataclass(eq=False)
 class Search:
     """Finds the attractors of one model.
 
     motion_settings : how kinds of motion are told apart
     attractors : those found so far; vain : trajectories followed without finding one
+    drawn : attractors, and which of them the states reach that are drawn for the basin fractions
     """
 
     model: Model
@@ -69,6 +73,7 @@ class Search:
     tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
     vain: int = 0
+    drawn: tuple[list[Attractor], np.ndarray] | None = None
 
     @property
     def resolution(self) -> float:
@@ -158,6 +163,29 @@ class Search:
         labels, _ = label(self.model, self.attractors, starts, self.settings.time_limit)
         return labels
 
+    def drawn_labels(self, start: str, discover: bool = True) -> np.ndarray:
+        """Return the index of the attractor that each state reaches which is drawn for the basin fractions.
+
+        They are others at each a, and not those from which attractors are looked for.
+        start : see `Model.begin`; discover : whether attractors are looked for from those that reach none
+        """
+        settings, model = self.settings, self.model
+        seed = [settings.seed, int(np.float64(model.a).view(np.uint64))]
+        box = settings.position, settings.velocity
+        position, velocity = sample_states(model.blocks, settings.fraction_samples, *box, seed)
+        stuck = model.starts_stuck(position, start)
+        begun = position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
+        while self.drawn is None or self.drawn[0] != self.attractors:
+            known = list(self.attractors)
+            labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
+            if known and len(position):
+                labels, _ = label_together(model, known, *begun, settings.time_limit)
+            self.drawn = known, labels
+            if discover:
+                lost = np.flatnonzero(labels == UNDETERMINED)
+                self._discover([Instant(*(values[k] for values in begun)) for k in lost.tolist()])
+        return self.drawn[1]
+
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
         generator = np.random.default_rng(self.settings.seed)
@@ -198,9 +226,12 @@ class Search:
                 return lasting is not None and self._add(lasting)
         index = len(self.attractors)
         mirror = self.model.chain.is_mirror_symmetric
+        synchronization_threshold = self.motion_settings.synchronization_threshold
+        if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
+            return self._add_slow_synchrony()
         if not mirror:
             new = [Attractor(motion, Symmetry.ASYMMETRIC, index)]
-        elif motion.mean_distance < self.motion_settings.synchronization_threshold:
+        elif motion.mean_distance < synchronization_threshold:
             new = [Attractor(motion, Symmetry.SYNCHRONIZED, index)]
         elif self._symmetric(found):
             new = [Attractor(motion.symmetrized(tuning), Symmetry.SYMMETRIC, index)]
@@ -221,18 +252,37 @@ class Search:
         )
         return self._accept([slow], tuning.smallest_radius) or (closed and self._accept(new, tuning.tiny_radius))
 
-    def _accept(self, new: Sequence[Attractor], least: float) -> bool:
+    def _add_slow_synchrony(self) -> bool:
+        """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.
+
+        Near the a at which it loses its stability a trajectory neither reaches it nor leaves it in the time it has.
+        """
+        try:
+            orbit = synchronized_orbit(self.model)
+        except OrbitError:
+            return False
+        if leading_modulus(orbit) >= 1.0:
+            return False
+        settings, index = self.settings, len(self.attractors)
+        exact = measure(
+            self.model, orbit.reference, settings.transient, settings.window, self.motion_settings, self.tuning
+        )
+        if exact is None:
+            return False
+        patient = replace(self.tuning, recovery=self.tuning.slow_recovery)
+        return self._accept([Attractor(exact, Symmetry.SYNCHRONIZED, index)], self.tuning.smallest_radius, patient)
+
+    def _accept(self, new: Sequence[Attractor], least: float, tuning: Tuning | None = None) -> bool:
         """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
+        tuning = tuning or self.tuning
         before = list(self.attractors)
         self.attractors = [*before, *new]
-        self.attractors = bounded(self.model, self.attractors, self.tolerance, self.tuning)
+        self.attractors = bounded(self.model, self.attractors, self.tolerance, tuning)
         # A slow set that contains a known attractor is not another one.
-        overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance, self.tuning)
+        overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance, tuning)
         radius = 0.0
         if not overlapping:
-            radius = captured(
-                self.model, self.attractors, len(before), least, self.tolerance, self.settings, self.tuning
-            )
+            radius = captured(self.model, self.attractors, len(before), least, self.tolerance, self.settings, tuning)
         if radius == 0.0:
             self.attractors = before
             return False

@@ -6,18 +6,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import xarray
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractor import Attractor, Symmetry, spread
-from burridge_knopoff.stability.labels import UNDETERMINED, label_together
+from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.settings import SEARCH, MotionSettings, SearchSettings
+from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import measure
 from burridge_knopoff.stability.tuning import TUNING
 
@@ -75,45 +73,6 @@ def known_attractors(
         fixed = (Symmetry(one["symmetry"].item()), int(slot), one["radius"].item(), slow, one["close_returns"].item())
         attractors.append(Attractor(steady, *fixed))
     return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
-
-
-def label_states(
-    model: Model,
-    attractors: Sequence[Attractor],
-    position: np.ndarray,
-    velocity: np.ndarray,
-    *,
-    start: str = "moving",
-    time_limit: float = SEARCH.time_limit,
-    threads: int = 1,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return which attractor each initial state reaches, and the time τ at which that was certain, both of shape (n,).
-
-    attractors : as `find_attractors` returns them
-    position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
-    time_limit : by which a state has to reach one of them
-    threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
-
-    A label is the index of an attractor, or −1 where none is reached.
-    """
-    stuck = model.starts_stuck(position, start)
-    labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
-    times = np.zeros(len(position))
-    if not attractors:
-        return labels, times
-    offset = position - model.sliding_offset
-    edges = np.linspace(0, len(position), threads + 1).astype(int)
-
-    def work(first: int, last: int) -> None:
-        part = slice(first, last)
-        labels[part], times[part] = label_together(
-            model, attractors, offset[part], velocity[part], stuck[part], time_limit
-        )
-
-    with ThreadPoolExecutor(threads) as pool:
-        for task in [pool.submit(work, first, last) for first, last in pairwise(edges)]:
-            task.result()
-    return labels, times
 
 
 def plane(

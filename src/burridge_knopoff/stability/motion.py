@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import IntEnum
 
 import numpy as np
@@ -10,13 +11,23 @@ from burridge_knopoff.stability.settings import MotionSettings
 
 
 class MotionKind(IntEnum):
-    """Kinds of motion, numbered as in netCDF files; SYNCHRONIZED is periodic, with end blocks that move as one."""
+    """Kinds of motion, numbered as in netCDF files.
+
+    SYNCHRONIZED is periodic, with end blocks that move as one. TRANSIENT_CHAOS is said of sets only, not of runs: chaos
+    of which an ensemble shows that it ends, or not that it lasts.
+    """
 
     UNDETERMINED = -1
     SYNCHRONIZED = 0
     PERIODIC = 1
     QUASIPERIODIC = 2
     CHAOTIC = 3
+    TRANSIENT_CHAOS = 4
+
+    @property
+    def words(self) -> str:
+        """The kind as a sentence has it."""
+        return self.name.lower().replace("_", " ")
 
 
 # Largest error of an exponent, in units of `chaotic_exponent`, with which exponents decide the kind.
@@ -26,18 +37,53 @@ LARGEST_ERROR = 3.0
 REPETITIONS = 3
 
 
-def section_period(section: np.ndarray, tolerance: float, longest: int) -> int:
-    """Return after how many points a sequence of section points W' repeats within tolerance; 0 if it does not.
+def repetition(sequence: np.ndarray, tolerance: float, longest: int) -> int:
+    """Return after how many rows a sequence, shape (n,) or (n, m), repeats within tolerance; 0 if it does not.
 
-    section : shape (n,); its second half is judged, so that a slow approach does not hide a period
-    longest : largest period looked for
+    longest : largest period looked for; the sequence has to show it REPETITIONS times
     """
-    settled = section[len(section) // 2 :]
-    for period in range(1, min(longest, len(settled) // REPETITIONS) + 1):
-        turns = settled[: len(settled) // period * period].reshape(-1, period)
-        if np.ptp(turns, axis=0).max() <= tolerance:
+    for period in range(1, min(longest, len(sequence) // REPETITIONS) + 1):
+        if _repeats(sequence, period, tolerance):
             return period
     return 0
+
+
+def _repeats(sequence: np.ndarray, period: int, tolerance: float) -> bool:
+    turns = sequence[: len(sequence) // period * period].reshape(-1, period, *sequence.shape[1:])
+    return bool(np.ptp(turns, axis=0).max() <= tolerance)
+
+
+#: What `section_period` looks at, by the names of point files.
+SECTION = ("crossing_velocity", "crossing_time", "crossing_direction", "event_time", "event_position", "event_velocity")
+
+
+def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> int:
+    """Return after how many upward section points the state of all blocks repeats; 0 if it does not.
+
+    run : arrays of a run named in SECTION; the second half of its section points is judged, so that a slow approach
+        does not hide a period
+
+    W is a sum over all blocks and cannot tell a state from its mirror image: on an orbit that is its own mirror image
+    after half its period W' repeats twice in a period. So the states at the first event after each section point have
+    to repeat as well. Where none are known, as in motion without events, W' alone is judged.
+    """
+    upward = run["crossing_direction"] > 0
+    velocity, time = (_second_half(run[name][upward]) for name in ("crossing_velocity", "crossing_time"))
+    period = repetition(velocity, settings.period_tolerance, settings.longest_period)
+    event_time = run["event_time"]
+    if not period or not len(event_time):
+        return period
+    following = np.searchsorted(event_time, time[time >= event_time[0]], side="right")
+    following = following[following < len(event_time)]
+    states = np.concatenate([run["event_position"][following], run["event_velocity"][following]], axis=1)
+    for multiple in range(period, min(settings.longest_period, len(states) // REPETITIONS) + 1, period):
+        if _repeats(states, multiple, settings.period_tolerance):
+            return multiple
+    return 0
+
+
+def _second_half(values: np.ndarray) -> np.ndarray:
+    return values[len(values) // 2 :]
 
 
 def section_closed(section: np.ndarray, tolerance: float) -> bool:
@@ -45,7 +91,7 @@ def section_closed(section: np.ndarray, tolerance: float) -> bool:
 
     section : shape (n,); its second half is judged
     """
-    settled = np.sort(section[len(section) // 2 :])
+    settled = np.sort(_second_half(section))
     if len(settled) < 4 * REPETITIONS:
         return False
     gap = np.diff(settled)
@@ -72,19 +118,20 @@ def motion_kind(
     period : of the section points, 0 if they do not repeat
     exponent, error : Lyapunov exponents, the largest first, and their standard errors; may be NaN or empty
 
-    Chaotic if the largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0,
-    that of the flow; then the motion is periodic if the section points repeat or the next exponent is negative, and
-    quasiperiodic if that one is 0 as well and the errors are small. Everything else is undetermined, even a largest
-    exponent above `chaotic_exponent` if it is within its error.
+    Periodic if the section points repeat, even where an exponent is positive: a symmetric state stays on an orbit that
+    repels all others (`is_unstable`), and chaos may have ended within the window. Chaotic if the largest exponent is
+    above `chaotic_exponent` and above its error. Otherwise the largest must be 0, that of the flow; then the motion is
+    periodic if the next exponent is negative, and quasiperiodic if that one is 0 as well and the errors are small.
+    Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is within its error.
     """
+    if period:
+        return closed_kind(mean_distance, settings)
     known = np.flatnonzero(~np.isnan(exponent))
-    if len(known) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]):
+    if _is_positive(exponent, error, settings):
         return MotionKind.CHAOTIC
     zero = zero_exponents(exponent, error, settings)
     if len(known) and not zero[0]:
         return MotionKind.UNDETERMINED
-    if period:
-        return closed_kind(mean_distance, settings)
     # Errors beyond the threshold of chaos, as where chaos ends within the window, leave the kind open.
     if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
         return MotionKind.UNDETERMINED
@@ -95,3 +142,16 @@ def motion_kind(
         if len(known) > 1 and exponent[0] <= settings.chaotic_exponent
         else MotionKind.UNDETERMINED
     )
+
+
+def is_unstable(period: int, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
+    """Tell whether a run has stayed on a closed orbit that repels: a positive exponent although the motion repeats.
+
+    period, exponent, error : see `motion_kind`
+    """
+    return period > 0 and _is_positive(exponent, error, settings)
+
+
+def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
+    """Tell whether the largest exponent, if there is one, is certain to be positive."""
+    return bool(len(exponent) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]))

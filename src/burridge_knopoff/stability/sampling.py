@@ -13,14 +13,15 @@ CONFIDENCE = 0.95
 
 
 def sample_states(
-    blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int
+    blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int | Sequence[int]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return `count` initial states, U(0) and U'(0), each of shape (count, blocks), uniform in a box.
 
     position, velocity : (low, high) of every U_i(0) and every U_i'(0)
+    seed : one number, or several
     The first states of a longer sample are those of a shorter one.
     """
-    generator = np.random.default_rng([seed, blocks])
+    generator = np.random.default_rng([*np.atleast_1d(seed).tolist(), blocks])
     unit = generator.random((count, 2, blocks))
     low = np.array([position[0], velocity[0]])[:, None]
     high = np.array([position[1], velocity[1]])[:, None]

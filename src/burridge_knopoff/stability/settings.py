@@ -44,9 +44,10 @@ class MotionSettings:
     period_tolerance: Annotated[
         float,
         TOLERANCE,
-        "a motion is periodic if its section points W' repeat within this, or if its second exponent is negative",
+        "a motion is periodic if its section points W' and states repeat within this, or if its second exponent is "
+        "negative",
     ] = 1e-6
-    longest_period: Annotated[int, Whole(1, 1000), "section points up to which a repetition is looked for"] = 60
+    longest_period: Annotated[int, Whole(1, 1000), "section points up to which a repetition is looked for"] = 120
     synchronization_threshold: Annotated[float, TOLERANCE, "the end blocks move as one where <J> is below this"] = 1e-6
 
     def __post_init__(self) -> None:
@@ -67,8 +68,11 @@ class SearchSettings:
     samples: Annotated[
         int,
         Whole(0, 1_000_000),
-        "initial states sampled at each a, besides those of the study; the basin fractions come from them",
+        "initial states from which attractors are looked for at each a, besides those of the study",
     ] = 200
+    fraction_samples: Annotated[
+        int, Whole(0, 10_000_000), "initial states drawn anew at each a, for the basin fractions"
+    ] = 5000
     seed: Annotated[int, SEED, "seed of all random numbers of this stage"] = 1
     position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
     velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
@@ -89,6 +93,11 @@ class SearchSettings:
     pushes: Annotated[
         int, Whole(4, 10_000), "random pushes that an attractor has to survive for its radius to count"
     ] = 16
+    lifetime: Annotated[
+        float,
+        TIME,
+        "chaos is an attractor if its mean lifetime is above this with 97.5 % certainty, and transient if not",
+    ] = 100_000.0
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -96,6 +105,28 @@ class SearchSettings:
 
 #: The defaults of a study.
 SEARCH = SearchSettings()
+
+
+@dataclass(frozen=True)
+class Refine:
+    """Where values of a are put in between those of the grid, for attractors: the config's section `refine`.
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    resolution: Annotated[
+        float,
+        Number(1e-6, 100.0),
+        "neighbouring values of a at which kind, period, symmetry or set of the attractors differ are at most this far "
+        "apart; a step of the grid, or more, puts none in",
+    ] = 1e-4
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+#: The defaults of a study.
+REFINE = Refine()
 
 
 @dataclass(frozen=True)

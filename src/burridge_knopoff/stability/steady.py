@@ -181,8 +181,7 @@ def _measure(
     found = _returns(model, trajectory.event_block, trajectory.event_kind, states, tuning)
     if found is None:
         return None
-    upward = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
-    period = section_period(upward, settings.period_tolerance, settings.longest_period)
+    period = section_period(vars(trajectory), settings)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     # End blocks that are not each other's mirror images do not synchronize.
     mean = trajectory.mean_distance if model.chain.is_mirror_symmetric else math.inf

@@ -24,6 +24,7 @@ from burridge_knopoff.stability.settings import (
     TIME,
     BasinSettings,
     MotionSettings,
+    Refine,
     Sample,
     SearchSettings,
     Watch,
@@ -161,6 +162,7 @@ CONFIG = Keys(
         "solvers": _section(COMPARED),
         "figures": _section(FIGURES),
         "attractors": _section(_part(SearchSettings)),
+        "refine": _section(_part(Refine)),
         "basins": _section(BASINS),
         "chains": _section(CHAINS),
     }

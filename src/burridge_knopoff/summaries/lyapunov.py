@@ -14,6 +14,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
+    SECTION,
     MotionKind,
     motion_kind,
     section_closed,
@@ -35,7 +36,9 @@ VARIABLES = {
     "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
     "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
-    "section_period": Variable(_AXES, "i2", "upward section points after which W' repeats, 0 if it does not"),
+    "section_period": Variable(
+        _AXES, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
+    ),
     "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
 }
@@ -57,12 +60,12 @@ def summarize(
         shape = (*grid.shape, lyapunov_exponents) if "exponent" in item.dimensions else grid.shape
         values[name] = np.zeros(shape, dtype=item.dtype)
     for index, point in grid:
-        read = read_point(grid, *point, [*_COPIED, "crossing_velocity", "crossing_direction"])
+        read = read_point(grid, *point, [*_COPIED, *SECTION])
         for name in _COPIED:
             values[name][index] = read[name]
         exponent, error = read["lyapunov_exponent"], read["lyapunov_error"]
         upward = read["crossing_velocity"][read["crossing_direction"] > 0]
-        period = section_period(upward, settings.period_tolerance, settings.longest_period)
+        period = section_period(read, settings)
         kind = MotionKind.UNDETERMINED
         if read["status"] == Status.COMPLETED:
             # End blocks that are not each other's mirror images do not synchronize.

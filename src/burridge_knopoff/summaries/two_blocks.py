@@ -38,7 +38,9 @@ RUN_VARIABLES = {
     "mean_distance": Variable(_RUN, "f8", "time average <J> of the phase-space distance between the two blocks"),
     "mean_distance_error": Variable(_RUN, "f8", "standard error of <J> from the batch means"),
     "kind": Variable(_RUN, "i1", "kind of motion", flag("i1", MotionKind)),
-    "section_period": Variable(_RUN, "i2", "upward section points after which W' repeats, 0 if it does not"),
+    "section_period": Variable(
+        _RUN, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
+    ),
 }
 PAIR_VARIABLES = {
     "difference": Variable(_PAIR, "f8", "<J> of the other law minus <J> of the first law"),
@@ -132,8 +134,7 @@ def summarize(
 
 def _fill_run(values: Mapping[str, np.ndarray], k: int, trajectory: Trajectory, motion: MotionSettings) -> None:
     """Fill in what a run shows, at that a of the grid."""
-    section = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
-    period = section_period(section, motion.period_tolerance, motion.longest_period)
+    period = section_period(vars(trajectory), motion)
     mean = trajectory.mean_distance
     values["mean_distance"][k], values["mean_distance_error"][k] = mean, trajectory.mean_distance_error
     values["section_period"][k] = period

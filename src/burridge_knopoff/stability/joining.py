@@ -1,0 +1,82 @@
+"""Branches under two friction laws: which are one, by following each attractor while one law turns into the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
+
+from burridge_knopoff.laws.blend import blend
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.stability.steady import Returns, distance, visit
+from burridge_knopoff.stability.tuning import TUNING, Tuning
+
+#: {branch: the states on it}, with the models that they belong to by position: at each of them one state.
+States = Mapping[int, Mapping[int, Instant]]
+
+
+def follow_law(
+    first: Model, second: Model, start: Instant, settings: SearchSettings, tuning: Tuning = TUNING
+) -> Returns | None:
+    """Return where an attractor of one model has come to when its law has turned into that of another model.
+
+    first, second : models that differ in the law alone; start : a state on an attractor of the first
+
+    The law is changed in steps, along the straight line between both. None where the motion does not go on smoothly: it
+    does not settle, or the set that it settles on is no neighbour of the one before.
+    """
+    before: Returns | None = None
+    for share in np.linspace(0.0, 1.0, tuning.law_steps + 1).tolist():
+        law = second.law if share == 1.0 else blend(first.law, second.law, share)
+        model = Model(first.chain, law, first.v, first.contact)
+        found = visit(model, start, settings.transient, settings.window, tuning)
+        if found is None:
+            return None
+        if before is not None:
+            pairs = ((before.returns, found.returns), (found.returns, before.returns))
+            if min(distance(*pair, tuning.near_share) for pair in pairs) > tuning.same_set * model.scale:
+                return None
+        before, start = found, found.instant()
+    return before
+
+
+def joined(
+    firsts: Sequence[Model],
+    seconds: Sequence[Model],
+    first: States,
+    second: States,
+    settings: SearchSettings,
+    tuning: Tuning = TUNING,
+) -> dict[int, int]:
+    """Return {branch under the second law: branch under the first} of those that turn into each other.
+
+    firsts, seconds : the models under both laws at the same values of a
+    first, second : states on the branches of each, by branch and by the position of their model
+    settings : how long a motion is followed
+
+    Each branch of the first law is followed at a few of the values at which it exists; it is one with the branch of the
+    second law that it comes to most often. The synchronized branch, 0, is one under all laws.
+    """
+    numbers = [sorted(n for n in states if n != 0) for states in (first, second)]
+    arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
+    for row, number in enumerate(numbers[0]):
+        places = sorted(first[number])
+        chosen = np.linspace(0, len(places) - 1, min(tuning.law_tries, len(places))).round().astype(int)
+        for k in (places[i] for i in chosen):
+            found = follow_law(firsts[k], seconds[k], first[number][k], settings, tuning)
+            near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
+            best = min(near, key=lambda n: near[n], default=None)
+            if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
+                arrivals[row, numbers[1].index(best)] += 1
+    pairs = zip(*linear_sum_assignment(arrivals, maximize=True), strict=True)
+    found = {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
+    return {0: 0, **found}
+
+
+def _nearest(found: Returns, state: Instant) -> float:
+    """Return how far a state, or its mirror image, is from the nearest of some returns."""
+    tree = cKDTree(found.returns)
+    return float(min(tree.query(item.vector(), p=np.inf)[0] for item in (state, state.mirrored())))

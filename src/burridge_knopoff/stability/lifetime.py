@@ -1,0 +1,96 @@
+"""How long chaos lasts: the mean lifetime of a chaotic set from an ensemble of trajectories that begin on it.
+
+Chaos may be a transient. Then it ends at a constant rate, whatever has gone before, so that lifetimes are exponentially
+distributed, and the number of ends in a total time of all trajectories has a Poisson distribution.
+
+Reference: C. Grebogi, E. Ott and J. A. Yorke, "Crises, sudden changes in chaotic attractors, and transient chaos",
+Physica D 7 (1983) 181-200; for the interval F. Garwood, Biometrika 28 (1936) 437-442.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.stability.attractor import Attractor, pushed
+from burridge_knopoff.stability.labels import UNDETERMINED, label
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.sampling import CONFIDENCE
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.tuning import TUNING, Tuning
+
+
+@dataclass(frozen=True)
+class Lifetime:
+    """What was seen of the ends of a chaotic motion.
+
+    ends : trajectories that left it for another attractor; time : for which all of them together were on it
+    """
+
+    ends: int
+    time: float
+
+    @property
+    def mean(self) -> float:
+        """Mean lifetime; infinite if no trajectory left."""
+        return self.time / self.ends if self.ends else math.inf
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """95 % confidence interval of the mean lifetime; its upper end is infinite if no trajectory left."""
+        tail = 0.5 * (1.0 - CONFIDENCE)
+        low = 2.0 * self.time / float(chi2.isf(tail, 2 * self.ends + 2))
+        high = 2.0 * self.time / float(chi2.ppf(tail, 2 * self.ends)) if self.ends else math.inf
+        return low, high
+
+    def lasts(self, least: float) -> bool:
+        """Tell whether the mean lifetime is certain to be above that."""
+        return self.interval[0] > least
+
+
+def lifetimes(
+    model: Model, attractors: Sequence[Attractor], settings: SearchSettings, tuning: Tuning = TUNING
+) -> list[Lifetime | None]:
+    """Return the lifetime of each attractor that is chaotic, None for the others; mirror images have the same one.
+
+    settings : `lifetime` says how long chaos is followed
+    """
+    found: list[Lifetime | None] = []
+    for index, attractor in enumerate(attractors):
+        if attractor.motion.kind != MotionKind.CHAOTIC:
+            found.append(None)
+        elif attractor.partner < index:
+            found.append(found[attractor.partner])
+        else:
+            found.append(_lifetime(model, attractors, index, settings, tuning))
+    return found
+
+
+def _lifetime(
+    model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings, tuning: Tuning
+) -> Lifetime:
+    """Follow trajectories from states on a chaotic set and see which are still on it, or on its mirror image."""
+    attractor = attractors[index]
+    time = tuning.exposure * settings.lifetime / tuning.followed
+    generator = np.random.default_rng(settings.seed)
+    returns = attractor.motion.returns
+    size = tuning.parting_push * settings.resolution * model.scale
+    chosen = generator.integers(len(returns), size=tuning.followed)
+    starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
+    states = [np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity", "stuck")]
+    moved = new_ensemble(model).run(*states[:2], states[2].astype(np.intc), [time])
+    end = np.concatenate([moved["position"][:, 0], moved["velocity"][:, 0]], axis=1)
+    reached, _ = label(model, attractors, [instant_of(state) for state in end], settings.time_limit)
+    left = np.flatnonzero(~np.isin(reached, (index, attractor.partner)))
+    # When they did; the whole time where what they reached is not known.
+    others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
+    gone, when = label(model, others, [starts[k] for k in left], time)
+    survived = time * (tuning.followed - len(left)) + np.where(gone == UNDETERMINED, time, when).sum()
+    return Lifetime(len(left), float(survived))

@@ -1,0 +1,158 @@
+"""Branches: which attractors at neighbouring values of a are one, by the distance of sets.
+
+Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
+Chaos 33 (2023) 073151, which matches sets by their distance and remembers those that vanish for a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial import cKDTree
+
+from burridge_knopoff.stability.attractor import Attractor, Symmetry
+from burridge_knopoff.stability.labels import UNDETERMINED
+from burridge_knopoff.stability.tuning import TUNING, Tuning
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The returns of an attractor, thinned out, and those of its mirror image, as sets that can be compared.
+
+    attractor : see `Attractor`; points : how many returns are compared with another set
+    """
+
+    attractor: Attractor
+    points: int
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """All returns, for the search of neighbours."""
+        return cKDTree(self.attractor.motion.returns)
+
+    @cached_property
+    def own(self) -> np.ndarray:
+        """Some returns, spread evenly over all."""
+        return _thinned(self.attractor.motion.returns, self.points)
+
+    @cached_property
+    def mirrored(self) -> np.ndarray:
+        """The same of the mirror image."""
+        return _thinned(self.attractor.motion.mirror_returns, self.points)
+
+    def distances(self, other: Outline, share: float) -> tuple[float, float]:
+        """Return how far the set, and its mirror image, is from another: the lesser of both directed distances.
+
+        share : of the returns that must lie near the other set
+
+        An orbit that lies on a torus, or a window in the midst of chaos, is near it although most of that is not near
+        the orbit: so the lesser one tells what follows what along a.
+        """
+        own = min(_directed(self.own, other.tree, share), _directed(other.own, self.tree, share))
+        if not len(self.mirrored) or not len(other.mirrored):
+            return own, np.inf
+        mirrored = min(_directed(self.mirrored, other.tree, share), _directed(other.mirrored, self.tree, share))
+        return own, mirrored
+
+
+def _thinned(returns: np.ndarray, points: int) -> np.ndarray:
+    chosen = np.linspace(0, len(returns) - 1, min(points, len(returns))) if len(returns) else np.zeros(0)
+    return returns[chosen.astype(int)]
+
+
+def _directed(points: np.ndarray, tree: cKDTree, share: float) -> float:
+    nearest, _ = tree.query(points, p=np.inf)
+    return float(np.quantile(nearest, share))
+
+
+def outlines(attractors: Sequence[Attractor], tuning: Tuning = TUNING) -> dict[int, Outline]:
+    """Return the outlines of attractors by their index; of a mirror pair the first stands for both."""
+    return {
+        index: Outline(attractor, tuning.compared_returns)
+        for index, attractor in enumerate(attractors)
+        if attractor.partner >= index
+    }
+
+
+def matched(
+    before: Mapping[int, Outline], after: Mapping[int, Outline], scale: float, tuning: Tuning = TUNING
+) -> dict[int, int]:
+    """Return {key in `after`: key in `before`} of the sets that are one: each has one at most.
+
+    Synchronized sets match each other and nothing else: what synchrony turns into where it loses its stability is
+    another branch. Of all others those are paired that lie within `same_set` (times the scale of the model), so that
+    the distances of all pairs are least in sum.
+    """
+    first, second = list(before), list(after)
+    largest = tuning.same_set * scale
+    cost = np.full((len(second), len(first)), largest)
+    for row, column in np.ndindex(cost.shape):
+        one, other = after[second[row]], before[first[column]]
+        synchronized = [item.attractor.symmetry == Symmetry.SYNCHRONIZED for item in (one, other)]
+        if all(synchronized):
+            cost[row, column] = -largest
+        elif not any(synchronized):
+            cost[row, column] = min(largest, *one.distances(other, tuning.near_share))
+    pairs = zip(*linear_sum_assignment(cost), strict=True)
+    return {second[row]: first[column] for row, column in pairs if cost[row, column] < largest}
+
+
+def branches(
+    a: Sequence[float], attractors: Sequence[Sequence[Attractor]], reach: float, scale: float, tuning: Tuning = TUNING
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Return the branch and the side of each attractor at each a.
+
+    a : ascending; reach : for how far in a an attractor that has vanished is remembered
+    scale : of the model, see `Model.scale`
+
+    The two of a mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images
+    have side 0. Branch 0 is the synchronized attractor; the others are numbered from 1 in the order of their first a,
+    and of ⟨J⟩ there.
+    """
+    branch_of, side_of = [], []
+    seen: dict[int, tuple[float, Outline, int]] = {}
+    following = 1
+    for value, here in zip(a, attractors, strict=True):
+        now = outlines(here, tuning)
+        near = {n: (where, item) for n, (where, item, _) in seen.items() if where >= value - reach}
+        last = max((where for where, _ in near.values()), default=value)
+        found = matched({n: item for n, (where, item) in near.items() if where == last}, now, scale, tuning)
+        lost = {n: item for n, (where, item) in near.items() if where < last}
+        left = {i: item for i, item in now.items() if i not in found}
+        found |= matched({n: item for n, item in lost.items() if n not in found.values()}, left, scale, tuning)
+        branch, side = np.full(len(here), UNDETERMINED), np.zeros(len(here), dtype=int)
+        for i in sorted(now, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
+            if here[i].symmetry == Symmetry.SYNCHRONIZED:
+                branch[i] = 0
+            elif i in found:
+                branch[i] = found[i]
+            else:
+                branch[i] = following
+                following += 1
+            number, partner = int(branch[i]), here[i].partner
+            if partner != i:
+                side[i] = _side(now[i], seen.get(number), tuning)
+                branch[partner], side[partner] = number, -side[i]
+            seen[number] = (value, now[i], int(side[i]))
+        branch_of.append(branch)
+        side_of.append(side)
+    return branch_of, side_of
+
+
+def _side(outline: Outline, before: tuple[float, Outline, int] | None, tuning: Tuning) -> int:
+    """Return the side of the first of a mirror pair: that of the nearer one of the pair before it, if there is one."""
+    if before is None or before[2] == 0:
+        return _orientation(outline.attractor)
+    own, mirrored = outline.distances(before[1], tuning.near_share)
+    return before[2] if own <= mirrored else -before[2]
+
+
+def _orientation(attractor: Attractor) -> int:
+    """Return 1 where the first block, at its stops, is ahead of the last one by more than in the mirrored motion."""
+    last = len(attractor.motion.stop_rate) - 1
+    own, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
+    return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1

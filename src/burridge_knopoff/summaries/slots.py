@@ -1,0 +1,130 @@
+"""A slot holds one attractor at one a: its variables, in the files of the grid and of the values put in between."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.continuation import Continuation
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.steady import EXPONENTS
+
+NOTHING = {"comment": "-1 where there is none or it is undetermined"}
+
+# What is 0, not −1, in an empty slot.
+_COUNTS = ("side", "initial_side", "section_period", "basin_count", "undetermined_count", "in_grid")
+
+
+def slot_variables(place: str) -> dict[str, Variable]:
+    """Return the variables of a slot, over (place, attractor), `place` being the dimension of a."""
+    slot = (place, "attractor")
+    described = {
+        "branch": ("i2", "branch of attractors along a; 0 is the synchronized one", NOTHING),
+        "side": ("i1", "side of the branch: 1 and -1 for mirror images of each other, 0 for its own mirror image", {}),
+        "symmetry": (
+            "i1",
+            "mirror symmetry of the attractor",
+            flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}}),
+        ),
+        "mean_distance": ("f8", "time average <J> of the phase-space distance between the end blocks", {}),
+        "mean_distance_error": ("f8", "standard error of <J> from batch means", {}),
+        "kind": ("i1", "kind of motion", flag("i1", MotionKind)),
+        "section_period": (
+            "i2",
+            "upward section points after which the state of all blocks repeats, 0 if it does not",
+            {},
+        ),
+        "lifetime": ("f8", "mean lifetime of chaos, inf if none of an ensemble ended; NaN for other motion", {}),
+        "lifetime_low": ("f8", "lower end of the 95 % confidence interval of the lifetime", {}),
+        "lifetime_high": ("f8", "upper end of the 95 % confidence interval of the lifetime", {}),
+        "radius": ("f8", "distance from its returns within which trajectories are captured", {}),
+        "close_returns": ("i4", "successive returns within the radius after which a trajectory is captured", {}),
+        "slow": (
+            "i1",
+            "whether motion on the attractor is too slow to settle",
+            flag("i1", {-1: "none", 0: "no", 1: "yes"}),
+        ),
+    }
+    along = {
+        "stop_rate": ("block", "stops of a block in a unit of time", {}),
+        "lyapunov_exponent": ("exponent", "Lyapunov exponents, the largest first", {}),
+        "position": (
+            "block",
+            "positions of one state on the attractor, at a stop of the first block",
+            {"comment": "relative to the driver: U - v*tau, U the position of the paper"},
+        ),
+        "velocity": ("block", "velocities U' of that state", {}),
+    }
+    return {
+        **{name: Variable(slot, *item) for name, item in described.items()},
+        **{name: Variable((*slot, last), "f8", *item) for name, (last, *item) in along.items()},
+    }
+
+
+def slot_coordinates(blocks: int) -> dict[str, Any]:
+    """Return the coordinates that slots have besides a."""
+    return {"block": ("block", np.arange(1, blocks + 1, dtype="i2"), {"long_name": "block number", "units": "1"})}
+
+
+def missing(name: str, item: Variable) -> Any:
+    """Return what stands in an empty slot of a variable."""
+    if item.dtype == "f8":
+        return np.nan
+    return 0 if name in _COUNTS else -1
+
+
+def empty(variables: Mapping[str, Variable], shape: Mapping[str, int], *beginnings: str) -> dict[str, np.ndarray]:
+    """Return an array of missing values for each variable whose dimensions are given.
+
+    beginnings : of the names that are wanted; none for all
+    """
+    return {
+        name: np.full([shape[key] for key in item.dimensions], missing(name, item), dtype=item.dtype)
+        for name, item in variables.items()
+        if all(key in shape for key in item.dimensions) and (not beginnings or name.startswith(beginnings))
+    }
+
+
+def branch_order(found: Continuation, place: int) -> list[int]:
+    """Return the indices of the attractors of one model in the order of their slots: by branch and side."""
+    return [int(i) for i in np.lexsort((-found.side[place], found.branch[place]))]
+
+
+def slot_values(found: Continuation, places: Sequence[int], lasting: float, dimension: str) -> dict[str, np.ndarray]:
+    """Return the variables of all slots at some of the models.
+
+    lasting : mean lifetime that chaos has to exceed, or its kind is transient chaos
+    dimension : name of that of a
+    """
+    blocks = found.models[0].blocks
+    shape = {
+        dimension: len(places),
+        "attractor": max(1, *map(len, found.attractors)),
+        "block": blocks,
+        "exponent": EXPONENTS,
+    }
+    values = empty(slot_variables(dimension), shape)
+    for k, place in enumerate(places):
+        for slot, i in enumerate(branch_order(found, place)):
+            at = (k, slot)
+            attractor, lifetime = found.attractors[place][i], found.lifetimes[place][i]
+            motion = attractor.motion
+            values["branch"][at], values["side"][at] = found.branch[place][i], found.side[place][i]
+            for name in ("symmetry", "radius", "slow", "close_returns"):
+                values[name][at] = getattr(attractor, name)
+            for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "stop_rate"):
+                values[name][at] = getattr(motion, name)
+            if lifetime is not None:
+                values["lifetime"][at] = lifetime.mean
+                values["lifetime_low"][at], values["lifetime_high"][at] = lifetime.interval
+                if not lifetime.lasts(lasting):
+                    values["kind"][at] = MotionKind.TRANSIENT_CHAOS
+            values["lyapunov_exponent"][at][: len(motion.exponent)] = motion.exponent
+            state = motion.instant()
+            values["position"][at] = state.position + found.models[place].sliding_offset
+            values["velocity"][at] = state.velocity
+    return values
