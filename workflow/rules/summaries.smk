@@ -10,7 +10,7 @@ SUMMARIES = {
     },
     "agreement": {
         "of": "points",
-        "summaries": ["lyapunov"],
+        "summaries": ["lyapunov", "attractors"],
         "keys": ["synchronization_threshold", "agreement"],
         "texts": {"csv": "table of the agreement", "txt": "agreement in words"},
     },

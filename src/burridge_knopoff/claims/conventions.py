@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, Measured, Verdict, by_share, shares_text, worst
 
@@ -51,21 +49,6 @@ def under_conventions(
     fails = [verdict == FAILS for verdict in verdicts.values()]
     verdict = CONVENTION if any(fails) and not all(fails) else own
     return Verdict(verdict, reason, measured, "; ".join([*exceptions, *others]), dict(sorted(verdicts.items())), own)
-
-
-def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return (known, values) of a variable on the attractors that an initial state reaches.
-
-    attractors : with a, under one convention
-    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
-    values : shape (a, …)
-    """
-    found = attractors.sel(law=law)
-    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
-        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
-    )
-    slots &= found["branch"].values >= 0
-    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]
 
 
 def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
+from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
@@ -27,6 +27,7 @@ from burridge_knopoff.stability.motion import (
 )
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.slots import reached
 
 if TYPE_CHECKING:
     import xarray

@@ -85,6 +85,10 @@ class Search:
         """Distance within which the returns of a closed orbit repeat."""
         return self.motion_settings.period_tolerance * min(1.0, self.model.scale)
 
+    def seed_of(self, attractor: Attractor, generator: np.random.Generator) -> Instant:
+        """Return a state on an attractor of a neighbouring a, pushed a little off any symmetry."""
+        return pushed(attractor.motion.instant(), self.tuning.symmetry_push * self.resolution, generator)
+
     def starts(self, given: Sequence[InitialState], start: str) -> list[Instant]:
         """Return where the drawn states, and after them those that are given, begin."""
         settings = self.settings

@@ -17,11 +17,12 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.attractor import Attractor, pushed
+from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
-from burridge_knopoff.stability.matching import branches, matched, outlines
+from burridge_knopoff.stability.matching import branches
+from burridge_knopoff.stability.refinement import refined
 from burridge_knopoff.stability.settings import MOTION, REFINE, SEARCH, MotionSettings, Refine, SearchSettings
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
@@ -32,7 +33,7 @@ class Continuation:
 
     models : at each a, ascending: those that were given, and those that were put in between them
     grid : positions in `models` of those that were given
-    attractors : for each model those that coexist there
+    attractors : for each given model those that coexist there; for the others those that change there
     lifetimes : for each model and attractor its lifetime if it is chaotic, None if it is not
     branch, side : for each model and attractor the number of its branch and its side of it; see `matching.branches`
     upward, downward : for each given model and attractor the index of the attractor reached at the next or the previous
@@ -71,8 +72,7 @@ def continue_attractors(
     generator = np.random.default_rng(settings.seed)
 
     def seeds(search: Search) -> list[Instant]:
-        size = tuning.symmetry_push * search.resolution
-        return [pushed(attractor.motion.instant(), size, generator) for attractor in search.attractors]
+        return [search.seed_of(attractor, generator) for attractor in search.attractors]
 
     searches = [Search(model, settings, motion, tuning) for model in models]
     for k, search in enumerate(searches):
@@ -84,15 +84,8 @@ def continue_attractors(
     for k in range(1, len(searches)):
         searches[k].labels(seeds(searches[k - 1]), check=False)
 
-    def between(left: Search, right: Search) -> list[Search]:
-        if not _differs(left, right, refine, tuning):
-            return []
-        middle = Search(left.model.at(0.5 * (left.model.a + right.model.a)), settings, motion, tuning)
-        middle.labels([*seeds(left), *seeds(right)], check=False)
-        return [*between(left, middle), middle, *between(middle, right)]
-
     # The sets of attractors are complete now: what follows only reads them.
-    inner = [between(*pair) for pair in pairwise(searches)]
+    inner = [refined(*pair, refine, generator) for pair in pairwise(searches)]
     whole = [search for one, more in zip(searches, [*inner, []], strict=False) for search in (one, *more)]
     grid = [whole.index(search) for search in searches]
     upward, downward = [], []
@@ -113,24 +106,3 @@ def continue_attractors(
         downward,
         [search.drawn_labels(start, discover=False) for search in searches],
     )
-
-
-def _differs(left: Search, right: Search, refine: Refine, tuning: Tuning) -> bool:
-    """Tell whether two neighbours are too far apart in a for the difference of their attractors.
-
-    They differ in kind, symmetry or period of an attractor, or in that it has no counterpart. Where nothing attracts,
-    as at a = 0, nothing is put in: perturbations of sliding grow at a rate ∝ a, so that nothing would settle there.
-    """
-    apart = right.model.a - left.model.a > refine.resolution * (1.0 + 1e-9)
-    if not apart or not left.attractors or not right.attractors:
-        return False
-    before, after = outlines(left.attractors, tuning), outlines(right.attractors, tuning)
-    found = matched(before, after, left.model.scale, tuning)
-    if len(found) < max(len(before), len(after)):
-        return True
-    return any(_features(left.attractors[i]) != _features(right.attractors[k]) for k, i in found.items())
-
-
-def _features(attractor: Attractor) -> tuple[int, int, int]:
-    motion = attractor.motion
-    return motion.kind, attractor.symmetry, motion.section_period

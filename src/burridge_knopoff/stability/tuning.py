@@ -91,10 +91,9 @@ class Tuning:
     # Whether chaos lasts.
 
     #: Trajectories of chaos that are followed, and the time for all of them together, in units of the lifetime beyond
-    #: which it counts as lasting. If none of them leaves it, the lifetime is at least 2.7 times that with 97.5 %
-    #: certainty; with three that leave, 1.1 times.
+    #: which it counts as lasting. If none of them leaves it, its lifetime is beyond that with 97.5 % certainty.
     followed: int = 32
-    exposure: float = 10.0
+    exposure: float = 4.0
     #: Push, in resolutions, that parts trajectories which begin at different times of one and the same.
     parting_push: float = 0.1
 

@@ -16,6 +16,7 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
+from burridge_knopoff.summaries.slots import reached
 
 # The last bit of a product of vectors depends on where in memory they lie.
 DIGITS = 12
@@ -23,10 +24,20 @@ DIGITS = 12
 _POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
 _ANSWER = flag("i1", Answer)
+# ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
+SAME_MEAN = 0.01
 POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
     "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", MotionKind)),
+}
+RUN_VARIABLES = {
+    "settled": Variable(
+        _POINT,
+        "i1",
+        "whether the run ended on the attractor that its initial state reaches",
+        _ANSWER | {"comment": "no: its transient was too short, or its chaos died within the window"},
+    ),
 }
 PAIR_VARIABLES = {
     "difference": Variable(_PAIR, "f8", "<J> of the other law minus <J> of the first law"),
@@ -40,7 +51,7 @@ PAIR_VARIABLES = {
     "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
 }
-VARIABLES = {**POINT_VARIABLES, **PAIR_VARIABLES}
+VARIABLES = {**POINT_VARIABLES, **RUN_VARIABLES, **PAIR_VARIABLES}
 OTHER_LAW = Variable(("other_law",), "O", "friction law that is compared with the first one", coordinate=True)
 _READ = [
     *("end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
@@ -49,11 +60,16 @@ _READ = [
 
 
 def summarize(
-    grid: Grid, lyapunov: xarray.Dataset, synchronization_threshold: float, agreement: Mapping[str, Any]
+    grid: Grid,
+    lyapunov: xarray.Dataset,
+    attractors: xarray.Dataset,
+    synchronization_threshold: float,
+    agreement: Mapping[str, Any],
 ) -> xarray.Dataset:
     """Compare each law with the first one at every grid point.
 
     lyapunov : the summary of that name, for the kinds of motion
+    attractors : the summary of that name, for what the initial states reach
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
     sizes = dict(zip(_POINT, grid.shape, strict=True), other_law=len(grid.laws) - 1)
@@ -70,6 +86,7 @@ def summarize(
                 values["event_order_count"][i, j, k] = count
                 values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
     values["kind"][...] = lyapunov["kind"].sel(law=list(grid.laws)).values
+    _fill_settled(values, attractors, agreement["standard_errors"], synchronization_threshold)
     for i in range(sizes["other_law"]):
         pair = {name: values[name][[0, i + 1]] for name in POINT_VARIABLES}
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
@@ -84,6 +101,23 @@ def summarize(
         {"synchronization_threshold": synchronization_threshold, **agreement},
         module=__name__,
     )
+
+
+def _fill_settled(
+    values: Mapping[str, np.ndarray], attractors: xarray.Dataset, standard_errors: float, threshold: float
+) -> None:
+    """Fill in whether each run has the ⟨J⟩ of the attractor that its initial state reaches."""
+    own = attractors.sel(contact=attractors.attrs["contact_convention"], start=attractors.attrs["start_convention"])
+    for law, initial in np.ndindex(values["settled"].shape[:2]):
+        names = own["initial"].values[initial], own["law"].values[law]
+        known, mean = reached(own, *names, "mean_distance")
+        _, error = reached(own, *names, "mean_distance_error")
+        mine, my_error = (values[name][law, initial] for name in ("mean_distance", "mean_distance_error"))
+        allowed = np.maximum(
+            standard_errors * np.hypot(error, my_error), np.maximum(SAME_MEAN * np.maximum(mean, mine), threshold)
+        )
+        known &= np.isfinite(mine) & (values["kind"][law, initial] != MotionKind.UNDETERMINED)
+        values["settled"][law, initial] = np.where(known, np.abs(mean - mine) <= allowed, Answer.UNDETERMINED)
 
 
 def _upward(run: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -108,7 +142,8 @@ def table(dataset: xarray.Dataset) -> str:
     compared = ("difference", "difference_error", "section_distance", "event_order_time")
     names = ["initial", "a", *(f"mean_distance_{law}" for law in laws)]
     names += [f"{name}{end[other]}" for other in others for name in compared]
-    names += [*(f"kind_{law}" for law in laws), *(f"agrees{end[other]}" for other in others)]
+    names += [*(f"{name}_{law}" for name in ("kind", "settled") for law in laws)]
+    names += [f"agrees{end[other]}" for other in others]
     lines = io.StringIO()
     lines.write(",".join(names) + "\n")
     for initial in dataset["initial"].values:
@@ -119,7 +154,7 @@ def table(dataset: xarray.Dataset) -> str:
                 difference, error, section, order = (row[name].sel(other_law=other).item() for name in compared)
                 cells += [f"{difference:.8e}", f"{error:.2e}", f"{section:.6e}", f"{order:.3f}"]
             cells += [MotionKind(kind).name.lower() for kind in row["kind"].values]
-            cells += [Answer(agrees).name.lower() for agrees in row["agrees"].values]
+            cells += [Answer(answer).name.lower() for name in ("settled", "agrees") for answer in row[name].values]
             lines.write(",".join(cells) + "\n")
     return lines.getvalue()
 
@@ -127,13 +162,20 @@ def table(dataset: xarray.Dataset) -> str:
 def digest(dataset: xarray.Dataset) -> str:
     """Return, in a line for each other law and initial state, the a at which it parts from the first law."""
     first, others = dataset["law"].values[0], dataset["other_law"].values
-    if not len(others):
-        return f"The {first} law is the only one: there is nothing to compare.\n"
-    lines = []
+    lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
     for other in others:
         for initial in dataset["initial"].values:
             found = _parting(dataset.sel(other_law=other, initial=initial))
             lines.append(f"{initial}, {other} law compared with the {first} law: {found}")
+    for law in dataset["law"].values:
+        for initial in dataset["initial"].values:
+            settled = dataset["settled"].sel(law=law, initial=initial)
+            elsewhere = settled["a"].values[settled.values == Answer.NO]
+            if len(elsewhere):
+                where = ", ".join(f"{a:g}" for a in elsewhere)
+                lines.append(
+                    f"{initial}, {law} law: the run is not on the attractor that its state reaches at a = {where}"
+                )
     return "\n".join(lines) + "\n"
 
 

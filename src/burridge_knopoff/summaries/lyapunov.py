@@ -16,6 +16,7 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
     SECTION,
     MotionKind,
+    is_unstable,
     motion_kind,
     section_closed,
     section_period,
@@ -76,6 +77,7 @@ def summarize(
                 kind = MotionKind.PERIODIC
         values["kind"][index] = kind
         values["section_period"][index] = period
+        values["unstable"][index] = is_unstable(period, exponent, error, settings)
         values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, settings))
     return summary(
         "Lyapunov exponents and kinds of motion",

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import xarray
 
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.stability.attractor import Symmetry
@@ -128,3 +129,18 @@ def slot_values(found: Continuation, places: Sequence[int], lasting: float, dime
             values["position"][at] = state.position + found.models[place].sliding_offset
             values["velocity"][at] = state.velocity
     return values
+
+
+def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return (known, values) of a variable on the attractors that an initial state reaches.
+
+    attractors : with a, under one convention
+    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
+    values : shape (a, …)
+    """
+    found = attractors.sel(law=law)
+    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
+        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
+    )
+    slots &= found["branch"].values >= 0
+    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]

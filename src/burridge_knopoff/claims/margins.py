@@ -1,0 +1,103 @@
+"""How far a verdict is from turning: the claim is judged again with other tolerances and on other grids.
+
+A tolerance is a choice. Whoever reads a verdict should see which other sensible choice would change it: a tolerance
+within a factor of two, every second value of the grid of a, or a compared value of a less.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.verdict import NOT_TESTABLE, Verdict
+
+if TYPE_CHECKING:
+    import xarray
+
+# Parameters of judges that are a choice of ours: by this factor others may choose them larger or smaller.
+CHOSEN = ("tolerance", "loose", "near", "relative", "much", "level")
+FACTOR = 2.0
+
+# The same for those whose distance from 1 is the choice.
+SHARES = ("share", "loose_share", "correlation")
+
+# Halvings of the factor at which a verdict turns: it is then known to 2 %.
+HALVINGS = 5
+
+#: Said of a verdict that nothing turns.
+NOTHING = "no tolerance within a factor of two, and no half of the grid"
+
+Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
+
+
+def turns(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: Verdict) -> list[str]:
+    """Return what would turn a verdict, each as «verdict: what it takes»; empty if nothing that is tried does.
+
+    judge : judges the claim from evidence and parameters; verdict : what it gives for these
+    """
+    if verdict.verdict == NOT_TESTABLE:
+        return []
+    return [
+        *_by_tolerance(judge, evidence, parameters, verdict.verdict),
+        *_by_grid(judge, evidence, parameters, verdict.verdict),
+    ]
+
+
+def _by_tolerance(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+    for name in (*CHOSEN, *SHARES):
+        if name not in parameters:
+            continue
+
+        def judged(exponent: float, name: str = name) -> str:
+            return judge(evidence, {**parameters, name: _changed(parameters[name], name, exponent)}).verdict
+
+        for side in (-1.0, 1.0):
+            other = judged(side)
+            if other in (verdict, NOT_TESTABLE):
+                continue
+            same, turned = 0.0, side
+            for _ in range(HALVINGS):
+                middle = 0.5 * (same + turned)
+                found = judged(middle)
+                if found == verdict:
+                    same = middle
+                else:
+                    turned, other = middle, found
+            value = _changed(parameters[name], name, turned)
+            relation = "above" if value > parameters[name] else "below"
+            yield f"{other}: {name} {relation} {_changed(parameters[name], name, same):.3g} ({parameters[name]:g})"
+
+
+def _changed(value: float, name: str, exponent: float) -> float:
+    """Return a tolerance changed by FACTOR to a power."""
+    factor = FACTOR**exponent
+    if name not in SHARES:
+        return value * factor
+    return math.copysign(min(max(1.0 - factor * (1.0 - abs(value)), 0.0), 1.0), value)
+
+
+def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+    """Judge on both halves of the grid, and without each of the values at which solvers are compared."""
+    for first in (0, 1):
+        other = judge(_thinned(evidence, first), parameters).verdict
+        if other not in (verdict, NOT_TESTABLE):
+            yield f"{other}: every second value of a, from the {'first' if first == 0 else 'second'} on"
+    if "relative" in parameters and "solvers" in evidence.summaries:
+        solvers = evidence.summaries["solvers"]
+        for a in solvers["a"].values.tolist():
+            without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
+            other = judge(replace(evidence, summaries=without), parameters).verdict
+            if other not in (verdict, NOT_TESTABLE):
+                yield f"{other}: without a = {a:g}"
+
+
+def _thinned(evidence: Evidence, first: int) -> Evidence:
+    """Return evidence with every second value of a."""
+
+    def thin(dataset: xarray.Dataset) -> xarray.Dataset:
+        return dataset.isel(a=slice(first, None, 2)) if "a" in dataset.dims else dataset
+
+    return replace(evidence, summaries={name: thin(dataset) for name, dataset in evidence.summaries.items()})

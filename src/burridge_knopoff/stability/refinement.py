@@ -1,0 +1,71 @@
+"""Values of a put in between two neighbours at which attractors differ, until each change lies between near values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.stability.attractors import Search
+from burridge_knopoff.stability.matching import Outline, matched, outlines
+from burridge_knopoff.stability.settings import Refine
+
+#: Attractors of one model by a number.
+Outlines = Mapping[int, Outline]
+
+
+def refined(left: Search, right: Search, refine: Refine, generator: np.random.Generator) -> list[Search]:
+    """Return searches at values of a between two neighbours of the grid, ascending; none if nothing changes.
+
+    refine : how near to each other the values have to be at which something differs
+    generator : of the pushes off unstable symmetry
+
+    At a value that is put in only those attractors are followed that change between its neighbours: in kind, symmetry
+    or period, or in that they have no counterpart. Where nothing attracts, as at a = 0, nothing is put in:
+    perturbations of sliding grow at a rate ∝ a, so that nothing would settle there.
+    """
+    if not left.attractors or not right.attractors:
+        return []
+    before, after = outlines(left.attractors, left.tuning), outlines(right.attractors, right.tuning)
+    changed = _changed(before, after, left)
+    still = {k: item for k, item in before.items() if k not in changed[0]}
+
+    def between(first: Model, before: Outlines, last: Model, after: Outlines) -> list[Search]:
+        before, after = _changed(before, after, left)
+        near = last.a - first.a <= refine.resolution * (1.0 + 1e-9)
+        if near or not (before or after):
+            return []
+        # An ensemble shows whether chaos lasts, so that no single trajectory has to.
+        tuning = replace(left.tuning, lasting=1)
+        middle = Search(first.at(0.5 * (first.a + last.a)), left.settings, left.motion_settings, tuning)
+        seeds = [middle.seed_of(item.attractor, generator) for item in (*before.values(), *after.values())]
+        middle.labels(seeds, check=False)
+        here = outlines(middle.attractors, tuning)
+        # What a seed has left for may be an attractor that does not change.
+        numbered = {**still, **{-1 - k: item for k, item in before.items()}}
+        other = {k for k, old in matched(numbered, here, left.model.scale, tuning).items() if old in still}
+        here = {k: item for k, item in here.items() if k not in other}
+        return [
+            *between(first, before, middle.model, here),
+            middle,
+            *between(middle.model, here, last, after),
+        ]
+
+    return between(left.model, before, right.model, after)
+
+
+def _changed(before: Outlines, after: Outlines, search: Search) -> tuple[Outlines, Outlines]:
+    """Return those of both sets that have no counterpart in the other, or one that differs."""
+    found = matched(before, after, search.model.scale, search.tuning)
+    same = {new: old for new, old in found.items() if _features(before[old]) == _features(after[new])}
+    return (
+        {k: item for k, item in before.items() if k not in same.values()},
+        {k: item for k, item in after.items() if k not in same},
+    )
+
+
+def _features(outline: Outline) -> tuple[int, int, int]:
+    attractor = outline.attractor
+    return attractor.motion.kind, attractor.symmetry, attractor.motion.section_period
