@@ -22,7 +22,8 @@ from burridge_knopoff import Chain, Model, find_attractors, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.simulation import simulate
-from burridge_knopoff.stability.basins import label_states, pixel_centres, plane
+from burridge_knopoff.stability.basins import pixel_centres, plane
+from burridge_knopoff.stability.labels import label_states
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 A = 0.08

@@ -43,7 +43,15 @@ SMALL = {
     "window": 200,
     "batches": 2,
     "refine": {"resolution": 1.0},
-    "attractors": {"samples": 2, "fraction_samples": 10, "lifetime": 1000, "transient": 100, "window": 100, "time_limit": 1000, "pushes": 4},
+    "attractors": {
+        "samples": 2,
+        "fraction_samples": 10,
+        "lifetime": 1000,
+        "transient": 100,
+        "window": 100,
+        "time_limit": 1000,
+        "pushes": 4,
+    },
     "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
     "solvers": {"a": [0.2], "step": 0.05},
 }

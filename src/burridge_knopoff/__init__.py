@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from burridge_knopoff.running.simulation import simulate
     from burridge_knopoff.running.trajectory import Trajectory
     from burridge_knopoff.stability.attractors import find_attractors
-    from burridge_knopoff.stability.basins import label_states
+    from burridge_knopoff.stability.labels import label_states
     from burridge_knopoff.stability.chains import transverse_exponent
     from burridge_knopoff.stability.family import synchronized_orbit
     from burridge_knopoff.summaries.basin_map import basin_map
@@ -46,7 +46,7 @@ _HOME = {
     "Trajectory": "running.trajectory",
     "basin_map": "summaries.basin_map",
     "find_attractors": "stability.attractors",
-    "label_states": "stability.basins",
+    "label_states": "stability.labels",
     "law_of": "laws",
     "simulate": "running.simulation",
     "synchronized_orbit": "stability.family",

@@ -11,7 +11,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.basins import label_states
+from burridge_knopoff.stability.labels import label_states
 from burridge_knopoff.stability.sampling import sample_states
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 

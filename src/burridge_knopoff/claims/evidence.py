@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.claims.verdict import NotTestableError, Range
+from burridge_knopoff.claims.verdict import NotTestableError, Range, Verdict
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -31,10 +31,12 @@ class Evidence:
 
     summaries : Datasets by name: mean_distance, lyapunov, …; those that the study does not make are left out
     config : the study's config: laws, chain, v, contact, start, transient, window, initial, and the section `motion`
+    verdicts : on the claims before, by name
     """
 
     summaries: Mapping[str, xarray.Dataset]
     config: Mapping[str, Any]
+    verdicts: Mapping[str, Verdict] = field(default_factory=dict)
 
     def check_setting(self) -> None:
         """Raise NotTestableError if the driver is not as fast as the paper's, or springs or thresholds are others."""

@@ -9,7 +9,18 @@ import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import Measured, NotTestableError, Range, Verdict, at_values
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    NOT_TESTABLE,
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    at_values,
+    worst,
+)
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
@@ -103,6 +114,50 @@ def _outcomes_differ(one: xarray.DataArray, other: xarray.DataArray) -> float | 
     """Return at which share of a one branch is synchrony and the other not; None if both are known nowhere."""
     known = ((one >= 0) & (other >= 0)).values
     return float(((one == 0) != (other == 0)).values[known].mean()) if known.any() else None
+
+
+def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
+    """Judge whether there is one convention of contact and start under which some claims hold together.
+
+    claims : by name; each has to be judged before this one. It holds loosely if some hold loosely under it; a
+    convention under which a claim is not judged is none.
+    """
+    known = {name: evidence.verdicts[name] for name in claims if name in evidence.verdicts}
+    missing = [name for name in claims if name not in known or known[name].verdict == NOT_TESTABLE]
+    if missing:
+        raise NotTestableError(f"{', '.join(missing)} is not judged" if len(missing) == 1 else "some are not judged")
+    conventions = sorted({convention for verdict in known.values() for convention in verdict.conventions})
+    if not conventions:
+        raise NotTestableError("the claims are judged under one convention only")
+    together, measured, texts = {}, [], []
+    for convention in conventions:
+        found = {name: verdict.conventions.get(convention) for name, verdict in known.items()}
+        judged = {name: verdict for name, verdict in found.items() if verdict}
+        measured.append(
+            Measured(
+                f"claims that hold, of {len(judged)} judged: {convention}", sum(v != FAILS for v in judged.values())
+            )
+        )
+        together[convention] = worst(judged.values()) if len(judged) == len(claims) else FAILS
+        against = [name for name, verdict in judged.items() if verdict == FAILS]
+        open_ones = [name for name in claims if name not in judged]
+        texts.append(
+            f"{convention}: "
+            + "; ".join(
+                [
+                    *([f"against it {', '.join(against)}"] if against else ["nothing is against it"]),
+                    *([f"not judged {', '.join(open_ones)}"] if open_ones else []),
+                ]
+            )
+        )
+    best = min(together.values(), key=(HOLDS, LOOSELY, FAILS).index)
+    under = [convention for convention, verdict in together.items() if verdict == best]
+    reason = (
+        f"Under {' and '.join(under)} all of them hold{' loosely' if best == LOOSELY else ''}."
+        if best != FAILS
+        else f"Under none of {len(conventions)} conventions do all {len(claims)} statements hold."
+    )
+    return Verdict(best, reason, measured, " | ".join(texts))
 
 
 def phases_decide(evidence: Evidence) -> Verdict:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
-from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -114,37 +114,37 @@ def onset_of_chaos(
 ) -> Verdict:
     """Judge the a from which on there is a chaotic attractor, under both laws.
 
-    It lies between the least a with one and the value of the grid up to which all attractors are known to be regular.
-    Beside it stand the least a with a chaotic run, whose chaos may be a transient, and a_c, where synchrony is lost.
+    It lies between the least a with one and the last before it, at all values of a at which attractors were looked for:
+    those of the grid and those put in where something changes. Chaos of which an ensemble does not show that it lasts
+    is none. Beside it stand the windows of chaos, the least a with a chaotic run, whose chaos may be a transient, and
+    a_c, where synchrony is lost.
     """
     evidence.check_blocks()
-    attractors = evidence.choose(evidence.summary("attractors"), Range(above=0.0))
-    grid = attractors["a"].values
+    refined = evidence.summary("refined")
     verdicts, measured, texts, windows = [], [], [], []
     for law in PAPER_LAWS:
-        there = attractors["branch"].sel(law=law).values >= 0
-        kind = attractors["kind"].sel(law=law).values
-        chaotic = (there & (kind == MotionKind.CHAOTIC)).any(axis=1)
-        regular = there.any(axis=1) & ~(there & np.isin(kind, (MotionKind.CHAOTIC, MotionKind.UNDETERMINED))).any(
-            axis=1
-        )
-        known = int(np.argmin(regular)) if not regular.all() else len(grid)
-        low = grid[known - 1] if known else 0.0
-        high = grid[np.argmax(chaotic)] if chaotic.any() else np.inf
+        found = refined.sel(law=law)
+        grid = found["a"].values
+        there = (found["branch"].values >= 0) & (grid > 0.0)[:, None]
+        if there.any(axis=1).sum() < LEAST_VALUES:
+            raise NotTestableError(f"attractors are known at fewer than {LEAST_VALUES} values of a under the {law} law")
+        chaotic = (there & (found["kind"].values == MotionKind.CHAOTIC)).any(axis=1)
+        first = int(np.argmax(chaotic)) if chaotic.any() else len(grid)
+        low, high = (grid[first - 1], grid[first]) if chaotic.any() and first else (0.0, np.inf)
         verdicts.append(by_interval(low, high, claimed, tolerance, loose))
         if np.isfinite(high):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
             measured.append(Measured(f"least a with a chaotic attractor, {law}", middle, half))
             windows.append(f"chaotic attractors {at_values(grid, chaotic)} ({law})")
-            texts.append(f"at a = {high:g}, and none up to {low:g} ({law})")
+            texts.append(f"at a = {high:.5g}, and not at {low:.5g} ({law})")
         else:
-            texts.append(f"nowhere up to {grid[-1]:g} ({law})")
+            texts.append(f"nowhere up to {np.nanmax(grid):g} ({law})")
     for state in initial:
         for law in PAPER_LAWS:
             values, kind = _kinds(evidence, state, law, Range())
             if (kind == MotionKind.CHAOTIC).any():
-                first = values[np.argmax(kind == MotionKind.CHAOTIC)]
-                measured.append(Measured(f"least a with a chaotic run, {law}, {state}", float(first)))
+                first_run = values[np.argmax(kind == MotionKind.CHAOTIC)]
+                measured.append(Measured(f"least a with a chaotic run, {law}, {state}", float(first_run)))
     for law in PAPER_LAWS:
         critical, error = evidence.critical_a(law)
         if np.isfinite(critical):
@@ -195,7 +195,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
         if run.sizes.get("exponent", 0) > 1:
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
-        texts.append(f"{MotionKind(kind).name.lower()}{f' with {period} section points' if period else ''} ({law})")
+        texts.append(f"{MotionKind(kind).words}{f' with {period} section points' if period else ''} ({law})")
         others = np.isin(runs["kind"].sel(law=law).values, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
         if others.any():
             elsewhere.append(f"aperiodic {at_values(runs['a'].values, others)} ({law})")
@@ -211,7 +211,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
         verdict = worst(
             HOLDS if kind in (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC) else FAILS for kind in found.values()
         )
-        return verdict, ", ".join(f"{MotionKind(kind).name.lower()} {law}" for law, kind in found.items())
+        return verdict, ", ".join(f"{MotionKind(kind).words} {law}" for law, kind in found.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {' and '.join(texts)}."
     return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, labels)

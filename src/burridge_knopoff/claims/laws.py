@@ -129,6 +129,41 @@ def solutions_agree(
     return Verdict(by_share(share, loose_share), reason, measured, "; ".join(apart))
 
 
+def linearization_justified(
+    evidence: Evidence, initial: Sequence[str], law: str, a: Range, tolerance: float, loose: float
+) -> Verdict:
+    """Judge by how much the laws of friction differ at the fastest slips of the runs, as a share of static friction.
+
+    law : the linearized one, whose friction is 1 − aU' and tells the speed; tolerance, loose : shares allowed
+    The laws differ by (aU')²/(1 + aU'): what counts is aU', the slip speeds being some multiple of the driver's, so av.
+    """
+    fastest, where = 0.0, 0.0
+    speeds: list[float] = []
+    for state in initial:
+        runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
+        product = 1.0 - runs["least_friction"].values
+        known = np.isfinite(product)
+        if not known.any():
+            raise NotTestableError(f"no run from {state} completed with {a}")
+        speeds += (product[known] / (runs["a"].values[known] * evidence.config["v"])).tolist()
+        if np.nanmax(product) > fastest:
+            fastest, where = float(np.nanmax(product)), float(runs["a"].values[np.nanargmax(product)])
+    difference = fastest**2 / (1.0 + fastest)
+    measured = [
+        Measured("largest difference of the laws on a slipping block", difference),
+        Measured("largest aU'", fastest),
+        Measured("fastest slip over v, least", min(speeds)),
+        Measured("fastest slip over v, most", max(speeds)),
+    ]
+    verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
+    reason = (
+        f"With {a} the laws differ by at most {difference:.3f} of the static friction on a slipping block (at a = "
+        f"{where:g}). What counts is not a but aU': slips are {min(speeds):.0f} to {max(speeds):.0f} times as fast as "
+        "the driver, so av."
+    )
+    return Verdict(verdict, reason, measured)
+
+
 def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
     """Judge whether the map needs far fewer steps in a unit of time than stepping at a fixed step.
 

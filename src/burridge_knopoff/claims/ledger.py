@@ -8,7 +8,8 @@ import io
 import json
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -16,6 +17,7 @@ import numpy as np
 
 from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.margins import NOTHING, turns
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
 from burridge_knopoff.model import ranges
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys
@@ -79,6 +81,7 @@ _BY_NAME: Mapping[str, ranges.Range] = {
     **dict.fromkeys(("loose", "much"), Number(0.0, ranges.HUGE, above=True)),
     **dict.fromkeys(("share", "loose_share"), _SHARE),
     "kinds": Several(OneOf(("synchronized", "periodic", "quasiperiodic", "chaotic")), 1),
+    "claims": Several(_NAME, 1, distinct=True),
     "coefficients": Several(_NUMBER, 3, 3),
 }
 _BY_TYPE: Mapping[Any, ranges.Range] = {
@@ -177,12 +180,16 @@ def _judges(topic: str) -> dict[str, Callable[..., Verdict]]:
     }
 
 
-def judge(claim: Claim, evidence: Evidence) -> Verdict:
-    """Return the verdict of one claim; «not testable» with the reason where the study's data cannot judge it."""
+def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None = None) -> Verdict:
+    """Return the verdict of one claim; «not testable» with the reason where the study's data cannot judge it.
+
+    parameters : others than its own
+    """
+    parameters = claim.parameters if parameters is None else parameters
     try:
         evidence.check_setting()
-        evidence.check_laws(np.atleast_1d(claim.parameters.get("laws", claim.parameters.get("law", PAPER_LAWS))))
-        return claim.judge(evidence, **claim.parameters)
+        evidence.check_laws(np.atleast_1d(parameters.get("laws", parameters.get("law", PAPER_LAWS))))
+        return claim.judge(evidence, **parameters)
     except NotTestableError as error:
         return Verdict(NOT_TESTABLE, f"Not testable here: {error}.")
 
@@ -192,12 +199,18 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
 
     figures : names of the figures of the study; a claim whose figure is not among them has none
     """
-    judged = [(claim, judge(claim, evidence)) for claim in claims]
+    judged: dict[str, tuple[Claim, Verdict]] = {}
+    for claim in claims:
+        # A claim on other claims finds their verdicts in the evidence.
+        known = replace(evidence, verdicts={name: verdict for name, (_, verdict) in judged.items()})
+        verdict = judge(claim, known)
+        turning = turns(partial(judge, claim), known, claim.parameters, verdict)
+        judged[claim.name] = claim, replace(verdict, turns=turning)
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
         **provenance(__name__),
-        "counts": {name: sum(verdict.verdict == name for _, verdict in judged) for name in VERDICTS},
+        "counts": {name: sum(verdict.verdict == name for _, verdict in judged.values()) for name in VERDICTS},
         "claims": [
             {
                 "name": claim.name,
@@ -212,10 +225,11 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                     for item in verdict.measured
                 ],
                 "changes": verdict.changes,
+                "turns": list(verdict.turns),
                 "conventions": dict(verdict.conventions),
                 "figure": claim.figure if claim.figure in figures else "",
             }
-            for claim, verdict in judged
+            for claim, verdict in judged.values()
         ],
     }
 
@@ -235,14 +249,14 @@ def as_csv(content: Mapping[str, Any]) -> str:
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     texts = ("name", "topic", "statement", "place", "verdict", "own")
-    writer.writerow(["claim", *texts[1:], "quantity", "value", "error", "reason", "changes", "figure"])
+    writer.writerow(["claim", *texts[1:], "quantity", "value", "error", "reason", "changes", "turns", "figure"])
     for claim in content["claims"]:
         for item in claim["measured"] or [{"quantity": "", "value": None, "error": None}]:
             writer.writerow(
                 [
                     *(claim[key] for key in texts),
                     *(item["quantity"], _text(item["value"]), _text(item["error"])),
-                    *(claim[key] for key in ("reason", "changes", "figure")),
+                    *(claim["reason"], claim["changes"], "; ".join(claim["turns"]), claim["figure"]),
                 ]
             )
     return lines.getvalue()
@@ -264,14 +278,15 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
             "",
             f"### {topic.capitalize()}",
             "",
-            "| claim | verdict | why | where it changes | figure |",
-            "|---|---|---|---|---|",
+            "| claim | verdict | why | where it changes | what would turn it | figure |",
+            "|---|---|---|---|---|---|",
         ]
         for claim in claims:
             figure = f"[{claim['figure']}]({figures}/{claim['figure']}.png)" if claim["figure"] else ""
             own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
             judged = f"**{claim['verdict']}**{own}"
-            cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"]]
+            turning = "; ".join(claim["turns"]) or (NOTHING if claim["verdict"] != NOT_TESTABLE else "")
+            cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"], turning]
             lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
     return "\n".join(lines) + "\n"
 

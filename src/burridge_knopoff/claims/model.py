@@ -21,6 +21,7 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -151,3 +152,52 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
         f"With {a} a position has {max(counts)} exponentials at most, in {max(pairs)} complex pairs, against {claimed}."
     )
     return Verdict(verdict, reason, measured)
+
+
+def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed: int, a: Range) -> Verdict:
+    """Judge the dimension of the map from event to event: it holds loosely if some of its directions vanish.
+
+    Positions relative to the driver and velocities are two numbers a block. At an event a velocity or a force is at its
+    threshold, and each Lyapunov exponent of −∞ is a direction that sticks have removed for good.
+    """
+    evidence.check_blocks()
+    lost = np.concatenate(
+        [
+            finite(evidence.choose(evidence.of_state("lyapunov", name), a)["lyapunov_infinite_count"].sel(law=law))
+            for name in initial
+        ]
+    )
+    if not len(lost):
+        raise NotTestableError(f"no Lyapunov exponents are known with {a}")
+    numbers = 2 * len(evidence.summary("equilibrium")["block"])
+    left = numbers - 1 - lost
+    measured = [
+        Measured("numbers in a state", float(numbers)),
+        Measured("exponents of −∞, least", float(lost.min())),
+        Measured("exponents of −∞, most", float(lost.max())),
+    ]
+    verdict = FAILS if numbers != claimed else HOLDS if left.max() == claimed else LOOSELY
+    reason = (
+        f"A state has {numbers} numbers; an event fixes one of them, and sticks remove {lost.min():.0f} to "
+        f"{lost.max():.0f} directions more ({law}): on its attractors the map acts in {left.min():.0f} to "
+        f"{left.max():.0f} dimensions."
+    )
+    return Verdict(verdict, reason, measured)
+
+
+def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdict:
+    """Judge whether uniform sliding is stable where friction grows with velocity, with the slope of a law reversed.
+
+    By the eigenvalues of the Jacobian of the chain: reversed friction is strengthened, not weakened, by velocity.
+    """
+    evidence.check_blocks()
+    values = evidence.choose(evidence.summary("equilibrium"), a)["a"].values
+    chain = Chain(3, **evidence.config["chain"])
+    growth = []
+    for value in values:
+        slope = -float(law_of(law, value).slope(evidence.config["v"]))
+        jacobian = np.block([[np.zeros((3, 3)), np.eye(3)], [-chain.stiffness, -slope * np.eye(3)]])
+        growth.append(float(np.linalg.eigvals(jacobian).real.max()))
+    largest = round(max(growth), 10)
+    reason = f"With {a} and the slope of the {law} law reversed the largest real part is at most {largest:.3g}."
+    return Verdict(HOLDS if largest < 0.0 else FAILS, reason, [Measured("largest real part", largest)])

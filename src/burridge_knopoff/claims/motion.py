@@ -112,6 +112,31 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
     return under_conventions(evidence, verdict, reason, measured, exceptions, labels)
 
 
+def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: float) -> Verdict:
+    """Judge whether end blocks that move in antiphase in a run do so for good: the run is on its attractor.
+
+    By the correlation of their velocities in the window, which is negative, and by `settled` of agreement.nc: a
+    transient would be followed by another motion.
+    """
+    runs = evidence.choose(evidence.of_state("stick_slip", initial), a)
+    ends = evidence.choose(evidence.of_state("agreement", initial), a)
+    shares, measured, passing = {}, [], []
+    for law in PAPER_LAWS:
+        opposed = runs["velocity_correlation"].sel(law=law).values < 0.0
+        settled = ends["settled"].sel(law=law).values
+        known = opposed & (settled >= 0)
+        if not known.any():
+            raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
+        shares[law] = float((settled == 1)[known].mean())
+        measured.append(Measured(f"share of the runs in antiphase that are on their attractor, {law}", shares[law]))
+        measured.append(Measured(f"values of a with a run in antiphase, {law}", float(known.sum())))
+        if shares[law] < 1.0:
+            passing.append(f"it passes {at_values(runs['a'].values, known & (settled == 0))} ({law})")
+    verdict, text = judge_shares(shares, loose_share)
+    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase these stay so: {text}."
+    return Verdict(verdict, reason, measured, "; ".join(passing))
+
+
 def half_frequency(
     evidence: Evidence, initial: str, law: str, at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:

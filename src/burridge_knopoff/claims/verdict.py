@@ -53,6 +53,7 @@ class Verdict:
     changes : ranges of a, or conventions, for which the verdict changes; empty where there is none
     conventions : verdict under each convention «contact, start», where the claim can be judged under each
     own : verdict under the study's own convention
+    turns : other choices of judgement that would turn it, see `margins`
     """
 
     verdict: str
@@ -61,6 +62,7 @@ class Verdict:
     changes: str = ""
     conventions: Mapping[str, str] = field(default_factory=dict)
     own: str = ""
+    turns: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
 from burridge_knopoff.figures.style import label_panels, new_figure, page_width, styled
 from burridge_knopoff.stability.sampling import fraction_interval
 
@@ -49,8 +49,9 @@ def draw(attractors: xarray.Dataset) -> Figure:
 
 def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     a = attractors["a"].values
-    samples = int(attractors.attrs["samples"])
+    samples = int(attractors.attrs["fraction_samples"])
     branch, count = attractors["branch"].values, attractors["basin_count"].values
+    names = branch_names(attractors)
     shown = [[number] for number, color in sorted(colors.items()) if color != OTHER_COLOR]
     rest = [number for number, color in colors.items() if color == OTHER_COLOR]
     for numbers in (*shown, rest):
@@ -59,7 +60,7 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         if not there.any():
             continue
         color = colors[numbers[0]]
-        name = branch_name(numbers[0]) if color != OTHER_COLOR else "other branches"
+        name = names[numbers[0]] if color != OTHER_COLOR else "other branches"
         hits = np.where(members, count, 0).sum(axis=1)
         interval = np.array([fraction_interval(int(hit), samples) for hit in hits])
         # Gaps where the branch does not exist.

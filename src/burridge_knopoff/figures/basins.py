@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
+from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
 from burridge_knopoff.figures.style import PAGE, label_panels, styled
 
 TITLE = "Basins of attraction"
@@ -37,6 +37,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
     figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     colors = branch_colors(attractors)
+    names = branch_names(attractors)
     extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
     laws = basins["law"].attrs["flag_meanings"].split()
     titles = []
@@ -55,7 +56,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
         for branch, side in present:
             shade = to_rgb("black") if branch < 0 else side_color(colors[branch], side)
             picture[(one["branch"].values == branch) & (one["side"].values == side)] = shade
-            name = "undetermined" if branch < 0 else branch_name(branch) + {1: " (+)", -1: " (−)", 0: ""}[side]
+            name = "undetermined" if branch < 0 else names[branch] + {1: " (+)", -1: " (−)", 0: ""}[side]
             shown[branch, -side] = Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name)
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
         panel.set_box_aspect(1.0)

@@ -21,7 +21,7 @@ is undetermined.
 """
 
 #: A colour for each kind of motion.
-KIND_COLORS = {-1: "#FFFFFF", 0: "#0072B2", 1: "#56B4E9", 2: "#E69F00", 3: "#D55E00"}
+KIND_COLORS = {-1: "#FFFFFF", 0: "#0072B2", 1: "#56B4E9", 2: "#E69F00", 3: "#D55E00", 4: "#CC79A7"}
 
 
 @styled
@@ -68,9 +68,7 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     panels[0].legend(loc="upper left", bbox_to_anchor=(0.0, 0.93))
     shown = sorted({int(kind) for kind in np.unique(lyapunov["kind"].values)})
     figure.legend(
-        handles=[
-            Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).name.lower()) for kind in shown
-        ],
+        handles=[Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown],
         loc="outside lower center",
         ncols=len(shown),
     )

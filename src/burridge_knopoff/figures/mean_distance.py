@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
 from burridge_knopoff.figures.style import cells, label_panels, page_width, styled
 
 TITLE = "⟨J⟩ against a"
@@ -49,7 +49,7 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     panels[0, 0].set_ylim(bottom=-0.01)
     panels[0, 0].set_xlim(*cells(attractors["a"].values)[[0, -1]])
-    _legend(figure, mean_distance, colors)
+    _legend(figure, mean_distance, colors, branch_names(attractors))
     label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)])
     return figure
 
@@ -102,7 +102,7 @@ def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]
     panel.set_ylim(len(names), 0)
 
 
-def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str]) -> None:
+def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
     handles = [
         Line2D(
             [],
@@ -118,7 +118,7 @@ def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str]) -> Non
     ]
     shown: dict[str, str] = {}
     for branch, color in sorted(colors.items()):
-        shown.setdefault("other branches" if color == OTHER_COLOR else branch_name(branch), color)
+        shown.setdefault("other branches" if color == OTHER_COLOR else names[branch], color)
     # The colour of short branches comes last.
     shown = dict(sorted(shown.items(), key=lambda item: item[1] == OTHER_COLOR))
     handles += [

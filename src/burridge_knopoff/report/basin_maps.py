@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 from matplotlib.colors import to_hex
 
-from burridge_knopoff.figures.branches import branch_colors, branch_name, side_color
+from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
 from burridge_knopoff.report.numbers import rounded
 
 UNDETERMINED_COLOR = "#000000"
@@ -28,16 +28,17 @@ def basin_maps(
     marked : U_1(0) and U_N(0) of the initial states of the study in the plane
     """
     colors = branch_colors(attractors)
+    names = branch_names(attractors)
     laws = basins["law"].attrs["flag_meanings"].split()
     return {
         "first": rounded(basins["first_position"].values),
         "last": rounded(basins["last_position"].values),
         "marked": [{"name": name, "first": x, "last": y} for name, (x, y) in marked.items()],
-        "maps": [_map(basins.isel(map=number), laws, colors) for number in range(basins.sizes["map"])],
+        "maps": [_map(basins.isel(map=number), laws, colors, names) for number in range(basins.sizes["map"])],
     }
 
 
-def _map(one: xarray.Dataset, laws: list[str], colors: dict[int, str]) -> dict[str, Any]:
+def _map(one: xarray.Dataset, laws: list[str], colors: dict[int, str], names: dict[int, str]) -> dict[str, Any]:
     branch, side = one["branch"].values.astype(int), one["side"].values.astype(int)
     # Branches in order, the side + before −, undetermined last.
     present = sorted(
@@ -49,7 +50,7 @@ def _map(one: xarray.Dataset, laws: list[str], colors: dict[int, str]) -> dict[s
     for number, (b, s) in enumerate(present):
         members = (branch == b) & (side == s)
         label[members] = number
-        name = "undetermined" if b < 0 else branch_name(b) + {1: " (+)", -1: " (−)", 0: ""}[s]
+        name = "undetermined" if b < 0 else names[b] + {1: " (+)", -1: " (−)", 0: ""}[s]
         shade = UNDETERMINED_COLOR if b < 0 else to_hex(side_color(colors[b], s))
         classes.append({"name": name, "color": shade, "percent": rounded(100.0 * members.mean())})
     time = np.nan_to_num(np.clip(np.round(one["decision_time"].values), 1, LARGEST_TIME), nan=0.0)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_name
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
 from burridge_knopoff.figures.lyapunov import KIND_COLORS
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
@@ -17,20 +17,19 @@ from burridge_knopoff.summaries.orbits import OrbitStatus
 
 def kinds() -> list[dict[str, Any]]:
     """Return number, name and colour of each kind of motion."""
-    return [
-        {"number": kind, "name": MotionKind(kind).name.lower(), "color": color} for kind, color in KIND_COLORS.items()
-    ]
+    return [{"number": kind, "name": MotionKind(kind).words, "color": color} for kind, color in KIND_COLORS.items()]
 
 
 def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
     """Return number, name and colour of each branch, those of a short range last; they share a colour and a name."""
     colors = branch_colors(attractors)
+    names = branch_names(attractors)
     ordered = sorted(colors, key=lambda number: (colors[number] == OTHER_COLOR, number))
     return [
         {
             "number": number,
-            "name": branch_name(number),
-            "group": "other branches" if colors[number] == OTHER_COLOR else branch_name(number),
+            "name": names[number],
+            "group": "other branches" if colors[number] == OTHER_COLOR else names[number],
             "color": colors[number],
         }
         for number in ordered
@@ -54,7 +53,7 @@ def basin_fractions(attractors: xarray.Dataset) -> list[list[dict[str, Any]]]:
 
     Both sides of a branch count together; None where it does not exist.
     """
-    samples = int(attractors.attrs["samples"])
+    samples = int(attractors.attrs["fraction_samples"])
     groups: dict[str, list[dict[str, Any]]] = {}
     for item in branches(attractors):
         groups.setdefault(item["group"], []).append(item)

@@ -75,7 +75,7 @@ def embedded_runs(
         "configfile": shlex.join(["--configfile", commands.configfile]) if commands.configfile else "",
         "results": f"results/{study.name}",
         "statuses": STATUSES,
-        "kinds": {str(int(kind)): kind.name.lower() for kind in MotionKind},
+        "kinds": {str(int(kind)): kind.words for kind in MotionKind},
     }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import branch_name
+from burridge_knopoff.figures.branches import branch_names
 from burridge_knopoff.report.numbers import text, with_error
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.orbits import Bifurcation, BifurcationSide, OrbitStatus
@@ -17,8 +17,9 @@ from burridge_knopoff.summaries.orbits import Bifurcation, BifurcationSide, Orbi
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
     """Return a row for each law and branch: where it exists, ⟨J⟩, kinds of motion, and its largest basin fraction."""
     rows = []
+    names = branch_names(attractors)
     a = attractors["a"].values
-    samples = int(attractors.attrs["samples"])
+    samples = int(attractors.attrs["fraction_samples"])
     for law in attractors["law"].values:
         one = attractors.sel(law=law)
         branch = one["branch"].values
@@ -31,13 +32,11 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
             rows.append(
                 {
                     "law": str(law),
-                    "branch": branch_name(number),
+                    "branch": names[number],
                     "range": f"{text(a[there[0]])} to {text(a[there[-1]])}",
                     "values": f"{len(there)} of {len(a)}",
                     "distance": f"{distance.min():.4f} to {distance.max():.4f}",
-                    "kinds": ", ".join(
-                        MotionKind(kind).name.lower() for kind in np.unique(one["kind"].values[members])
-                    ),
+                    "kinds": ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[members])),
                     "fraction": f"{fraction[largest]:.3f} (a = {text(a[largest])})" if samples else "–",
                 }
             )

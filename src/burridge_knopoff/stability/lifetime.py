@@ -84,8 +84,9 @@ def _lifetime(
     size = tuning.parting_push * settings.resolution * model.scale
     chosen = generator.integers(len(returns), size=tuning.followed)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
-    states = [np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity", "stuck")]
-    moved = new_ensemble(model).run(*states[:2], states[2].astype(np.intc), [time])
+    position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
+    stuck = np.array([start.stuck for start in starts], dtype=np.intc)
+    moved = new_ensemble(model).run(position, velocity, stuck, [time])
     end = np.concatenate([moved["position"][:, 0], moved["velocity"][:, 0]], axis=1)
     reached, _ = label(model, attractors, [instant_of(state) for state in end], settings.time_limit)
     left = np.flatnonzero(~np.isin(reached, (index, attractor.partner)))

@@ -109,7 +109,7 @@ def _fill_settled(
     """Fill in whether each run has the ⟨J⟩ of the attractor that its initial state reaches."""
     own = attractors.sel(contact=attractors.attrs["contact_convention"], start=attractors.attrs["start_convention"])
     for law, initial in np.ndindex(values["settled"].shape[:2]):
-        names = own["initial"].values[initial], own["law"].values[law]
+        names = str(own["initial"].values[initial]), str(own["law"].values[law])
         known, mean = reached(own, *names, "mean_distance")
         _, error = reached(own, *names, "mean_distance_error")
         mine, my_error = (values[name][law, initial] for name in ("mean_distance", "mean_distance_error"))
@@ -153,7 +153,7 @@ def table(dataset: xarray.Dataset) -> str:
             for other in others:
                 difference, error, section, order = (row[name].sel(other_law=other).item() for name in compared)
                 cells += [f"{difference:.8e}", f"{error:.2e}", f"{section:.6e}", f"{order:.3f}"]
-            cells += [MotionKind(kind).name.lower() for kind in row["kind"].values]
+            cells += [MotionKind(kind).words for kind in row["kind"].values]
             cells += [Answer(answer).name.lower() for name in ("settled", "agrees") for answer in row[name].values]
             lines.write(",".join(cells) + "\n")
     return lines.getvalue()

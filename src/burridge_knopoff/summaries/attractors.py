@@ -25,7 +25,9 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 from burridge_knopoff.summaries.slots import (
+    NAMES,
     NOTHING,
+    branch_names,
     branch_order,
     empty,
     missing,
@@ -124,7 +126,8 @@ def merge(
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
     coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
-    whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()}
+    whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()} | NAMES
+    values.update(branch_names(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))
     return summary(title, whole, values, coordinates, attributes, module=module)
 
 
@@ -142,8 +145,8 @@ def branch_numbers(
     first = _states(parts[0], models[0])
     for part, model in zip(parts[1:], models[1:], strict=True):
         grid = part["a"].values.tolist()
-        at_all = [[item.at(a) for a in grid] for item in (models[0], model)]
-        renamed = joined(*at_all, first, _states(part, model), settings)
+        firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
+        renamed = joined(firsts, seconds, first, _states(part, model), settings)
         following = max((0, *(n for known in numbers for n in known.values())))
         for number in sorted(int(n) for n in np.unique(part["branch"].values) if n >= 0):
             if number not in renamed:
@@ -171,6 +174,7 @@ def digest(dataset: xarray.Dataset) -> str:
     """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
     lines = []
     a = dataset["a"].values
+    names = dict(zip(dataset["branch_number"].values.tolist(), dataset["branch_name"].values, strict=True))
     for law in dataset["law"].values:
         one = dataset.sel(law=law)
         branch = one["branch"].values
@@ -179,15 +183,12 @@ def digest(dataset: xarray.Dataset) -> str:
             where = a[slots.any(axis=1)]
             mean = one["mean_distance"].values[slots]
             kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
-            sticks = (one["stop_rate"].values[slots] > 0.0).any(axis=0)
-            never = [str(block) for block, sticking in zip(one["block"].values, sticks, strict=True) if not sticking]
             share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)
-            name = "synchronized" if number == 0 else f"branch {number}"
-            note = f"; block {', '.join(never)} never sticks" if never else ""
+            name = names[int(number)]
             lines.append(
                 f"{law}, {name}: at {len(where)} of {len(a)} values of a, {where[0]:g} to {where[-1]:g}; "
                 f"<J> {mean.min():.4f} to "
-                f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g}){note}"
+                f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g})"
             )
         undetermined = one["undetermined_count"].values
         empty = a[branch.max(axis=1) < 0]

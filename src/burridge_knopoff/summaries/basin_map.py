@@ -51,6 +51,7 @@ def basin_map(
     exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is not allowed, and
     where no attractor is found.
     """
+    from burridge_knopoff.stability.continuation import continue_attractors
     from burridge_knopoff.summaries import attractors as attractor_summary
     from burridge_knopoff.summaries import basins as basin_summary
 
@@ -60,7 +61,7 @@ def basin_map(
     for key in search:
         if key not in known:
             raise ValueError(f"{key}: not allowed as a setting of the search: {' | '.join(sorted(known))}")
-    settings = SearchSettings(samples=samples, seed=seed, **search)
+    settings = SearchSettings(samples=samples, seed=seed, **{"fraction_samples": samples, **search})
     plane = BasinSettings(
         pixels=pixels,
         initial=state,
@@ -71,7 +72,9 @@ def basin_map(
         threads=threads,
     )
     options = settings, motion, start
-    attractors = attractor_summary.merge([attractor_summary.one_law(model, [model.a], [state], *options)])
+    found = continue_attractors([model], settings, motion, starts=[state], start=start)
+    parts = [attractor_summary.one_law(found, [state], *options)]
+    attractors = attractor_summary.merge(parts, attractor_summary.branch_numbers(parts, [model], settings))
     if not (attractors["branch"] >= 0).any():
         raise ValueError(
             f"a: {model.a!r} is not allowed: no attractor was found, from {samples} sampled states (none is at 0)"

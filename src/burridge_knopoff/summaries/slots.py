@@ -50,7 +50,7 @@ def slot_variables(place: str) -> dict[str, Variable]:
             flag("i1", {-1: "none", 0: "no", 1: "yes"}),
         ),
     }
-    along = {
+    along: dict[str, tuple[str, str, dict[str, Any]]] = {
         "stop_rate": ("block", "stops of a block in a unit of time", {}),
         "lyapunov_exponent": ("exponent", "Lyapunov exponents, the largest first", {}),
         "position": (
@@ -62,7 +62,7 @@ def slot_variables(place: str) -> dict[str, Variable]:
     }
     return {
         **{name: Variable(slot, *item) for name, item in described.items()},
-        **{name: Variable((*slot, last), "f8", *item) for name, (last, *item) in along.items()},
+        **{name: Variable((*slot, last), "f8", text, more) for name, (last, text, more) in along.items()},
     }
 
 
@@ -144,3 +144,35 @@ def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tu
     )
     slots &= found["branch"].values >= 0
     return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]
+
+
+#: What a branch is called, over all numbers of branches of a file.
+NAMES = {
+    "branch_number": Variable(("number",), "i2", "numbers of the branches"),
+    "branch_name": Variable(
+        ("number",), "O", "what the branch of that number is called, by its symmetry and its sticks"
+    ),
+}
+
+
+def branch_names(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the values of NAMES.
+
+    branch, symmetry : of slots, of one shape; stop_rate : of the same shape and (block,)
+
+    Synchronized; alternating, where the motion is its own mirror image, half a period later if it has one, so that the
+    end blocks take turns; mirror pair, where one of two mirror images has one end block ahead; or none of these in a
+    chain that is not its own mirror image. Blocks that hardly ever stick are named: at no a, or at some.
+    """
+    numbers = np.unique(branch[branch >= 0])
+    names = []
+    for number in numbers.tolist():
+        slots = branch == number
+        kinds, counts = np.unique(symmetry[slots], return_counts=True)
+        name = {Symmetry.SYNCHRONIZED: "synchronized", Symmetry.SYMMETRIC: "alternating"}.get(
+            Symmetry(kinds[counts.argmax()]), "mirror pair" if (slots.sum(axis=-1) > 1).any() else "motion"
+        )
+        never = np.flatnonzero(~(stop_rate[slots] > 0.0).any(axis=0)) + 1
+        sliding = f", block {', '.join(map(str, never))} never sticks" if len(never) else ""
+        names.append(f"{name}{sliding}{f' ({number})' if number else ''}")
+    return {"branch_number": numbers, "branch_name": np.array(names, dtype=object)}

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import xarray
+from scipy.interpolate import CubicHermiteSpline
 from scipy.signal import find_peaks, periodogram
 
 from burridge_knopoff.dataset.summary import axes, summary
@@ -20,6 +22,9 @@ PADDING = 8
 
 # A velocity that varies by no more than this share of its modulus is constant: the rest is rounding.
 ROUNDING = 1e-10
+
+# Time between two samples of the velocities that are interpolated between events.
+INTERVAL = 0.1
 
 _POINT = ("law", "initial", "a")
 _BLOCK = (*_POINT, "block")
@@ -36,19 +41,19 @@ VARIABLES = {
     "velocity_frequency": Variable(
         _BLOCK,
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the kept trajectory",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the events with states",
         {"ancillary_variables": "velocity_frequency_error"},
     ),
     "velocity_frequency_error": Variable(
-        _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a kept trajectory of length T"
+        _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a length T"
     ),
     "velocity_correlation": Variable(
-        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the kept trajectory"
+        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the events with states"
     ),
     "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
 }
 BLOCK = Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True)
-_READ = ["status", "velocity", "trajectory_time", *EVENTS]
+_READ = ["status", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
 
 
 def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarray.Dataset:
@@ -64,7 +69,8 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
         if read["status"] != Status.COMPLETED:
             continue
         time, block, kind = all_events(read)
-        velocity, duration = read["velocity"], np.ptp(read["trajectory_time"])
+        velocity = read["velocity"]
+        record, duration = long_velocity(read, grid.models["v"])
         for n in range(blocks):
             own = block == n + 1
             stops = time[own & (kind == STOP) & (time >= transient)]
@@ -74,10 +80,10 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
             values["stick_fraction"][index][n] = stick_fraction(
                 time[own], kind[own], transient, transient + window, ends_stuck
             )
-            frequency = leading_frequency(velocity[:, n], duration)
+            frequency = leading_frequency(record[:, n], duration)
             values["velocity_frequency"][index][n] = frequency
             values["velocity_frequency_error"][index][n] = 0.5 / duration if math.isfinite(frequency) else np.nan
-        values["velocity_correlation"][index] = correlation(velocity[:, 0], velocity[:, -1])
+        values["velocity_correlation"][index] = correlation(record[:, 0], record[:, -1])
         values["least_velocity"][index] = velocity.min(axis=0)
     return summary(
         "Stick-slip cycles of each block, and how the velocities of the blocks go together",
@@ -90,6 +96,23 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
         {"transient": transient, "window": window, "batches": batches},
         module=__name__,
     )
+
+
+def long_velocity(run: Mapping[str, np.ndarray], v: float) -> tuple[np.ndarray, float]:
+    """Return equidistant velocities U', shape (n, blocks), and the time for which they last, as long as they are known.
+
+    run : arrays of a point file; v : velocity of the driver
+
+    Between two events with states positions are the cubics that have the positions and velocities at both. Where the
+    kept trajectory lasts longer, its samples are returned.
+    """
+    time, first = np.unique(run["event_time"], return_index=True)
+    kept = np.ptp(run["trajectory_time"])
+    if len(time) < 2 or np.ptp(time) <= kept:
+        return run["velocity"], float(kept)
+    position = CubicHermiteSpline(time, run["event_position"][first], run["event_velocity"][first] - v)
+    instants = np.linspace(time[0], time[-1], math.ceil(np.ptp(time) / INTERVAL) + 1)
+    return position.derivative()(instants) + v, float(np.ptp(time))
 
 
 def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:

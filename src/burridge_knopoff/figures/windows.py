@@ -1,0 +1,78 @@
+"""The attractors at all values of a, refined where something changes: ⟨J⟩ and the kind of motion on each branch."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from burridge_knopoff.figures.branches import branch_names
+from burridge_knopoff.figures.lyapunov import KIND_COLORS
+from burridge_knopoff.figures.style import label_panels, page_width, styled
+from burridge_knopoff.stability.motion import MotionKind
+
+TITLE = "Windows of a"
+CATEGORY = "Attractors"
+INPUTS = ("refined",)
+CAPTION = """\
+The attractors at all values of a: those of the grid, and those put in between neighbours at which something differs,
+down to the resolution of the study. Above: ⟨J⟩, in the colour of the kind of motion. Below: the kind of motion on each
+branch.
+"""
+
+
+@styled
+def draw(refined: xarray.Dataset) -> Figure:
+    """Draw, for each law, ⟨J⟩ of all attractors and a bar of the kinds of motion for each branch."""
+    laws = refined["law"].values
+    names = branch_names(refined)
+    strip = 0.16 * len(names) + 0.2
+    figure = Figure(figsize=(page_width(len(laws)), 3.0 + strip), layout="constrained")
+    panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.4, strip])
+    for column, law in enumerate(laws):
+        one = refined.sel(law=law)
+        _points(panels[0, column], one)
+        _bars(panels[1, column], one, list(names))
+        panels[1, column].set_xlabel("$a$")
+        panels[1, column].set_yticks(np.arange(len(names)), list(names.values()), fontsize=6.5)
+        panels[1, column].tick_params(axis="y", length=0)
+    panels[1, 0].set_ylim(len(names) - 0.4, -0.6)
+    panels[0, 0].set_ylabel(r"$\langle J\rangle$")
+    shown = np.unique(refined["kind"].values[refined["branch"].values >= 0]).tolist()
+    handles = [Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown]
+    if handles:
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    label_panels(panels.flat, [*(f"{law} law" for law in laws), *("kind of motion" for _ in laws)])
+    return figure
+
+
+def _points(panel: Axes, refined: xarray.Dataset) -> None:
+    there = refined["branch"].values >= 0
+    a = np.broadcast_to(refined["a"].values[:, None], there.shape)[there]
+    mean, kind = refined["mean_distance"].values[there], refined["kind"].values[there]
+    for number, color in KIND_COLORS.items():
+        chosen = kind == number
+        edge = {"markeredgecolor": "0.4", "markeredgewidth": 0.4} if number < 0 else {"markeredgewidth": 0}
+        panel.plot(a[chosen], mean[chosen], "o", markersize=2.2, color=color, **edge)
+
+
+def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
+    """Draw each value of a as wide as half the way to its neighbours on the branch, one step of the grid at most."""
+    grid = refined["a"].values[refined["in_grid"].values == 1]
+    widest = 0.5 * float(np.diff(grid).max(initial=0.0))
+    for row, number in enumerate(numbers):
+        slots = refined["branch"].values == number
+        here = slots.any(axis=1)
+        a, kind = refined["a"].values[here], refined["kind"].values[here, slots[here].argmax(axis=1)]
+        half = np.minimum(0.5 * np.diff(a), widest)
+        left, right = np.append(widest, half), np.append(half, widest)
+        panel.barh(
+            np.full(len(a), row),
+            left + right,
+            0.8,
+            a - left,
+            color=[KIND_COLORS[int(item)] for item in kind],
+            linewidth=0,
+        )
