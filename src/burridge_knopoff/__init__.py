@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from burridge_knopoff.running.simulation import simulate
     from burridge_knopoff.running.trajectory import Trajectory
     from burridge_knopoff.stability.attractors import find_attractors
-    from burridge_knopoff.stability.labels import label_states
     from burridge_knopoff.stability.chains import transverse_exponent
     from burridge_knopoff.stability.family import synchronized_orbit
+    from burridge_knopoff.stability.labels import label_states
     from burridge_knopoff.summaries.basin_map import basin_map
 
 _HOME = {

@@ -1,11 +1,15 @@
 """Periods of section points and kinds of motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from burridge_knopoff.stability.motion import (
     MotionKind,
+    is_unstable,
     motion_kind,
+    repetition,
     section_closed,
     section_period,
 )
@@ -16,29 +20,75 @@ from burridge_knopoff.stability.settings import MOTION
 def test_period_of_a_repeating_sequence(period):
     random = np.random.default_rng(period)
     section = np.tile(random.normal(size=period), 400 // period)
-    assert section_period(section, 1e-6, 60) == period
-    assert section_period(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
-    assert section_period(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
-
-
-def test_a_slow_approach_does_not_hide_a_period():
-    k = np.arange(1000)
-    assert section_period(1.0 + 0.5**k, 1e-6, 60) == 1
+    assert repetition(section, 1e-6, 60) == period
+    assert repetition(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
+    assert repetition(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
 
 
 def test_quasiperiodic_and_short_sequences_have_no_period():
     golden = (np.sqrt(5) - 1) / 2
-    assert section_period(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6, 60) == 0
-    assert section_period(np.array([]), 1e-6, 60) == 0
-    assert section_period(np.array([1.0, 1.0]), 1e-6, 60) == 0
-    assert section_period(np.tile(np.arange(70.0), 20), 1e-6, 60) == 0
+    assert repetition(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6, 60) == 0
+    assert repetition(np.array([]), 1e-6, 60) == 0
+    assert repetition(np.array([1.0, 1.0]), 1e-6, 60) == 0
+    assert repetition(np.tile(np.arange(70.0), 20), 1e-6, 60) == 0
     # A slow drift is no period.
-    assert section_period(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
+    assert repetition(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
+
+
+def run_of(velocity, states, first_event=0.0, falling=False):
+    """Return a run with section points at τ = 0, 1, … and an event with a state a little later than each of them."""
+    time = np.arange(float(len(velocity)))
+    events = time[time >= first_event] + 0.25
+    states = np.asarray(states, dtype=float)[time >= first_event]
+    return {
+        "crossing_velocity": np.asarray(velocity, dtype=float),
+        "crossing_time": time,
+        "crossing_direction": np.full(len(velocity), -1 if falling else 1),
+        "event_time": events,
+        "event_position": states,
+        "event_velocity": 0.5 * states,
+    }
+
+
+def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
+    """W' repeats after three points, the state of all blocks after six: every other turn it is the mirror image."""
+    velocity = np.tile([1.0, 2.0, 3.0], 60)
+    turn = np.array([[0.1, 0.0, 0.4], [0.2, 0.0, 0.5], [0.3, 0.0, 0.6]])
+    states = np.tile(np.concatenate([turn, turn[:, ::-1]]), (30, 1))
+    assert section_period(run_of(velocity, states), MOTION) == 6
+    assert section_period(run_of(velocity, np.tile(turn, (60, 1))), MOTION) == 3
+    # Positions alone tell it, velocities alone too.
+    run = run_of(velocity, np.tile(turn, (60, 1)))
+    for name in ("event_position", "event_velocity"):
+        assert section_period({**run, name: states}, MOTION) == 6
+    # Downward crossings are no section points.
+    assert section_period(run_of(velocity, states, falling=True), MOTION) == 0
+    # States that drift although W' repeats; states known from late on only; none at all.
+    drifting = states + 1e-4 * np.arange(180.0)[:, None]
+    assert section_period(run_of(velocity, drifting), MOTION) == 0
+    assert section_period(run_of(velocity, states, first_event=150.0), MOTION) == 6
+    assert section_period(run_of(velocity, states, first_event=1e9), MOTION) == 3
+    # A period that states show twice only is none, and so is one longer than what is looked for.
+    assert section_period(run_of(velocity, states, first_event=165.0), MOTION) == 0
+    assert section_period(run_of(velocity, states), replace(MOTION, longest_period=5)) == 0
+
+
+def test_a_slow_approach_does_not_hide_a_period():
+    k = np.arange(1000)
+    assert section_period(run_of(1.0 + 0.5**k, np.ones((1000, 3))), MOTION) == 1
 
 
 def test_the_numbers_of_the_kinds():
-    names = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
+    names = {
+        -1: "undetermined",
+        0: "synchronized",
+        1: "periodic",
+        2: "quasiperiodic",
+        3: "chaotic",
+        4: "transient_chaos",
+    }
     assert {int(kind): kind.name.lower() for kind in MotionKind} == names
+    assert MotionKind.TRANSIENT_CHAOS.words == "transient chaos"
 
 
 @pytest.mark.parametrize(
@@ -54,6 +104,10 @@ def test_the_numbers_of_the_kinds():
         (0.1, 0, (2.3e-2, -3e-3), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
         (1e-9, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
+        # Motion that repeats is periodic, also on an orbit that repels all others.
+        (1e-9, 1, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED),
+        (0.1, 2, (0.02, 0.0), 1e-3, MotionKind.PERIODIC),
+        (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.PERIODIC),
         # Above the threshold but not above its error, or the other way round: no chaos.
         (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.PERIODIC),
         (0.1, 0, (9e-4, -0.01), 1e-5, MotionKind.UNDETERMINED),
@@ -78,7 +132,7 @@ def test_sections_that_repeat_after_however_many_points():
     random = np.random.default_rng(3)
     orbit = random.random(150)
     assert section_closed(np.tile(orbit, 8), 1e-6)
-    assert section_period(np.tile(orbit, 8), 1e-6, 60) == 0
+    assert repetition(np.tile(orbit, 8), 1e-6, 60) == 0
     golden = (np.sqrt(5) - 1) / 2
     assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
     assert not section_closed(random.random(2000), 1e-6)
@@ -89,3 +143,18 @@ def test_sections_that_repeat_after_however_many_points():
     for alone, closed in ((4, True), (6, False)):
         section = pairs + np.where(np.arange(100) < alone, 0.25 * (np.arange(100) % 2), 0.0)
         assert section_closed(np.concatenate([pairs, section]), 1e-6) == closed
+
+
+@pytest.mark.parametrize(
+    ("period", "exponents", "error", "unstable"),
+    [
+        (1, (0.02, 0.0), 1e-3, True),
+        (0, (0.02, 0.0), 1e-3, False),
+        (1, (0.02, 0.0), 1e-2, False),
+        (3, (9e-4, 0.0), 1e-6, False),
+        (3, (), 1.0, False),
+        (3, (np.nan,), np.nan, False),
+    ],
+)
+def test_an_orbit_that_repels(period, exponents, error, unstable):
+    assert is_unstable(period, np.array(exponents), np.full(len(exponents), error), MOTION) is unstable

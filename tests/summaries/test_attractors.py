@@ -1,24 +1,30 @@
 """Attractors along a: what a hand-made continuation of two laws becomes in the summary and in its lines."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, law_of
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.continuation import Continuation
+from burridge_knopoff.stability.lifetime import Lifetime
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MOTION, SearchSettings
-from burridge_knopoff.summaries import attractors
+from burridge_knopoff.stability.settings import MOTION, Refine, SearchSettings
+from burridge_knopoff.summaries import attractors, refined
+from burridge_knopoff.summaries.slots import branch_names
 from tests.stability.stand_in import stand_in
 
-GRID = [0.05, 0.1, 0.2]
 STATES = [InitialState("here", (0.0,) * 3, (0.1,) * 3), InitialState("back", (0.0,) * 3, (0.1, -0.1, 0.1))]
-SETTINGS = SearchSettings(samples=4, time_limit=123.0)
+SETTINGS = SearchSettings(samples=9, fraction_samples=4, time_limit=123.0, lifetime=500.0)
 
 
-def continuation():
-    """Return synchrony and a torus, then a mirror pair that the torus turns into, then nothing."""
+def continuation(law):
+    """Return synchrony and a torus, then a mirror pair that the torus turns into, then nothing.
+
+    Between the first two values of the grid one was put in, at which the torus alone was followed.
+    """
     torus = {
         "kind": MotionKind.QUASIPERIODIC,
         "section_period": 0,
@@ -29,16 +35,21 @@ def continuation():
         stand_in(Symmetry.SYMMETRIC, 0.14, 0, 0.5, mean_distance_error=1e-3, **torus),
         stand_in(Symmetry.SYNCHRONIZED, 0.0, 1, 0.0, kind=MotionKind.SYNCHRONIZED, close_returns=20, radius=0.02),
     ]
+    between = [stand_in(Symmetry.SYMMETRIC, 0.145, 0, 0.5, **torus)]
     pair = {"kind": MotionKind.CHAOTIC, "exponent": np.array([0.03, 0.0])}
     second = [stand_in(Symmetry.ASYMMETRIC, 0.15, 1, -2.0, **pair), stand_in(Symmetry.ASYMMETRIC, 0.15, 0, 2.0, **pair)]
-    numbers = [([1, 0], [0, 0]), ([1, 1], [-1, 1]), ([], [])]
+    numbers = [([1, 0], [0, 0]), ([1], [0]), ([1, 1], [-1, 1]), ([], [])]
+    dying = Lifetime(4, 1200.0)
     return Continuation(
-        [first, second, []],
-        upward=[np.array([1, -1]), np.array([-1, -1]), np.zeros(0, int)],
-        downward=[np.array([-1, -1]), np.array([0, 0]), np.zeros(0, int)],
+        [Model(Chain(3), law_of(law, a), 0.2) for a in (0.05, 0.07, 0.1, 0.2)],
+        [0, 2, 3],
+        [first, between, second, []],
+        lifetimes=[[None, None], [None], [dying, dying], []],
         branch=[np.array(branch) for branch, _ in numbers],
         side=[np.array(side) for _, side in numbers],
-        samples=[np.array([0, 0, 1, -1, 1, 1]), np.array([1, 1, 1, 0, 0, 0]), np.full(6, -1)],
+        upward=[np.array([1, -1]), np.array([-1, -1]), np.zeros(0, int)],
+        downward=[np.array([-1, -1]), np.array([0, 0]), np.zeros(0, int)],
+        samples=[np.array([0, 0, 1, -1]), np.array([1, 1, 1, 0]), np.full(4, -1)],
     )
 
 
@@ -56,14 +67,8 @@ def one_law(monkeypatch):
             reached[0] = -1
         return np.array(reached, int), np.zeros(len(starts))
 
-    monkeypatch.setattr(attractors, "continue_attractors", lambda *args, **options: continuation())
     monkeypatch.setattr(attractors, "label", label)
-
-    def summarized(law):
-        model = Model(Chain(3), law_of(law, 0.0), 0.2)
-        return attractors.one_law(model, GRID, STATES, SETTINGS, MOTION, "tested")
-
-    return summarized
+    return lambda law: attractors.one_law(continuation(law), STATES, SETTINGS, MOTION, "tested")
 
 
 def test_features_are_sorted_by_branch_and_side(one_law):
@@ -75,7 +80,10 @@ def test_features_are_sorted_by_branch_and_side(one_law):
         "symmetry": [[Symmetry.SYNCHRONIZED, Symmetry.SYMMETRIC], [Symmetry.ASYMMETRIC, Symmetry.ASYMMETRIC], none],
         "mean_distance": [[0.0, 0.14], [0.15, 0.15], [nan, nan]],
         "mean_distance_error": [[0.0, 1e-3], [0.0, 0.0], [nan, nan]],
-        "kind": [[MotionKind.SYNCHRONIZED, MotionKind.QUASIPERIODIC], [MotionKind.CHAOTIC, MotionKind.CHAOTIC], none],
+        "kind": [[MotionKind.SYNCHRONIZED, MotionKind.QUASIPERIODIC], [MotionKind.TRANSIENT_CHAOS] * 2, none],
+        "lifetime": [[nan, nan], [300.0, 300.0], [nan, nan]],
+        "lifetime_low": [[nan, nan], [Lifetime(4, 1200.0).interval[0]] * 2, [nan, nan]],
+        "lifetime_high": [[nan, nan], [Lifetime(4, 1200.0).interval[1]] * 2, [nan, nan]],
         "section_period": [[1, 0], [1, 1], [0, 0]],
         "radius": [[0.02, 0.01], [0.01, 0.01], [nan, nan]],
         "close_returns": [[20, 8], [8, 8], none],
@@ -120,13 +128,17 @@ def test_what_initial_states_and_sweeps_reach(one_law):
     np.testing.assert_array_equal(mean.sel(direction="downward"), [[0.14, 0.15, np.nan]] * 2)
 
 
+def test_chaos_that_is_shown_to_last_is_chaos(one_law):
+    lasting = replace(continuation("linearized"), lifetimes=[[None] * 2, [None], [Lifetime(0, 1e5)] * 2, []])
+    found = attractors.one_law(lasting, STATES, SETTINGS, MOTION, "tested")
+    assert found["kind"].values[1].tolist() == [MotionKind.CHAOTIC] * 2
+    assert np.isinf(found["lifetime"].values[1]).all()
+
+
 def test_laws_are_put_together_under_common_numbers(one_law):
     first, second, third = (one_law(law) for law in ("linearized", "nonlinear", "exponential"))
-    # Another ⟨J⟩ at one of two a is the same branch still; at both it is a branch of its own.
-    second["mean_distance"].values[1] += 0.02
-    third["mean_distance"].values[:, 1] += 0.02
-    third["mean_distance"].values[1] += 0.02
-    found = attractors.merge([first.isel(attractor=slice(1, 2)), second, third])
+    numbers = [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
+    found = attractors.merge([first.isel(attractor=slice(1, 2)), second, third], numbers)
     assert found["law"].values.tolist() == ["linearized", "nonlinear", "exponential"]
     assert found["branch"].values.tolist() == [
         [[1, -1], [1, -1], [-1, -1]],
@@ -139,17 +151,72 @@ def test_laws_are_put_together_under_common_numbers(one_law):
     assert found["close_returns"].values[0].tolist() == [[8, -1], [8, -1], [-1, -1]]
     assert found["basin_count"].values[0].tolist() == [[2, 0], [1, 0], [0, 0]]
     assert "law" not in found.attrs
-    assert found.attrs["samples"] == 4
+    assert found.attrs["fraction_samples"] == 4
+    assert found["branch_number"].values.tolist() == [0, 1, 2]
+
+
+def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law):
+    """All others have one of their own, over all laws."""
+    parts = [one_law(law) for law in ("linearized", "nonlinear", "exponential")]
+    models = [Model(Chain(3), law_of(part.attrs["law"], 0.0), 0.2) for part in parts]
+    answers = [{0: 0, 1: 1}, {0: 0}]
+
+    def joined(firsts, seconds, first, second, settings):
+        assert [model.a for model in firsts] == [model.a for model in seconds] == [0.05, 0.1, 0.2]
+        assert {model.law.name for model in firsts} == {"linearized"}
+        assert sorted(first) == sorted(second) == [0, 1]
+        # Of a mirror pair the side that counts as the first.
+        assert sorted(second[1]) == [0, 1]
+        assert first[1][1].position[0] == pytest.approx(2.0)
+        assert first[1][1].stuck.tolist() == [True, False, False]
+        assert settings is SETTINGS
+        return answers.pop(0)
+
+    monkeypatch.setattr(attractors, "joined", joined)
+    assert attractors.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
 
 
 def test_the_digest_tells_each_branch(one_law):
-    assert attractors.digest(attractors.merge([one_law("linearized")])) == (
+    found = attractors.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    assert attractors.digest(found) == (
         "linearized, synchronized: at 1 of 3 values of a, 0.05 to 0.05; <J> 0.0000 to 0.0000; synchronized; basin "
         "fraction at most 0.250 (a = 0.05)\n"
-        "linearized, branch 1: at 2 of 3 values of a, 0.05 to 0.1; <J> 0.1400 to 0.1500; quasiperiodic, chaotic; basin "
-        "fraction at most 1.000 (a = 0.1)\n"
+        "linearized, mirror pair (1): at 2 of 3 values of a, 0.05 to 0.1; <J> 0.1400 to 0.1500; quasiperiodic, "
+        "transient chaos; basin fraction at most 1.000 (a = 0.1)\n"
         "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
     )
-    silent = one_law("linearized")
-    silent["stop_rate"].values[..., 1:] = 0.0
-    assert "(a = 0.1); block 2, 3 never sticks\n" in attractors.digest(attractors.merge([silent]))
+
+
+def test_the_values_put_in_between_have_a_file_of_their_own():
+    parts = [
+        refined.one_law(continuation(law), SETTINGS, MOTION, Refine(1e-3), "tested")
+        for law in ("linearized", "nonlinear")
+    ]
+    found = refined.merge([parts[0], parts[1].isel(value=slice(0, 2))], [{0: 0, 1: 1}, {0: 0, 1: 5}])
+    np.testing.assert_array_equal(found["a"].values, [[0.05, 0.07, 0.1, 0.2], [0.05, 0.07, np.nan, np.nan]])
+    assert found["in_grid"].values.tolist() == [[1, 0, 1, 1], [1, 0, 0, 0]]
+    assert found["branch"].values.tolist() == [
+        [[0, 1], [1, -1], [1, 1], [-1, -1]],
+        [[0, 5], [5, -1], [-1, -1], [-1, -1]],
+    ]
+    assert found["kind"].values[0, 2].tolist() == [MotionKind.TRANSIENT_CHAOS] * 2
+    assert found.attrs["refine_resolution"] == 1e-3
+    assert found["branch_number"].values.tolist() == [0, 1, 5]
+
+
+def test_branches_have_names_that_say_what_they_are():
+    branch = np.array([[[0, 1], [2, 2]], [[3, 3], [4, -1]]])
+    none, symmetric, pair = Symmetry.SYNCHRONIZED, Symmetry.SYMMETRIC, Symmetry.ASYMMETRIC
+    symmetry = np.array([[[none, symmetric], [pair, pair]], [[pair, pair], [pair, -1]]])
+    rate = np.ones((2, 2, 2, 3))
+    rate[branch == 1] = [0.2, 0.0, 0.2]
+    rate[branch == 3] = [0.0, 0.1, 0.0]
+    names = branch_names(branch, symmetry, rate)
+    assert names["branch_number"].tolist() == [0, 1, 2, 3, 4]
+    assert names["branch_name"].tolist() == [
+        "synchronized",
+        "alternating, block 2 never sticks (1)",
+        "mirror pair (2)",
+        "mirror pair, block 1, 3 never sticks (3)",
+        "motion (4)",
+    ]

@@ -72,8 +72,7 @@ def joined(
             if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
                 arrivals[row, numbers[1].index(best)] += 1
     pairs = zip(*linear_sum_assignment(arrivals, maximize=True), strict=True)
-    found = {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
-    return {0: 0, **found}
+    return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
 
 def _nearest(found: Returns, state: Instant) -> float:

@@ -12,8 +12,7 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, pixel_centres, plane
-from burridge_knopoff.stability.labels import label_states
-from burridge_knopoff.stability.labels import UNDETERMINED
+from burridge_knopoff.stability.labels import UNDETERMINED, label_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
 from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 

@@ -37,6 +37,9 @@ VARIABLES = {
     "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
     "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
+    "unstable": Variable(
+        _AXES, "i1", "whether the run has stayed on a closed orbit that repels", flag("i1", {0: "no", 1: "yes"})
+    ),
     "section_period": Variable(
         _AXES, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
     ),

@@ -1,0 +1,32 @@
+"""Laws between two others."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.laws import LAWS, law_of
+from burridge_knopoff.laws.blend import blend
+
+SPEEDS = np.linspace(0.0, 1.5, 7)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_a_blend_is_the_weighted_mean_of_two_laws(share):
+    laws = [law_of(name, 0.2) for name in LAWS]
+    for first in laws:
+        for second in laws:
+            mixed = blend(first, second, share)
+            expected = (1.0 - share) * first(SPEEDS) + share * second(SPEEDS)
+            np.testing.assert_allclose(mixed(SPEEDS), expected, rtol=1e-14)
+            slope = (1.0 - share) * first.slope(SPEEDS) + share * second.slope(SPEEDS)
+            np.testing.assert_allclose(mixed.slope(SPEEDS), slope, rtol=1e-12, atol=1e-14)
+            assert mixed.a == 0.2
+
+
+def test_numbers_of_one_name_are_those_of_their_own_law():
+    one, other = (law_of("mine", 0.1, {"formula": "1 - k*a*u", "k": k}) for k in (1.0, 3.0))
+    assert float(blend(one, other, 0.5)(1.0)) == pytest.approx(1.0 - 2.0 * 0.1)
+
+
+def test_laws_at_different_a_are_not_blended():
+    with pytest.raises(ValueError, match=r"a: 0\.3 is not allowed: that of the first law, 0\.2"):
+        blend(law_of("linearized", 0.2), law_of("nonlinear", 0.3), 0.5)

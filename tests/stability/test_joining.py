@@ -1,0 +1,98 @@
+"""Branches of two laws that are one: attractors of the paper's chain, followed from one law to the other."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, find_attractors, law_of
+from burridge_knopoff.stability import joining
+from burridge_knopoff.stability.joining import follow_law, joined
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.stability.steady import Returns, least_distance
+from burridge_knopoff.stability.tuning import TUNING
+
+SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, pushes=4)
+A = 0.06
+
+
+@pytest.fixture(scope="module")
+def models():
+    """The paper's laws."""
+    return [Model(Chain(3), law_of(law, A)) for law in ("linearized", "nonlinear")]
+
+
+@pytest.fixture(scope="module")
+def found(models):
+    """The attractors of each: synchrony, one on which block 2 never sticks, and one on which it does."""
+    result = []
+    for model in models:
+        attractors, _ = find_attractors(model, SETTINGS)
+        result.append(sorted(attractors, key=lambda item: item.motion.mean_distance))
+        assert len(attractors) == 3
+    return result
+
+
+def test_an_attractor_is_followed_to_the_one_of_the_other_law(models, found):
+    for one, other in zip(*found, strict=True):
+        end = follow_law(*models, one.motion.instant(), SETTINGS)
+        assert end is not None
+        assert least_distance(end.returns, other.motion.returns) < 1e-3
+
+
+def test_branches_are_joined_whatever_their_numbers(models, found):
+    first, second = ([item.motion.instant() for item in part] for part in found)
+    states = {0: {0: first[0]}, 1: {0: first[1]}, 2: {0: first[2]}}
+    others = {0: {0: second[0]}, 1: {0: second[2]}, 4: {0: second[1]}}
+    arguments = [models[0]], [models[1]]
+    assert joined(*arguments, states, others, SETTINGS) == {0: 0, 1: 2, 4: 1}
+    # A mirror image is the same branch.
+    others[4] = {0: second[1].mirrored()}
+    assert joined(*arguments, states, others, SETTINGS) == {0: 0, 1: 2, 4: 1}
+    # What is not there at that a, or somewhere else, is not joined.
+    del others[1]
+    assert joined(*arguments, states, others, SETTINGS) == {0: 0, 4: 1}
+    assert joined(*arguments, states, {0: others[0]}, SETTINGS) == {0: 0}
+
+
+@pytest.fixture
+def told(monkeypatch):
+    """Return what `follow_law` finds where the set at each step is told by its place; None where nothing settles."""
+
+    def follow(places):
+        asked = []
+
+        def visit(model, start, transient, window, tuning):
+            place = places[len(asked)]
+            asked.append((model.law.name, float(model.law(1.0)), float(start.position[0]), transient, window))
+            if place is None:
+                return None
+            returns = np.full((10, 6), place)
+            return Returns(returns, returns, 0.0, 0.0)
+
+        monkeypatch.setattr(joining, "visit", visit)
+        pair = [Model(Chain(3), law_of(law, 0.5), 0.2) for law in ("linearized", "nonlinear")]
+        start = Returns(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).instant()
+        return follow_law(*pair, start, SETTINGS), asked
+
+    return follow
+
+
+def test_a_law_is_changed_in_even_steps(told):
+    end, asked = told([0.01 * step for step in range(TUNING.law_steps + 1)])
+    assert end.returns[0, 0] == pytest.approx(0.01 * TUNING.law_steps)
+    assert [friction for _, friction, *_ in asked] == pytest.approx(
+        np.linspace(0.5, 1.0 / 1.5, TUNING.law_steps + 1).tolist()
+    )
+    assert asked[-1][0] == "nonlinear"
+    # Each goes on from where the last one was.
+    assert [place for _, _, place, *_ in asked] == pytest.approx([7.0] + [0.01 * k for k in range(TUNING.law_steps)])
+    assert {times for *_, times, _ in asked} == {1500.0}
+
+
+def test_what_does_not_go_on_smoothly_is_given_up(told):
+    """A set may move by the distance of one branch, twice the paper's for twice the velocity, and not by more."""
+    limit = 2.0 * TUNING.same_set
+    assert told([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None
+    for places in ([0.0, 1.01 * limit], [0.0, 0.0, None]):
+        end, asked = told(places)
+        assert end is None
+        assert len(asked) == len(places)

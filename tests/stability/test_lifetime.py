@@ -1,0 +1,104 @@
+"""Lifetimes of chaos: what an ensemble of known rate gives, and chaos of the paper's chain that dies."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import poisson
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.stability import lifetime
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.stability.tuning import TUNING
+from tests.stability.stand_in import stand_in
+
+MODEL = Model(Chain(3), law_of("linearized", 0.2))
+SETTINGS = SearchSettings(lifetime=800.0, time_limit=50.0, seed=5)
+#: Of each trajectory.
+TIME = TUNING.exposure * SETTINGS.lifetime / TUNING.followed
+
+
+@pytest.mark.parametrize("ends", [0, 1, 5, 40])
+def test_the_interval_is_that_of_a_poisson_count(ends):
+    """At either end of the interval so few, or so many, ends have a probability of 2.5 %."""
+    low, high = Lifetime(ends, 1e6).interval
+    assert poisson.cdf(ends, 1e6 / low) == pytest.approx(0.025)
+    if ends:
+        assert poisson.sf(ends - 1, 1e6 / high) == pytest.approx(0.025)
+        assert Lifetime(ends, 1e6).mean == 1e6 / ends
+    else:
+        assert (high, Lifetime(0, 1e6).mean) == (math.inf, math.inf)
+    assert Lifetime(ends, 1e6).lasts(0.99 * low)
+    assert not Lifetime(ends, 1e6).lasts(low)
+
+
+def test_the_interval_holds_the_lifetime_as_often_as_it_says():
+    random = np.random.default_rng(1)
+    mean, time, followed = 300.0, 100.0, 32
+    held = 0
+    for _ in range(400):
+        lives = random.exponential(mean, followed)
+        low, high = Lifetime(int((lives < time).sum()), float(np.minimum(lives, time).sum())).interval
+        held += low <= mean <= high
+    assert 0.93 <= held / 400 <= 0.99
+
+
+def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
+    """The time of all trajectories is just enough for that."""
+    assert Lifetime(0, TUNING.exposure * 1e5).lasts(1e5)
+    assert not Lifetime(1, TUNING.exposure * 1e5).lasts(1e5)
+
+
+@pytest.fixture
+def scripted(monkeypatch):
+    """Return how lifetimes are found of trajectories whose labels at the end, and whose ends, are told."""
+
+    def find(attractors, reached, ends):
+        asked = []
+
+        class Ensemble:
+            def run(self, position, velocity, stuck, times):
+                asked.append((len(position), times))
+                return {"position": position[:, None], "velocity": velocity[:, None]}
+
+        def label(model, known, starts, time_limit):
+            asked.append((len(starts), time_limit, len(known)))
+            if time_limit == SETTINGS.time_limit:
+                return np.array(reached), np.zeros(len(reached))
+            left = [n for n, index in enumerate(reached) if index not in (0, attractors[0].partner)]
+            assert len(starts) == len(left)
+            return np.array([-1 if math.isnan(end) else 0 for end in ends]), np.array(ends)
+
+        monkeypatch.setattr(lifetime, "new_ensemble", lambda model: Ensemble())
+        monkeypatch.setattr(lifetime, "label", label)
+        return lifetimes(MODEL, attractors, SETTINGS), asked
+
+    return find
+
+
+def chaos(partner=0):
+    return stand_in(Symmetry.SYMMETRIC, 0.1, partner, kind=MotionKind.CHAOTIC)
+
+
+def test_trajectories_that_have_left_are_counted_with_their_times(scripted):
+    other = stand_in(Symmetry.SYMMETRIC, 0.2, 1)
+    reached = [0] * 29 + [1, 1, -1]
+    # Two are captured by the other attractor, and of one it is not known what it has reached.
+    found, asked = scripted([chaos(), other], reached, [20.0, 40.0, math.nan])
+    assert found == [Lifetime(3, 29 * TIME + 20.0 + 40.0 + TIME), None]
+    assert asked == [(32, [TIME]), (32, 50.0, 2), (3, TIME, 1)]
+
+
+def test_a_change_to_the_mirror_image_is_no_end(scripted):
+    pair = [chaos(1), chaos(0)]
+    found, asked = scripted(pair, [0, 1] * 16, [])
+    assert found == [Lifetime(0, 32 * TIME)] * 2
+    assert asked[-1] == (0, TIME, 0)
+    assert len(asked) == 3
+
+
+def test_motion_that_is_not_chaotic_has_no_lifetime(scripted):
+    assert scripted([stand_in(Symmetry.SYMMETRIC, 0.1, 0)], [], []) == ([None], [])

@@ -1,0 +1,115 @@
+"""Branches of attractors along a, by the distance of sets."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.matching import Outline, branches, matched, outlines
+from burridge_knopoff.stability.tuning import TUNING
+from tests.stability.stand_in import stand_in
+
+
+def at(*places, symmetry=Symmetry.SYMMETRIC, mean=0.1, partner=0, ahead=0.0):
+    """Return an attractor with returns at these places of all coordinates, with block 1 `ahead` of them.
+
+    In its mirror image it is block 3 that is ahead.
+    """
+    tilt = np.array([ahead, 0.0, 0.0, 0.0, 0.0, 0.0])
+    returns = np.array([np.full(6, place) for place in places])
+    told = {"returns": returns + tilt, "mirror_returns": returns + tilt[[2, 1, 0, 3, 4, 5]]}
+    return stand_in(symmetry, mean, partner, **told)
+
+
+def pair(place, ahead, mean=0.1):
+    """Return a mirror pair; of the first one block 1 is ahead by that."""
+    first = at(place, symmetry=Symmetry.ASYMMETRIC, mean=mean, partner=1, ahead=ahead)
+    return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
+
+
+def rows(values):
+    """Return arrays as lists."""
+    return [row.tolist() for row in values]
+
+
+def test_a_set_is_as_near_as_the_nearer_of_two_directions():
+    """An orbit on a torus is near it, although most of the torus is not near the orbit."""
+    torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
+    one, other = (Outline(item, 1000) for item in (torus, orbit))
+    assert one.distances(other, 1.0) == pytest.approx((0.0, 0.0))
+    assert other.distances(one, 1.0) == pytest.approx((0.0, 0.0))
+    far = Outline(at(0.5, 0.8), 1000)
+    assert far.distances(other, 1.0)[0] == pytest.approx(0.0)
+    # By the share of the returns that lie near: the last one of two does not.
+    assert Outline(at(0.9, 0.8), 1000).distances(other, 0.0)[0] == pytest.approx(0.3)
+    # Block 1 of one and block 3 of the other are ahead: mirror images.
+    left, right = (Outline(item, 1000) for item in pair(0.0, 0.2))
+    assert left.distances(right, 1.0) == pytest.approx((0.2, 0.0))
+
+
+def test_returns_are_thinned_out_evenly():
+    outline = Outline(at(*np.linspace(0.0, 1.0, 101)), 5)
+    assert outline.own[:, 0].tolist() == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert len(Outline(at(0.0, 1.0), 5).own) == 2
+
+
+def test_pairs_are_chosen_together():
+    """Of two that are near one set the nearer one has it, if the other finds another; none reaches beyond the limit."""
+    before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
+    after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
+    assert matched(before, after, 1.0) == {0: 0, 1: 1}
+    assert matched(before, outlines([at(0.015, partner=0)]), 1.0) == {0: 1}
+    limit = TUNING.same_set
+    for place, found in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
+        one = {0: Outline(at(0.0), 10)}
+        assert matched(one, {0: Outline(at(place), 10)}, 1.0) == found
+    assert matched(one, {0: Outline(at(1.01 * limit), 10)}, 1.1) == {0: 0}
+    assert matched({}, after, 1.0) == {}
+
+
+def test_synchrony_is_followed_by_synchrony_alone():
+    still = at(0.0, symmetry=Symmetry.SYNCHRONIZED)
+    assert matched(outlines([still]), outlines([at(0.0)]), 1.0) == {}
+    assert matched(outlines([at(0.0)]), outlines([still]), 1.0) == {}
+    # However far it has moved.
+    far = at(9.0, symmetry=Symmetry.SYNCHRONIZED)
+    assert matched(outlines([still]), outlines([far]), 1.0) == {0: 0}
+
+
+def test_branches_at_a_pitchfork():
+    """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
+    before = [at(0.0, symmetry=Symmetry.SYNCHRONIZED, mean=0.0), at(1.0, partner=1, mean=0.14)]
+    after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean=0.15)]
+    later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean=0.15)]
+    branch, side = branches([0.1, 0.2, 0.3], [before, after, later], 0.2, 1.0)
+    assert rows(branch) == [[0, 1], [2, 2, 1], [2, 2, 1]]
+    # The one of the pair that is nearer to the first one of the pair before has its side.
+    assert rows(side) == [[0, 0], [-1, 1, 0], [1, -1, 0]]
+
+
+def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
+    there, else_where = at(0.0), at(1.0)
+    a = [0.1, 0.2, 0.3, 0.4, 0.5]
+    branch, _ = branches(a, [[there], [else_where], [there], [else_where], [else_where]], 0.2, 1.0)
+    assert rows(branch) == [[1], [2], [1], [2], [2]]
+    branch, _ = branches(a, [[there], [else_where], [there], [else_where], [else_where]], 0.1, 1.0)
+    assert rows(branch) == [[1], [2], [3], [4], [4]]
+    # What was there just before comes first.
+    near = at(0.015)
+    branch, _ = branches(a[:3], [[there], [near], [at(0.012)]], 0.2, 1.0)
+    assert rows(branch) == [[1], [1], [1]]
+    # Where nothing is nothing is remembered wrongly.
+    branch, _ = branches(a[:3], [[there], [], [there]], 0.2, 1.0)
+    assert rows(branch) == [[1], [], [1]]
+
+
+def test_branches_are_numbered_by_their_mean_distance():
+    """Of one a in that order; what comes from synchrony is not synchrony."""
+    first = [at(place, partner=k, mean=mean) for k, (place, mean) in enumerate(((0.0, 0.3), (1.0, 0.1), (2.0, 0.2)))]
+    branch, side = branches([0.1], [first], 1.0, 1.0)
+    assert rows(branch) == [[3, 1, 2]]
+    assert not np.concatenate(side).any()
+    still = [at(0.0, symmetry=Symmetry.SYNCHRONIZED, mean=0.0)]
+    branch, _ = branches([0.1, 0.2, 0.3], [still, first[:1], still], 0.1, 1.0)
+    assert rows(branch) == [[0], [1], [0]]
