@@ -14,8 +14,9 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.sampling import sampled_states
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, Refine, SearchSettings
 from burridge_knopoff.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
@@ -26,6 +27,7 @@ from burridge_knopoff.summaries import (
     lyapunov,
     mean_distance,
     orbits,
+    refined,
     solvers,
     stick_slip,
     two_blocks,
@@ -129,17 +131,23 @@ class SmallStudy:
         threshold = config["synchronization_threshold"]
         kinds = lyapunov.summarize(grid, config["lyapunov_exponents"], threshold, config["motion"])
         states = list(grid.initial.values())
+        refine, options = Refine(**config["refine"]), (self.search, self.motion)
         found = [
-            attractors.one_law(model, values, states, self.search, self.motion, config["start"])
+            continue_attractors([model.at(a) for a in values], *options, refine, starts=states, start=config["start"])
             for model in self.models
         ]
+        parts = [attractors.one_law(item, states, *options, config["start"]) for item in found]
+        numbers = attractors.branch_numbers(parts, self.models, self.search)
+        attracting = attractors.merge(parts, numbers)
+        further = [refined.one_law(item, *options, refine, config["start"]) for item in found]
         return {
             "mean_distance": mean_distance.summarize(grid, threshold),
             "bifurcation": bifurcation.summarize(grid),
             "lyapunov": kinds,
-            "agreement": agreement.summarize(grid, kinds, threshold, config["agreement"]),
+            "agreement": agreement.summarize(grid, kinds, attracting, threshold, config["agreement"]),
             "orbits": orbits.summarize(self.models, values),
-            "attractors": attractors.merge(found),
+            "attractors": attracting,
+            "refined": refined.merge(further, numbers),
         }
 
     def further_summaries(self, found: Mapping[str, xarray.Dataset]) -> dict[str, xarray.Dataset]:

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+import xarray
 from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.point import write_point
@@ -40,8 +41,32 @@ def compare(runs, tmp_path):
     return compared
 
 
-def summarized(grid):
-    return agreement.summarize(grid, lyapunov.summarize(grid, 3, 1e-6, MOTION), 1e-6, AGREEMENT)
+def summarized(grid, **reached):
+    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
+    return agreement.summarize(grid, kinds, attractors_of(grid, **reached), 1e-6, AGREEMENT)
+
+
+def attractors_of(grid, mean=0.0, error=0.0, branch=0):
+    """Return attractors of one ⟨J⟩ and branch at all a, to which all states lead under the conventions of the study."""
+    laws, states, a = grid.laws, list(grid.initial), list(grid.a.values())
+    slot, reached = ("law", "a", "attractor"), ("law", "contact", "start", "initial", "a")
+    shape = (len(laws), len(a), 2)
+    branches = np.full(shape, -1)
+    branches[..., 1] = branch
+    own = np.full((len(laws), 2, 2, len(states), len(a)), 9)
+    own[:, 1, 0] = branch
+    return xarray.Dataset(
+        {
+            "branch": (slot, branches),
+            "side": (slot, np.zeros(shape, int)),
+            "mean_distance": (slot, np.full(shape, mean)),
+            "mean_distance_error": (slot, np.full(shape, error)),
+            "initial_branch": (reached, own),
+            "initial_side": (reached, np.zeros(own.shape, int)),
+        },
+        {"law": list(laws), "initial": states, "a": a, "contact": ["here", "there"], "start": ["now", "then"]},
+        {"contact_convention": "there", "start_convention": "now"},
+    )
 
 
 def test_two_synchronized_laws_agree(compare, runs):
@@ -67,13 +92,13 @@ def test_two_synchronized_laws_agree(compare, runs):
     head, *rows = agreement.table(dataset).splitlines()
     assert head == (
         "initial,a,mean_distance_linearized,mean_distance_nonlinear,difference,difference_error,section_distance,"
-        "event_order_time,kind_linearized,kind_nonlinear,agrees"
+        "event_order_time,kind_linearized,kind_nonlinear,settled_linearized,settled_nonlinear,agrees"
     )
     one = dataset.isel(initial=0, other_law=0, a=1)
     assert rows[1] == (
         f"minus,0.08,{one['mean_distance'].values[0]:.8e},{one['mean_distance'].values[1]:.8e},"
         f"{one['difference'].item():.8e},{one['difference_error'].item():.2e},{one['section_distance'].item():.6e},"
-        f"{one['event_order_time'].item():.3f},synchronized,synchronized,yes"
+        f"{one['event_order_time'].item():.3f},synchronized,synchronized,yes,yes,yes"
     )
 
 
@@ -85,9 +110,34 @@ def test_altered_data_changes_the_verdict(compare):
     # No later than the end of either run.
     assert dataset["event_order_time"].values[0, 0, 0] == 7.0
     words = "they agree up to a = 0.05 and part at a = 0.08; they disagree at 1 of 2 values of a, the last 0.08"
-    assert agreement.digest(dataset).endswith(f": {words}; the kind of motion differs at 1.\n")
+    settled = "minus, nonlinear law: the run is not on the attractor that its state reaches at a = 0.08"
+    assert agreement.digest(dataset).endswith(f": {words}; the kind of motion differs at 1.\n{settled}\n")
     _, dataset = compare({("nonlinear", a): {"mean_distance": 0.2} for a in (0.05, 0.08)})
     assert "they part at a = 0.05; they disagree at 2 of 2 values of a, the last 0.08" in agreement.digest(dataset)
+
+
+@pytest.mark.parametrize(
+    ("mean", "error", "branch", "settled"),
+    [
+        (0.2, 0.0, 4, 1),
+        # Within a hundredth of the larger one, or three errors of both.
+        (0.2019, 0.0, 4, 1),
+        (0.2021, 0.0, 4, 0),
+        (0.1981, 0.0, 4, 1),
+        (0.1979, 0.0, 4, 0),
+        (0.23, 0.011, 4, 1),
+        (0.23, 0.009, 4, 0),
+        # What the state reaches is not known.
+        (0.2, 0.0, -1, -1),
+    ],
+)
+def test_a_run_may_end_elsewhere_than_its_state_leads(runs, tmp_path, mean, error, branch, settled):
+    grid = grid_of(tmp_path, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
+    for _, (law, initial, a) in grid:
+        told = {"mean_distance": 0.2, "mean_distance_error": 0.0}
+        write_point(dataclasses.replace(runs[law, grid.a[a]], **told), grid.path(law, initial, a))
+    found = summarized(grid, mean=mean, error=error, branch=branch)
+    assert (found["settled"] == settled).all()
 
 
 def test_a_run_without_result_agrees_with_nothing(compare):
@@ -100,7 +150,7 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert np.isnan(dataset["parting_a"].item())
     words = agreement.digest(dataset)
     assert "no value of a could be compared. 2 values of a are undetermined: a run did not complete," in words
-    assert agreement.table(dataset).count("undetermined") == 4
+    assert agreement.table(dataset).count("undetermined") == 6
     assert (dataset["kind"].sel(law="linearized") == -1).all()
     means = mean_distance.summarize(grid, 1e-6)
     assert np.isnan(means["mean_distance"].sel(law="linearized")).all()
@@ -135,7 +185,7 @@ def test_each_law_is_compared_with_the_first(tmp_path):
     assert (abs(same["difference"]) < 1e-9).all()
     assert (same["event_order_time"] == 200.0).all()
     assert (same["agrees"] != 0).all()
-    lines = agreement.digest(dataset).splitlines()
+    lines = agreement.digest(dataset).splitlines()[:2]
     assert [line.split(":")[0] for line in lines] == [
         f"minus, {other} law compared with the smooth law" for other in ("linearized", "same")
     ]
@@ -148,8 +198,10 @@ def test_each_law_is_compared_with_the_first(tmp_path):
 def test_one_law_has_nothing_to_be_compared_with(tmp_path):
     dataset = of_laws(tmp_path, {"linearized": {}})
     assert dataset.sizes["other_law"] == 0
-    assert agreement.digest(dataset) == "The linearized law is the only one: there is nothing to compare.\n"
-    assert agreement.table(dataset).startswith("initial,a,mean_distance_linearized,kind_linearized\nminus,0.05,")
+    assert agreement.digest(dataset).startswith("The linearized law is the only one: there is nothing to compare.\n")
+    assert agreement.table(dataset).startswith(
+        "initial,a,mean_distance_linearized,kind_linearized,settled_linearized\nminus,0.05,"
+    )
     write_summary(dataset, tmp_path / "agreement.nc")
     found = open_summary(tmp_path / "agreement.nc")
     assert found["difference"].shape == (0, 1, 2)

@@ -109,12 +109,14 @@ def readers(results: Path):
         "longest_period": 60,
     }
     compared = {"relative_tolerance": 0.1, "standard_errors": 3}
-    exponents = open_summary(results / "summary" / "lyapunov.nc")
+    others = [open_summary(results / f"summary/{name}.nc").sel(a=[0.2]) for name in ("lyapunov", "attractors")]
     return {
         "mean_distance": lambda grid: mean_distance.summarize(grid, 1e-6),
         "bifurcation": bifurcation.summarize,
         "lyapunov": lambda grid: lyapunov.summarize(grid, 3, 1e-6, motion),
-        "agreement": lambda grid: agreement.summarize(grid, exponents.sel(a=[0.2]), 1e-6, compared),
+        "agreement": lambda grid: agreement.summarize(
+            grid, exponents.sel(a=[0.2]), attracting.sel(a=[0.2]), 1e-6, compared
+        ),
         "stick_slip": lambda grid: stick_slip.summarize(grid, **RUN),
         "solvers": lambda grid: solvers.summarize(grid, {}, 0.01),
         "figures": lambda grid: open_point(grid, "linearized", "minus", "0.2000"),

@@ -96,5 +96,5 @@ def captured(
             left -= len(chosen)
         else:
             return radius
-        radius /= 2
+        radius /= tuning.shrinking
     return 0.0

@@ -28,7 +28,11 @@ def refined(left: Search, right: Search, refine: Refine, generator: np.random.Ge
     """
     if not left.attractors or not right.attractors:
         return []
-    before, after = outlines(left.attractors, left.tuning), outlines(right.attractors, right.tuning)
+    # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
+    # that few pushes show whether it attracts; and an ensemble shows whether chaos lasts.
+    tuning = replace(left.tuning, lasting=1, patience=left.tuning.patience // 4, trials=1, shrinking=16.0)
+    settings = replace(left.settings, pushes=min(left.settings.pushes, tuning.push_group))
+    before, after = outlines(left.attractors, tuning), outlines(right.attractors, tuning)
     changed = _changed(before, after, left)
     still = {k: item for k, item in before.items() if k not in changed[0]}
 
@@ -37,9 +41,7 @@ def refined(left: Search, right: Search, refine: Refine, generator: np.random.Ge
         near = last.a - first.a <= refine.resolution * (1.0 + 1e-9)
         if near or not (before or after):
             return []
-        # An ensemble shows whether chaos lasts, so that no single trajectory has to.
-        tuning = replace(left.tuning, lasting=1)
-        middle = Search(first.at(0.5 * (first.a + last.a)), left.settings, left.motion_settings, tuning)
+        middle = Search(first.at(0.5 * (first.a + last.a)), settings, left.motion_settings, tuning)
         seeds = [middle.seed_of(item.attractor, generator) for item in (*before.values(), *after.values())]
         middle.labels(seeds, check=False)
         here = outlines(middle.attractors, tuning)

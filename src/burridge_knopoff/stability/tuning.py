@@ -77,6 +77,8 @@ class Tuning:
     #: The same for synchrony whose multipliers say that it attracts, near where it loses its stability: perturbations
     #: shrink there at a rate that vanishes, and their third powers alone bring them closer.
     slow_recovery: float = 2.0
+    #: The next radius that is tried is smaller by this factor.
+    shrinking: float = 2.0
     #: Pushed trajectories that are followed at once: one that does not come back saves following the others.
     push_group: int = 4
     #: ⟨J⟩, in resolutions, below which a motion is next to synchrony: if it does not attract it is unstable, and no
