@@ -171,6 +171,11 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
     two_blocks = chains["two_blocks"]
     for key, value, numbers in (
         ("attractors.samples", attractors["samples"], 2 * blocks * attractors["samples"]),
+        (
+            "attractors.fraction_samples",
+            attractors["fraction_samples"],
+            2 * blocks * attractors["fraction_samples"],
+        ),
         ("basins.pixels", basins["pixels"], maps * basins["pixels"] ** 2),
         ("basins.tiles", basins["tiles"], 2 * blocks * rows * basins["pixels"]),
         ("basins.pairs", basins["pairs"], 2 * blocks * _STATES_OF_A_PAIR * basins["pairs"]),
