@@ -49,10 +49,9 @@ def sources_of(*entries: str | Path) -> tuple[Path, ...]:
     found: set[Path] = set()
     while waiting:
         path = waiting.pop()
-        plumbing = path != COMPILATION and any(path.is_relative_to(PACKAGE / name) for name in PLUMBING)
-        if path not in found and not plumbing:
+        if path not in found:
             found.add(path)
-            waiting += [file for module in _imports(path) for file in files_of(module)]
+            waiting += _needs(path)
     return tuple(sorted(found))
 
 
@@ -93,11 +92,12 @@ def code_of(text: str) -> str:
 
 
 @cache
-def _imports(path: Path) -> list[str]:
-    """Return the modules of the package that a file imports."""
+def _needs(path: Path) -> list[Path]:
+    """Return the files of the modules of the package that a file imports, without plumbing."""
     modules = set()
     for start, names in _IMPORT.findall(_code(path) if path.suffix in (".py", ".pxd") else ""):
         start = start.removeprefix("cython.cimports.")
         for name in re.findall(r"([\w.]+)(?:\s+as\s+\w+)?", names):
             modules.update({start, f"{start}.{name}"} if start else {name})
-    return sorted(name for name in modules if name.startswith(f"{PACKAGE.name}.") and files_of(name))
+    files = [file for name in modules if name.startswith(f"{PACKAGE.name}.") for file in files_of(name)]
+    return [file for file in files if file == COMPILATION or not _name(file).startswith(PLUMBING)]
