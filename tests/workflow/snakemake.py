@@ -17,7 +17,7 @@ from pathlib import Path
 #: Imports nothing of the project: that is another one in every folder.
 SERVER = """
 import json, os, sys
-import snakemake.cli, snakemake.dag, snakemake.report, snakemake.scheduling.greedy
+import snakemake.cli, snakemake.dag, snakemake.report
 import netCDF4, numpy, scipy.linalg, scipy.optimize, smart_open, xarray
 for line in sys.stdin:
     call = json.loads(line)
