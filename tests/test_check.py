@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import check as module
 from burridge_knopoff.check import check_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.point import write_point
@@ -16,7 +15,7 @@ from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.study import load_study, read_yaml
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries import mean_distance
+from burridge_knopoff.summaries import mean_distance, points
 from burridge_knopoff.summaries.points import Grid
 
 CONFIG = """
@@ -149,9 +148,8 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_other_sources_make_points_stale(results, monkeypatch, law):
     path = point(results, law)
-    identity = module.point_identity
-    monkeypatch.setattr(module, "point_identity", lambda command: identity(command + "x" * (law in command)))
-    monkeypatch.setattr("burridge_knopoff.summaries.points.point_identity", module.point_identity)
+    identity = points.point_identity
+    monkeypatch.setattr(points, "point_identity", lambda command: identity(command + "x" * (law in command)))
     stale = {finding.path: finding.reason for finding in check_study(results).findings if finding.kind == "stale"}
     assert "was made by other sources" in stale[path]
     assert all(f"/{law}/" in str(path) for path in stale)
@@ -180,11 +178,7 @@ def test_a_changed_config_and_points_of_no_grid(results, capsys):
     assert "1 point files belong to no point of the study" in said
 
 
-DEEP = b"[" * 100_000 + b"]" * 100_000
-WRONG = b'{"software": "", "git_commit": "", "arguments": "", "config_file": "", "given": {}, "config": 6, "grid": {}}'
-
-
-@pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}", DEEP, WRONG])
+@pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}"])
 def test_a_folder_that_is_no_study_is_refused_in_a_line(tmp_path, capsys, content):
     if content is not None:
         (tmp_path / "study.json").write_bytes(content)

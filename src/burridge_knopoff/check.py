@@ -7,19 +7,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import netCDF4
-
-from burridge_knopoff.dataset.point import point_identity
+from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
-from burridge_knopoff.provenance.seal import BadFile, read_seal
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.study import ConfigError, Study, all_points
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries.points import check_run
 
-MISSING, CORRUPT, STALE, FAILED = KINDS = ("missing", "corrupt", "stale", "failed")
+KINDS = ("missing", "corrupt", "stale", "failed")
 #: Files that a command is printed with; more are left to --paths.
 MOST_IN_COMMAND = 8
 
@@ -57,7 +54,7 @@ class Check:
     @property
     def paths(self) -> list[str]:
         """Paths of the files that are to be made again."""
-        return [str(finding.path) for finding in self.findings if finding.kind != FAILED]
+        return [str(finding.path) for finding in self.findings if finding.kind != "failed"]
 
     def lines(self) -> list[str]:
         """Return all findings and their sum, a line each."""
@@ -84,9 +81,10 @@ def check_study(results: str | Path) -> Check:
     points = {results / place: run for place, *run in _runs(Study(record["config"], record["grid"]))}
     others = [path for path in sorted(results.rglob("*.nc")) if path not in points and not path.name.startswith(".")]
     summaries = [path for path in others if path.relative_to(results).parts[0] not in ("points", "solvers")]
-    found = [_look(path, results / log, command) for path, (log, command) in points.items()]
-    found += map(_look_at_summary, summaries)
-    findings = sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path))
+    found = [_look(path, command, results / log) for path, (log, command) in points.items()]
+    findings = sorted(
+        filter(None, [*found, *map(_look, summaries)]), key=lambda finding: (KINDS.index(finding.kind), finding.path)
+    )
     unused = len(others) - len(summaries)
     return Check(results, len(points), len(summaries), tuple(findings), unused, _changed(record))
 
@@ -95,41 +93,28 @@ def _runs(study: Study) -> Iterator[tuple[str, str, str]]:
     """Yield file, log and command of every run of a study, the paths below its results."""
     for law, initial, a in all_points(study):
         place = POINT.format(law=law, initial=initial, a=a)
-        log = f"{place.removesuffix('.nc')}.log"
-        yield f"points/{place}", f"logs/simulate/{log}", study.command(law, initial, a)
-        if study.grid[a] in study.config["solvers"]["a"]:
-            for solver in study.other_solvers(law):
-                command = study.command(law, initial, a, solver)
-                yield f"solvers/{solver}/{place}", f"logs/simulate_solver/{solver}/{log}", command
+        solvers = study.other_solvers(law) if study.grid[a] in study.config["solvers"]["a"] else []
+        for solver, folder, rule in (
+            (None, "points", "simulate"),
+            *((name, f"solvers/{name}", f"simulate_solver/{name}") for name in solvers),
+        ):
+            log = f"logs/{rule}/{place.removesuffix('.nc')}.log"
+            yield f"{folder}/{place}", log, study.command(law, initial, a, solver)
 
 
-def _look(path: Path, log: Path, command: str) -> Finding | None:
+def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
+    """Return what is wrong with the point file of a run, or with a summary if there is no command, or None."""
     try:
-        seal = read_seal(path)
+        if not command:
+            open_summary(path)
+        elif (status := check_run(path, command).status) != "completed":
+            return Finding("failed", path, f"ended with status {status}")
     except BadFile as error:
-        if path.exists():
-            return Finding(CORRUPT, path, error.reason)
-        words = last_words(log)
-        return Finding(MISSING, path, f"its job failed: {words} (log {log})" if words else "not made yet")
-    if seal.identity != point_identity(command):
-        try:
-            check_run(path, command)
-        except BadFile as error:
-            return Finding(STALE, path, error.reason)
-    return Finding(FAILED, path, f"ended with status {seal.status}") if seal.status != "completed" else None
-
-
-def _look_at_summary(path: Path) -> Finding | None:
-    try:
-        read_seal(path)
-        with netCDF4.Dataset(path) as dataset:
-            module, fingerprint = dataset.source_module, dataset.source_fingerprint
-    except BadFile as error:
-        return Finding(CORRUPT, path, error.reason)
-    except (OSError, RuntimeError, AttributeError) as error:
-        return Finding(CORRUPT, path, f"is not a summary ({error})")
-    if fingerprint != source_fingerprint(module):
-        return Finding(STALE, path, f"was made by other sources of {module} than those of now")
+        reason = error.reason
+        if error.kind == "missing":
+            words = last_words(log)
+            reason = f"its job failed: {words} (log {log})" if words else "not made yet"
+        return Finding(error.kind, path, reason)
     return None
 
 

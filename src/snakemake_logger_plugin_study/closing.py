@@ -64,11 +64,8 @@ def _made(results: Path, made: Sequence[str]) -> str:
         return f"made: {', '.join(made) or 'nothing'}"
     inside = [Path(path).relative_to(results).parts for path in made if Path(path).is_relative_to(results)]
     folders = Counter(parts[0] for parts in inside if len(parts) > 1)
-    parts = [
-        *(f"{name} {count}" for name, count in folders.items()),
-        *(names[0] for names in inside if len(names) == 1),
-    ]
-    return f"files made in {results}: {', '.join(parts)}"
+    names = [parts[0] for parts in inside if len(parts) == 1]
+    return f"files made in {results}: {', '.join([*(f'{name} {folders[name]}' for name in folders), *names])}"
 
 
 def _claims(path: Path) -> list[str]:
@@ -84,31 +81,30 @@ def _claims(path: Path) -> list[str]:
     return lines
 
 
-def _flags(path: Path, name: str) -> tuple[int, Counter[str]]:
-    """Return the number of values of a flag variable and how often each meaning occurs."""
+def _flags(path: Path, name: str) -> Counter[str]:
+    """Return how often each meaning of a flag variable occurs."""
     import netCDF4
 
     with netCDF4.Dataset(path) as dataset:
+        dataset.set_auto_mask(False)
         variable = dataset[name]
-        variable.set_auto_mask(False)
         meanings = dict(zip(np.atleast_1d(variable.flag_values), variable.flag_meanings.split(), strict=True))
-        values = variable[:].ravel()
-    return values.size, Counter(meanings[value] for value in values)
+        return Counter(meanings[value] for value in variable[:].flat)
 
 
 def _incomplete(path: Path) -> list[str]:
-    total, meanings = _flags(path, "status")
-    completed = meanings.pop("completed", 0)
+    counts = _flags(path, "status")
+    total, completed = counts.total(), counts.pop("completed", 0)
     if completed == total:
         return [f"points: all {total} completed"]
-    reasons = ", ".join(f"{name} {count}" for name, count in sorted(meanings.items()))
+    reasons = ", ".join(f"{name} {count}" for name, count in sorted(counts.items()))
     return [f"points: {total - completed} of {total} did not complete: {reasons} (status in {path})"]
 
 
 def _undetermined(path: Path) -> list[str]:
-    total, meanings = _flags(path, "kind")
-    count = meanings["undetermined"]
-    return [f"points: kind of motion undetermined at {count} of {total} (kind in {path})"] if count else []
+    counts = _flags(path, "kind")
+    said = f"kind of motion undetermined at {counts['undetermined']} of {counts.total()} (kind in {path})"
+    return [f"points: {said}"] if counts["undetermined"] else []
 
 
 #: {rule: (its file below results, the lines about it)}

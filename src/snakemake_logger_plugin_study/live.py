@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from snakemake_logger_plugin_study.tally import RUNNING, Tally
-from snakemake_logger_plugin_study.wording import failures, time_left
+from snakemake_logger_plugin_study.wording import elapsed, failures, time_left
 
 REFRESHES_PER_SECOND = 2
 #: Seconds after which a job is named, and how many are at most.
@@ -59,20 +59,13 @@ class LiveDisplay:
             cells = [Text(words, style) for words in (stage.name, f"{stage.done} of {stage.total}", at_work)]
             table.add_row(cells[0], *([bar] if self._console.width >= NARROW else []), *cells[1:])
         table.columns[-2].justify = "right"
-        words = ", ".join(part for part in (failed, left, f"{clock(now - self._begin)} so far") if part)
+        words = ", ".join(part for part in (failed, left, f"{elapsed(now - self._begin)} so far") if part)
         long = [(message, now - begin) for begin, message in running if now - begin > LONG_JOB][:LONG_JOBS]
         lines = [Text(words, "bold red" if failed else "bold", no_wrap=True, overflow="ellipsis")]
         for message, seconds in long:
-            lines.append(Text(f"{message}: {clock(seconds)}", "dim", no_wrap=True, overflow="ellipsis"))
+            lines.append(Text(f"{message}: {elapsed(seconds)}", "dim", no_wrap=True, overflow="ellipsis"))
         return Group(table, *lines)
 
     def close(self) -> None:
         """Take the display away and give the cursor back."""
         self._live.stop()
-
-
-def clock(seconds: float) -> str:
-    """Return a duration as 1:23 or 1:02:03."""
-    minutes, rest = divmod(int(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"

@@ -15,7 +15,7 @@ SHORTEST, LONGEST = 10.0, 60.0
 STEP = 0.05
 
 
-class PlainDisplay:
+class PlainDisplay(threading.Thread):
     """Says progress lines from a thread of its own, as long jobs leave nothing in the log.
 
     tally, lock : the state of the run, and what guards it
@@ -23,14 +23,15 @@ class PlainDisplay:
     """
 
     def __init__(self, tally: Tally, lock: threading.RLock, say: Callable[[str], None]) -> None:
+        super().__init__(daemon=True)
         self._tally, self._lock, self._say = tally, lock, say
         self._time, self._done = time.time(), 0
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._watch, daemon=True)
-        self._thread.start()
+        self._closed = threading.Event()
+        self.start()
 
-    def _watch(self) -> None:
-        while not self._stop.wait(1.0):
+    def run(self) -> None:
+        """Say a line whenever one is due."""
+        while not self._closed.wait(1.0):
             with self._lock:
                 line = self.line(time.time())
             if line:
@@ -47,5 +48,5 @@ class PlainDisplay:
 
     def close(self) -> None:
         """End the thread; no line comes after this."""
-        self._stop.set()
-        self._thread.join()
+        self._closed.set()
+        self.join()

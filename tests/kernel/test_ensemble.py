@@ -31,9 +31,9 @@ def events_of(found, k):
     return list(zip(*columns, strict=True))
 
 
-def check_against_scalar(model, ensemble, count, end):
-    """Compare random trajectories, to a status, one by one; return the number of events."""
-    start = states(model, count)
+def check_against_scalar(model, ensemble, count, end, start=None):
+    """Compare trajectories, random ones unless they are given, to a status, one by one; return the number of events."""
+    start = states(model, count) if start is None else start
     found = ensemble.run(*start, [end], events=3000)
     # With a slow driver forces come to their thresholds slowly: their rounding makes more of a difference.
     tolerance = 1e-12 * max(1.0, 0.1 / model.v)
@@ -137,6 +137,31 @@ def test_mirror_images_move_as_mirror_images(model):
         straight, mirrored = ensemble.run(*one, times), ensemble.run(*other, times)
         for key in ("position", "velocity", "slip"):
             assert (straight[key] == mirrored[key][:, :, ::-1]).all()
+
+
+def test_blocks_that_stop_together_are_proved_together(model):
+    """Else each step before the event would only come nearer to it: a state that is its own image takes no more."""
+    start, left_half = states(model, 30), np.arange(model.blocks) < model.blocks // 2
+    rounds = []
+    for some in (start, [np.where(left_half, part[:, ::-1], part) for part in start]):
+        ensemble = new_ensemble(model)
+        events = ensemble.run(*some, [200.0])["event_count"].sum()
+        rounds.append(ensemble.rounds / events)
+    assert rounds[1] < rounds[0]
+
+
+def test_thresholds_behind():
+    """Blocks that start backward, each at its own threshold."""
+    backward = 0
+    for seed in range(4):
+        threshold = np.random.default_rng(seed).uniform(0.4, 2.0, 4)
+        model = Model(Chain(4, 3.0, 0.5, threshold), law_of("nonlinear", 0.3), 0.1, "symmetric")
+        position, velocity, stuck = states(model, 40)
+        start, ensemble = (2.0 * position, velocity, stuck), new_ensemble(model)
+        assert check_against_scalar(model, ensemble, 40, 12.0, start) > 100
+        slip = ensemble.run(*start, np.linspace(0.1, 12.0, 100))["slip"]
+        backward += ((slip[:, 1:] < 0) & (slip[:, :-1] == 0)).sum()
+    assert backward > 10
 
 
 @pytest.mark.parametrize(("law", "initial", "before", "after"), GRAZES)

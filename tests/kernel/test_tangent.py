@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag, expm
 
-from burridge_knopoff.laws import law_of
+from burridge_knopoff.laws import FormulaLaw, law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, Instant, Model
@@ -220,6 +220,25 @@ def test_composition_and_the_direction_of_the_flow(blocks, law, contact, seed, s
     assert np.abs(whole.perturbations - rest @ half.perturbations).max() < 1e-9 * size
     flows = [rate(model, state) for state in (start, whole.instant())]
     assert np.abs(whole.perturbations @ flows[0] - flows[1]).max() < 1e-9 * size
+
+
+@pytest.mark.parametrize(("coupling", "pulling", "v"), [(100.0, 0.01, 0.1), (30.0, 0.003, 1.0), (1e4, 1e-4, 10.0)])
+def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v):
+    """Large forces cancel at the threshold: what their rounding leaves must not hide that a block starts there.
+
+    Friction drops at the start, so that without that a perturbation of the start is lost.
+    """
+    model = Model(Chain(3, coupling, pulling), FormulaLaw(0.3, "(1 - drop)*exp(-a*u)", drop=0.05), v)
+    generator = np.random.default_rng(1)
+    starts = 0
+    for _ in range(6):
+        start = Instant(generator.uniform(-0.2, 0.2, 3) / coupling, generator.uniform(0.3, 0.6, 3), np.zeros(3, bool))
+        whole, events = carry(model, start, 6.0 / pulling**0.5, directions(start))
+        flows = [rate(model, state) for state in (start, whole.instant())]
+        error = np.abs(whole.perturbations @ flows[0] - flows[1]).max()
+        assert error < 1e-9 * np.abs(whole.perturbations).max() * np.abs(flows[0]).max()
+        starts += sum(kind for _, _, kind in events)
+    assert starts > 20
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -3,12 +3,12 @@
 import os
 import re
 import signal
+from functools import partial
 
 import pytest
 
 from burridge_knopoff.provenance.files import (
     check_folder,
-    check_folders,
     check_target,
     display_path,
     nearest_folder,
@@ -96,13 +96,13 @@ def test_folders_that_cannot_be_written_to(tmp_path):
     (tmp_path / "link").symlink_to("nowhere")
     for path, words in (("file", "file is not a folder"), ("link", "link is a link to nowhere, which is not there")):
         for below in (path, f"{path}/study"):
-            for check in (nearest_folder, check_folder, check_folders):
+            for check in (nearest_folder, check_folder, partial(check_folder, inside=True)):
                 with pytest.raises(OSError, match=f"^{re.escape(str(tmp_path))}/{words}$"):
                     check(tmp_path / below)
     with pytest.raises(OSError, match="x.nc: cannot be written: .*file is not a folder$"):
         check_target(tmp_path / "file" / "x.nc")
     assert nearest_folder(tmp_path / "not" / "there") == tmp_path
-    check_folders(tmp_path / "not" / "there")
+    check_folder(tmp_path / "not" / "there", inside=True)
     with pytest.raises(OSError, match=r"^/proc/self is a folder that cannot be written to: "):
         check_folder("/proc/self/results")
 

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.workflow.snakemake import run_snakemake
+
 REPOSITORY = Path(__file__).parent.parent.parent
 
 TINY = """
@@ -46,13 +48,7 @@ class Study:
 
     def run(self, *arguments: str, cores: int = 2) -> subprocess.CompletedProcess[str]:
         """Run Snakemake to its end; standard output and error are captured."""
-        return subprocess.run(
-            self.command(*arguments, cores=cores),
-            cwd=self.folder,
-            capture_output=True,
-            text=True,
-            env=self.environment(),
-        )
+        return run_snakemake(self.command(*arguments, cores=cores), self.folder, self.environment())
 
     def environment(self) -> dict[str, str]:
         """Return the environment of its commands: the package is that of its repository."""

@@ -7,6 +7,7 @@ import pytest
 
 from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
 from tests.workflow.conftest import TINY, Study
+from tests.workflow.snakemake import run_snakemake
 
 # What Snakemake says of itself at every start.
 ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared filesystem", "Building DAG of jobs")
@@ -104,7 +105,7 @@ def test_a_bad_command_line(tmp_path, case):
     arguments, words = LINES[case]
     study = Study(tmp_path, TINY)
     start, _, _ = " ".join(study.command()).partition(" --configfile")
-    run = subprocess.run([*start.split(), *arguments], cwd=tmp_path, capture_output=True, text=True)
+    run = run_snakemake([*start.split(), *arguments], tmp_path, study.environment())
     check(run, tmp_path, ["study.yaml"], words)
 
 

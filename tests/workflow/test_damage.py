@@ -217,12 +217,12 @@ def test_a_bad_file_as_old_as_it_was(finished, copy, path, rule):
 
 
 def test_a_bad_summary_is_remade(finished, copy):
-    target = copy.folder / "results" / "tiny" / "summary" / "orbits.nc"
+    target = copy.folder / "results" / "tiny" / "summary" / "stick_slip.nc"
     times = target.stat()
     rewrite(target, cut)
     os.utime(target, ns=(times.st_atime_ns, times.st_mtime_ns))
-    run = copy.run("-R", "figure_orbits", "--until", "figure_orbits")
+    run = copy.run("-R", "figure_stick_slip", "--until", "figure_stick_slip")
     (command,) = remade(copy, failures(run.stderr).values())
-    assert command.endswith("-R results/tiny/summary/orbits.nc")
+    assert command.endswith("-R results/tiny/summary/stick_slip.nc")
     assert go_on(copy) == []
     assert differences(copy, finished) == []

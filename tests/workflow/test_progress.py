@@ -55,7 +55,7 @@ def test_a_terminal_shows_stages_and_time_left(study):
     assert code == 0, text
     assert re.search(r"^points +[━╸╺ ]+ +\d+ of 16 +\d running", text, re.MULTILINE)
     assert re.search(r"^all +[━╸╺ ]+ +\d+ of 16", text, re.MULTILINE)
-    assert re.search(r"^(a few seconds left|about .* left), \d:\d\d so far", text, re.MULTILINE)
+    assert re.search(r"^(a few seconds left|about .* left), (\d+ min )?\d+ s so far", text, re.MULTILINE)
     assert "16 jobs: points 16" in text
     assert "files made in results/tiny: points 16" in text
     assert "Select jobs to execute" not in text

@@ -18,7 +18,6 @@ except KernelError as error:
 from burridge_knopoff.claims.ledger import read_claims
 from burridge_knopoff.provenance.files import (
     check_folder,
-    check_folders,
     display_path,
     nearest_folder,
 )
@@ -97,7 +96,7 @@ wildcard_constraints:
 def prepare_results():
     """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
     try:
-        check_folders(RESULTS)
+        check_folder(RESULTS, inside=True)
         write_study_record(
             RESULTS, STUDY, CONFIG_FILE, read_yaml(CONFIG_FILE), shlex.join(ARGUMENTS)
         )

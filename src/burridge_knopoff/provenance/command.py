@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 
 #: Options of the chain, and the field of `Chain` that each is.
 CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
+
+# A number of a law goes by its name too: `number sigma`.
+_OPTION = re.compile(r"--(number \w+|[\w-]+)[ =](.*?)(?= --|$)")
 
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
@@ -55,7 +59,7 @@ def _text(value: Any) -> str:
 def difference(found: str, expected: str) -> str:
     """Return in words where two commands differ: `--a 0.08 instead of --a 0.05`."""
     try:
-        one, other = _options(found), _options(expected)
+        one, other = (dict(_OPTION.findall(" ".join(shlex.split(text)))) for text in (found, expected))
     except ValueError:
         one = other = {}
     for key in [*other, *one]:
@@ -63,23 +67,3 @@ def difference(found: str, expected: str) -> str:
             named = [f"--{key} {options[key]}" if key in options else f"no --{key}" for options in (one, other)]
             return " instead of ".join(named)
     return f"`{found}` instead of `{expected}`"
-
-
-def _options(command: str) -> dict[str, str]:
-    """Return the options of a command with their values; a number of a law goes by its name too, as `number sigma`."""
-    options: dict[str, str] = {}
-    key = ""
-    for word in shlex.split(command):
-        if word.startswith("--"):
-            key, _, value = word[2:].partition("=")
-        elif key:
-            value = word
-        else:
-            continue
-        if key == "number" and value:
-            name, _, value = value.partition("=")
-            options[f"number {name}"] = value
-        elif value or key not in options:
-            options[key] = value
-    options.pop("number", None)
-    return options

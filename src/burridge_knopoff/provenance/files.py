@@ -6,7 +6,7 @@ import contextlib
 import glob
 import os
 import secrets
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 
 #: How often a file is written if another process takes its temporary file away.
@@ -28,7 +28,7 @@ def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
     path = Path(os.path.realpath(path))
     # The suffix stays last: matplotlib and others tell the format from it.
     name = ".{}.part-{}{}"
-    for attempt in range(ATTEMPTS):
+    for attempts_left in reversed(range(ATTEMPTS)):
         temporary = path.with_name(name.format(path.stem, secrets.token_hex(4), path.suffix))
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -40,15 +40,13 @@ def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
             break
         except (OSError, RuntimeError) as error:
             # Another process that writes the same file has removed this one, taking its owner for dead.
-            if isinstance(error, FileNotFoundError) and attempt < ATTEMPTS - 1:
-                continue
-            raise OSError(f"{path}: cannot be written: {_reason(error, temporary)}") from error
+            if not (isinstance(error, FileNotFoundError) and attempts_left):
+                raise OSError(f"{path}: cannot be written: {_reason(error, temporary)}") from error
         finally:
             _remove(temporary)
     # Whether the owners of others live cannot be known: on a cluster they run on other machines. One that does live
     # writes once more.
-    left = name.format(glob.escape(path.stem), "[0-9a-f]" * 8, glob.escape(path.suffix))
-    _remove(*path.parent.glob(left))
+    _remove(*path.parent.glob(name.format(glob.escape(path.stem), "[0-9a-f]" * 8, glob.escape(path.suffix))))
 
 
 def _remove(*paths: Path) -> None:
@@ -63,9 +61,8 @@ def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
         return error.strerror or error
     # netCDF4 tells a full disk as "NetCDF: HDF error": whether the disk takes more tells the reason.
     try:
-        with temporary.open("ab") as file:
+        with temporary.open("ab", buffering=0) as file:
             file.write(bytes(PROBE))
-            file.flush()
             os.fsync(file.fileno())
     except OSError as refused:
         return refused.strerror or refused
@@ -88,14 +85,16 @@ def check_target(path: str | Path) -> None:
         raise OSError(f"{path}: cannot be written: {error}") from None
 
 
-def check_folder(path: str | Path) -> None:
-    """Raise OSError, one line that names the folder, if no file could be written into a folder, there or not yet."""
-    _check_access([nearest_folder(path)])
+def check_folder(path: str | Path, *, inside: bool = False) -> None:
+    """Raise OSError, one line that names the folder, if no file could be written into a folder, there or not yet.
 
-
-def check_folders(path: str | Path) -> None:
-    """Raise OSError as `check_folder` does, for a folder and all folders in it."""
-    _check_access([nearest_folder(path), *(folder for folder, _, _ in os.walk(path))])
+    inside : look at all folders in it as well
+    """
+    for folder in (nearest_folder(path), *(Path(folder) for folder, _, _ in os.walk(path) if inside)):
+        if not os.access(folder, os.W_OK | os.X_OK):
+            read_only = os.statvfs(folder).f_flag & os.ST_RDONLY
+            reason = "its file system is read-only" if read_only else "its permissions do not allow it"
+            raise OSError(f"{folder} is a folder that cannot be written to: {reason}")
 
 
 def nearest_folder(path: str | Path) -> Path:
@@ -106,19 +105,11 @@ def nearest_folder(path: str | Path) -> Path:
     folder = Path(path)
     while not os.path.exists(folder):
         if folder.is_symlink():
-            raise OSError(f"{folder} is a link to {os.readlink(folder)}, which is not there")
+            raise OSError(f"{folder} is a link to {folder.readlink()}, which is not there")
         folder = folder.parent
     if not folder.is_dir():
         raise OSError(f"{folder} is not a folder")
     return folder
-
-
-def _check_access(folders: Iterable[str | Path]) -> None:
-    for folder in folders:
-        if not os.access(folder, os.W_OK | os.X_OK):
-            read_only = os.statvfs(folder).f_flag & os.ST_RDONLY
-            reason = "its file system is read-only" if read_only else "its permissions do not allow it"
-            raise OSError(f"{folder} is a folder that cannot be written to: {reason}")
 
 
 def display_path(path: str | Path) -> str:

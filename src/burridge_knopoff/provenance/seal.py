@@ -19,10 +19,13 @@ _LONGEST = 200
 
 
 class BadFile(ValueError):
-    """A file of results that must not be used; the message is one line: file, reason, command that makes it again."""
+    """A file of results that must not be used; the message is one line: file, reason, command that makes it again.
 
-    def __init__(self, path: str | Path, reason: str) -> None:
-        self.path, self.reason = Path(path), reason
+    kind : missing, corrupt, or stale if it is whole
+    """
+
+    def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
+        self.path, self.reason, self.kind = Path(path), reason, kind
         super().__init__(f"{path}: {reason}; remake it: {remake_command(path)}")
 
 
@@ -55,14 +58,13 @@ def read_seal(path: str | Path) -> Seal:
     try:
         content = Path(path).read_bytes()
     except FileNotFoundError:
-        raise BadFile(path, "is missing") from None
+        raise BadFile(path, "is missing", "missing") from None
     except OSError as error:
-        raise BadFile(path, f"cannot be read: {error.strerror}") from None
-    if not content:
-        raise BadFile(path, "is empty")
+        raise BadFile(path, f"cannot be read: {error.strerror}", "corrupt") from None
     found = _SEAL.search(content[-_LONGEST:])
     if found is None:
-        raise BadFile(path, "has no seal at its end: it is cut off, or another program wrote it")
+        reason = "has no seal at its end: it is cut off, or another program wrote it" if content else "is empty"
+        raise BadFile(path, reason, "corrupt")
     if hashlib.sha256(content[: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
-        raise BadFile(path, "has other bytes than were written")
+        raise BadFile(path, "has other bytes than were written", "corrupt")
     return Seal(found[1].decode(), found[2].decode())

@@ -23,12 +23,10 @@ COMPILATION = PACKAGE / "provenance/compilation.py"
 ASSETS = (".css", ".jinja", ".js")
 
 # Comments and texts. Python's own tokenizer and parser take ten times as long, in every job.
-_WORD = re.compile(
-    r"""#[^\n]*|(?:\"{3}(?:[^"\\]|\\.|"(?!""))*\"{3}|'{3}(?:[^'\\]|\\.|'(?!''))*'{3}|"""
-    r""""(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*')""",
-    re.DOTALL,
-)
-_LINE_ENDS = re.compile(r"[ \t]*(?:#.*)?$", re.MULTILINE)
+_TEXT = r'"{3}(?:[^"\\]|\\.|"(?!""))*"{3}'
+_WORD = re.compile(rf"""#[^\n]*|{_TEXT}|"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""", re.DOTALL)
+# A text at the top of a file or after a colon; but after `cdef extern from *:` it is C, which runs.
+_DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|(?<!\*):[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DOTALL | re.MULTILINE)
 #: Comments that Cython obeys.
 _DIRECTIVE = re.compile(r"#\s*(cython|distutils)\s*:")
 _IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?c?import\s+(\([^)]*\)|.+)", re.MULTILINE)
@@ -40,13 +38,9 @@ def source_fingerprint(*entries: str | Path) -> str:
     entries : names of modules, burridge_knopoff.summaries.lyapunov, or paths of Python files
     Raises OSError if a file cannot be read.
     """
-    digest = hashlib.sha256()
-    paths = sources_of(*entries)
-    names = [path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name for path in paths]
     # In the order of the names: that of the paths depends on where they lie and on how they are written.
-    for name, path in sorted(zip(names, paths, strict=True)):
-        digest.update(f"{name} {code_digest(path)}\n".encode())
-    return digest.hexdigest()[:16]
+    digests = sorted((_name(path), code_digest(path)) for path in sources_of(*entries))
+    return hashlib.sha256("".join(f"{name} {digest}\n" for name, digest in digests).encode()).hexdigest()[:16]
 
 
 def sources_of(*entries: str | Path) -> tuple[Path, ...]:
@@ -55,16 +49,14 @@ def sources_of(*entries: str | Path) -> tuple[Path, ...]:
     found: set[Path] = set()
     while waiting:
         path = waiting.pop()
-        if path not in found and not _is_plumbing(path):
+        if path not in found:
             found.add(path)
-            waiting += [file for module in _imports(path) for file in files_of(module)]
+            waiting += _needs(path)
     return tuple(sorted(found))
 
 
-def _is_plumbing(path: Path) -> bool:
-    if path == COMPILATION or not path.is_relative_to(PACKAGE):
-        return False
-    return path.relative_to(PACKAGE).as_posix().startswith(PLUMBING)
+def _name(path: Path) -> str:
+    return path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name
 
 
 @cache
@@ -77,13 +69,8 @@ def files_of(module: str) -> list[Path]:
     if files and path.parent == PACKAGE / "kernel":
         files.append(COMPILATION)
     elif files and path.parent != PACKAGE:
-        files += _assets(path.parent)
+        files += sorted(asset for asset in path.parent.rglob("*") if asset.suffix in ASSETS)
     return files
-
-
-@cache
-def _assets(folder: Path) -> list[Path]:
-    return [path for path in sorted(folder.rglob("*")) if path.suffix in ASSETS]
 
 
 @cache
@@ -99,32 +86,18 @@ def _code(path: Path) -> str:
 
 def code_of(text: str) -> str:
     """Return Python or Cython code without comments, docstrings, empty lines and blanks at the ends of lines."""
-    parts, kept, seen, depth = [], 0, 0, 0
-    for found in _WORD.finditer(text):
-        word, (start, end) = found[0], found.span()
-        between, seen = text[seen:start], end
-        depth += sum(map(between.count, "([{")) - sum(map(between.count, ")]}"))
-        if word[0] == "#":
-            idle = not _DIRECTIVE.match(word)
-        else:
-            # A text is a statement of its own if no bracket is open, nothing stands beside it and no line goes on.
-            line = text.rfind("\n", 0, start) + 1
-            before = text[line:start].lstrip()
-            idle = not (depth or before.strip("rRbBuUfF") or text.endswith("\\\n", 0, line))
-            start -= len(before)
-            idle = idle and _LINE_ENDS.match(text, end) is not None
-        if idle:
-            parts.append(text[kept:start])
-            kept = end
-    return "\n".join(line.rstrip() for line in "".join([*parts, text[kept:]]).splitlines() if line.strip())
+    text = _WORD.sub(lambda word: "" if word[0][0] == "#" and not _DIRECTIVE.match(word[0]) else word[0], text)
+    lines = _DOCSTRING.sub(r"\1", text).splitlines()
+    return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
 @cache
-def _imports(path: Path) -> list[str]:
-    """Return the modules of the package that a file imports."""
+def _needs(path: Path) -> list[Path]:
+    """Return the files of the modules of the package that a file imports, without plumbing."""
     modules = set()
     for start, names in _IMPORT.findall(_code(path) if path.suffix in (".py", ".pxd") else ""):
         start = start.removeprefix("cython.cimports.")
         for name in re.findall(r"([\w.]+)(?:\s+as\s+\w+)?", names):
             modules.update({start, f"{start}.{name}"} if start else {name})
-    return sorted(name for name in modules if name.startswith(f"{PACKAGE.name}.") and files_of(name))
+    files = [file for name in modules if name.startswith(f"{PACKAGE.name}.") for file in files_of(name)]
+    return [file for file in files if file == COMPILATION or not _name(file).startswith(PLUMBING)]

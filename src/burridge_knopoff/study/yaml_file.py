@@ -72,8 +72,8 @@ def read_yaml(path: str | Path) -> Any:
         raise ConfigError(f"{file}: cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise ConfigError(f"{file}: cannot be read: not UTF-8 text") from None
-    # All but the first are what PyYAML lets through, as for the value of a tag that it does not fit.
-    except (yaml.YAMLError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
+    # PyYAML also raises what Python does, as for a date that is none.
+    except Exception as error:
         mark = getattr(error, "problem_mark", None)
         problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
         place = f" (line {mark.line + 1})" if mark else ""
