@@ -1,0 +1,204 @@
+"""The synchronized orbit, proved: that it exists, its events, that no others come between them, its multipliers.
+
+The unknowns are the positions just after the first start of a period, when all blocks are at rest, and how long each
+arc takes. The equations are that each arc ends with its event, and that the positions return. The transverse
+multiplier has a closed form (docs/synchronization.md); of the five others one is that of the flow, three are 0 since
+three blocks stop, and one is the derivative of the return map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from itertools import pairwise
+from typing import Any
+
+from flint import arb
+
+from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, STIFFNESS, Arc, State, oscillation
+from burridge_knopoff.proof.balls import ProofError, arithmetic
+from burridge_knopoff.proof.bounds import Function, bounds, check_positive
+from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
+from burridge_knopoff.stability.orbit import Orbit
+
+#: Unknowns of an orbit before the durations of its arcs: the two positions.
+PLACES = 2
+
+
+def followed(arcs: Sequence[Arc], unknown: Sequence[Any], a: Any) -> list[State]:
+    """Return the states at the beginning of each arc and, after the last of them, at the end of the period.
+
+    unknown : positions x and y of blocks at rest, and the duration of each arc
+    """
+    states = [State((unknown[0], unknown[1]), (-1, -1))]
+    for arc, time in zip(arcs, unknown[PLACES:], strict=True):
+        states.append(arc.last(arc.after(states[-1], a, time)))
+    return states
+
+
+def equations(arcs: Sequence[Arc]) -> Equations:
+    """Return the equations of a periodic orbit: what is 0 as each arc ends, and how far positions return.
+
+    They take the unknowns of `followed` and a.
+    """
+
+    def values(unknown: Sequence[Any]) -> list[Any]:
+        *orbit, a = unknown
+        found, state = [], State((orbit[0], orbit[1]), (-1, -1))
+        for arc, time in zip(arcs, orbit[PLACES:], strict=True):
+            # Only of the state before the event may be asked whether it is one: a stop makes the speed 0 anyway.
+            before = arc.after(state, a, time)
+            found.append(arc.margin(arc.ends, before, a))
+            state = arc.last(before)
+        return found + [state.position[k] - orbit[k] for k in range(PLACES)]
+
+    return values
+
+
+def transverse(arcs: Sequence[Arc], times: Sequence[Any], a: Any) -> Any:
+    """Return by what a small difference of blocks 1 and 3 is multiplied in a period.
+
+    times : durations of the arcs. The difference grows while they slip, from rest, as (1, 0, −1) does.
+    """
+    slip = sum(time for arc, time in zip(arcs, times, strict=True) if arc.slips[LATERAL])
+    return oscillation(STIFFNESS[LATERAL], a, slip, 1, 0)[0]
+
+
+def arcs_of(orbit: Orbit) -> tuple[tuple[Arc, ...], list[float]]:
+    """Return the arcs of a synchronized orbit in double precision, and its unknowns: only a guess.
+
+    Raises ProofError unless all blocks stick at its reference instant, and each starts and stops once.
+    """
+    events = [(time, (LATERAL, CENTER)[block]) for time, block, _ in orbit.events if block < 2]
+    kinds = sorted((block, kind) for _, block, kind in orbit.events if block < 2)
+    if not orbit.reference.stuck.all() or kinds != [(0, 0), (0, 1), (1, 0), (1, 1)]:
+        raise ProofError(f"a = {orbit.model.a!r}: not proved: an orbit on which a block does not stop once a period")
+    first = events[0][0]
+    slips, arcs = [False, False], []
+    for k, (_, block) in enumerate(events):
+        slips[block] = not slips[block]
+        arcs.append(Arc((slips[0], slips[1]), events[(k + 1) % len(events)][1]))
+    clock = [time for time, _ in events] + [first + orbit.period]
+    position = [float(x) / orbit.model.v - first for x in orbit.reference.position[:2]]
+    return tuple(arcs), position + [late - early for early, late in pairwise(clock)]
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedOrbit:
+    """A synchronized orbit that is proved to exist, for every a of a ball, and to be the only one in a box.
+
+    arcs : from the first start of a period on
+    a : friction parameter, a ball
+    enclosure : of the unknowns; its inner part may have been narrowed to hold a solution of more equations
+    """
+
+    arcs: tuple[Arc, ...]
+    a: arb
+    enclosure: Enclosure
+
+    @property
+    def times(self) -> tuple[arb, ...]:
+        """Durations of the arcs."""
+        return self.enclosure.inner[PLACES:]
+
+    @property
+    def period(self) -> arb:
+        """The period T."""
+        with arithmetic():
+            return sum(self.times, arb(0))
+
+    @property
+    def event_times(self) -> list[arb]:
+        """Times of the events that end each arc, since the first start of the period; the last is the period."""
+        with arithmetic():
+            return [sum(self.times[: k + 1], arb(0)) for k in range(len(self.times))]
+
+    @cached_property
+    def multiplier(self) -> arb:
+        """The transverse Floquet multiplier μ."""
+        with arithmetic():
+            return transverse(self.arcs, self.times, self.a)
+
+    @cached_property
+    def symmetric_multiplier(self) -> arb:
+        """The multiplier of mirror-symmetric perturbations, all others of which are 0 or that of the flow.
+
+        When all blocks stick, a shift of all of them alike is one along the flow. What a period makes of x − y is the
+        multiplier: a start changes no perturbation, a stop takes the velocity away (docs/synchronization.md).
+        """
+        change = State((1, 0), (0, 0), ground=0)
+        with arithmetic():
+            for arc, time in zip(self.arcs, self.times, strict=True):
+                change = arc.last(arc.after(change, self.a, time))
+            return change.position[LATERAL] - change.position[CENTER]
+
+    @cached_property
+    def slope(self) -> arb:
+        """The derivative dμ/da along the family of orbits, for all a of the ball."""
+
+        def values(unknown: Sequence[Any]) -> list[Any]:
+            return [*equations(self.arcs)(unknown), transverse(self.arcs, unknown[PLACES:-1], unknown[-1])]
+
+        count = len(self.enclosure.inner)
+        matrix = derivatives(values, [*self.enclosure.inner, self.a])
+        orbit, last = range(count), [count]
+        with arithmetic():
+            moved = solved(part(matrix, orbit, orbit), part(matrix, orbit, last))
+            change = part(matrix, last, last) - part(matrix, last, orbit) * moved
+            return change[0, 0]
+
+    def check_arcs(self) -> None:
+        """Prove that no block stops or starts inside an arc, and that every event passes through 0 at a rate.
+
+        Raises ProofError, one line: which block, on which arc, when.
+        """
+        for k, (arc, state, time) in enumerate(self._each_arc()):
+            started = self.arcs[k - 1].ends if arc.slips[self.arcs[k - 1].ends] else None
+            for block in (LATERAL, CENTER):
+                margin = self._margin(arc, state, block)
+                try:
+                    check_positive(margin, time, starts=block == started, ends=block == arc.ends)
+                except ProofError as error:
+                    raise ProofError(f"{NAMES[block]}, {arc.name}: not proved to go on as they do: {error}") from None
+
+    def fastest(self) -> arb:
+        """Return a ball that holds all speeds U'/v of slipping blocks."""
+        return self._hull(True)
+
+    def tightest(self) -> arb:
+        """Return a ball that holds (1 − s)/v, s the spring force, of all blocks that stick."""
+        return self._hull(False)
+
+    def _hull(self, slipping: bool) -> arb:
+        found = [
+            bounds(self._margin(arc, state, block), time)
+            for arc, state, time in self._each_arc()
+            for block in (LATERAL, CENTER)
+            if arc.slips[block] == slipping
+        ]
+        with arithmetic():
+            return reduce(arb.union, found)
+
+    def _margin(self, arc: Arc, state: State, block: int) -> Function:
+        """Return the margin of a block as a function of the time since the state at the beginning of an arc."""
+        return lambda time: arc.margin(block, arc.after(state, self.a, time), self.a)
+
+    def _each_arc(self) -> list[tuple[Arc, State, arb]]:
+        """Return each arc, the state at its beginning and its duration."""
+        with arithmetic():
+            states = followed(self.arcs, self.enclosure.inner, self.a)
+        return list(zip(self.arcs, states, self.times, strict=False))
+
+
+def prove_orbit(orbit: Orbit, a: arb) -> ProvedOrbit:
+    """Return the proof that there is a synchronized orbit near one in double precision.
+
+    a : friction parameter, a narrow ball around that of the orbit
+    Raises ProofError, one line, where there is no proof of it.
+    """
+    arcs, guess = arcs_of(orbit)
+    middle = polished(equations(arcs), guess, [a.mid()])
+    proved = ProvedOrbit(arcs, a, widest(equations(arcs), middle, [a]))
+    proved.check_arcs()
+    return proved
