@@ -37,11 +37,11 @@ def around(low: arb | float, high: arb | float) -> arb:
 
 
 def decimal(numerator: int, denominator: int) -> arb:
-    """Return a ball that holds a fraction and the double nearest to it: what a file writes, and what a program reads."""
+    """Return a ball that holds a fraction and the double nearest to it: what is written, and what is computed with."""
     return (arb(numerator) / denominator).union(arb(numerator / denominator))
 
 
-def ends(ball: arb) -> tuple[float, float]:
+def limits(ball: arb) -> tuple[float, float]:
     """Return doubles between which a ball lies: the nearest ones that do.
 
     Raises ProofError for a ball that is not finite.
@@ -58,7 +58,7 @@ def ends(ball: arb) -> tuple[float, float]:
 
 def width(ball: arb) -> float:
     """Return a double that is no less than the width of a ball."""
-    return ends(2 * ball.rad())[1]
+    return limits(2 * ball.rad())[1]
 
 
 def digits(ball: arb, count: int = 40) -> str:

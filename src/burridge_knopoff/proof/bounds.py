@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import arb, arb_series, fmpq
 
-from burridge_knopoff.proof.balls import ProofError, arithmetic, around, ends
+from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
 
 #: A function of time, in power series.
 Function = Callable[[Any], Any]
@@ -70,7 +70,7 @@ def bounds(function: Function, length: arb) -> arb:
     """Return a ball that holds all values of a function from time 0 to the length of an arc."""
     found = [jet(function, piece)[0] for piece in _pieces(length)]
     with arithmetic():
-        return around(min(ends(value)[0] for value in found), max(ends(value)[1] for value in found))
+        return around(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
 
 
 def _pieces(length: arb) -> Iterator[arb]:

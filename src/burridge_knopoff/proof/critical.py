@@ -15,7 +15,17 @@ from flint import arb, fmpq
 
 from burridge_knopoff.proof.arcs import Arc
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around
-from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, enclose, inflated, part, polished, solved, widest
+from burridge_knopoff.proof.krawczyk import (
+    Enclosure,
+    Equations,
+    derivatives,
+    enclose,
+    inflated,
+    part,
+    polished,
+    solved,
+    widest,
+)
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, arcs_of, equations, transverse
 from burridge_knopoff.stability.orbit import Orbit
 
@@ -154,9 +164,7 @@ def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -
 
 
 def _on_line(middle: Sequence[arb], direction: Sequence[arb], way: Any, distance: Sequence[Any]) -> list[Any]:
-    return [
-        value + rate * way + beside for value, rate, beside in zip(middle, direction, distance, strict=True)
-    ]
+    return [value + rate * way + beside for value, rate, beside in zip(middle, direction, distance, strict=True)]
 
 
 def _check_joined(left: Piece, right: Piece, a: fmpq) -> None:

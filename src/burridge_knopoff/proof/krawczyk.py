@@ -79,9 +79,9 @@ def enclose(
         outer = [value + arb(0, radius) for value, radius in zip(middle, radii, strict=True)]
         inverse = _inverse(equations, middle, parameters)
         inner = _krawczyk(equations, outer, parameters, inverse)
-        for k, (box, image) in enumerate(zip(outer, inner, strict=True)):
-            if not box.contains_interior(image):
-                raise ProofError(f"unknown {k + 1}: {image} is not allowed: in the interior of {box}")
+        for k, (box, mapped) in enumerate(zip(outer, inner, strict=True)):
+            if not box.contains_interior(mapped):
+                raise ProofError(f"unknown {k + 1}: {mapped} is not allowed: in the interior of {box}")
         for _ in range(SHRINKING):
             before, image = inner, _krawczyk(equations, inner, parameters, inverse)
             # Both hold the solution, and so does what they have in common.
