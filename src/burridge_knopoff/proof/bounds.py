@@ -39,9 +39,12 @@ def check_positive(function: Function, length: arb, starts: bool = False, ends: 
     length : a ball; the proof is for every length in it
     starts : whether function and first derivative are exactly 0 at time 0
     ends : whether the function is exactly 0 at the end, for whatever length in the ball is the true one
-    Raises ProofError with the time at which that could not be proved.
+    Raises ProofError with the time at which that could not be proved, and if a root cannot be where it is said to be.
     """
     with arithmetic(3):
+        known = [*(jet(function, arb(0))[:2] if starts else ()), *(jet(function, length)[:1] if ends else ())]
+        if not all(value.contains(0) for value in known):
+            raise ProofError(f"there is no root at its {'start' if starts else 'end'} that could be left out")
         last = length.upper()
         pieces = [(0, 0)]
         while pieces:

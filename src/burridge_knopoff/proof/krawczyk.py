@@ -83,6 +83,7 @@ def enclose(
             if not box.contains_interior(mapped):
                 raise ProofError(f"unknown {k + 1}: {mapped} is not allowed: in the interior of {box}")
         for _ in range(SHRINKING):
+            inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
             before, image = inner, _krawczyk(equations, inner, parameters, inverse)
             # Both hold the solution, and so does what they have in common.
             inner = [box.intersection(smaller) for box, smaller in zip(before, image, strict=True)]

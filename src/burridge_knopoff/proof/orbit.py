@@ -20,7 +20,7 @@ from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, STIFFNESS, Arc, 
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.bounds import Function, bounds, check_positive
 from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
-from burridge_knopoff.stability.orbit import Orbit
+from burridge_knopoff.stability.orbit import Orbit, flow
 
 #: Unknowns of an orbit before the durations of its arcs: the two positions.
 PLACES = 2
@@ -68,20 +68,24 @@ def transverse(arcs: Sequence[Arc], times: Sequence[Any], a: Any) -> Any:
 def arcs_of(orbit: Orbit) -> tuple[tuple[Arc, ...], list[float]]:
     """Return the arcs of a synchronized orbit in double precision, and its unknowns: only a guess.
 
-    Raises ProofError unless all blocks stick at its reference instant, and each starts and stops once.
+    Raises ProofError unless all blocks stick at once, and each starts and stops once a period.
     """
-    events = [(time, (LATERAL, CENTER)[block]) for time, block, _ in orbit.events if block < 2]
-    kinds = sorted((block, kind) for _, block, kind in orbit.events if block < 2)
-    if not orbit.reference.stuck.all() or kinds != [(0, 0), (0, 1), (1, 0), (1, 1)]:
-        raise ProofError(f"a = {orbit.model.a!r}: not proved: an orbit on which a block does not stop once a period")
-    first = events[0][0]
-    slips, arcs = [False, False], []
-    for k, (_, block) in enumerate(events):
+    events = [(time, block) for time, block, _ in orbit.events if block in (LATERAL, CENTER)]
+    slips = [not stuck for stuck in orbit.reference.stuck[:2]]
+    before = []
+    for _, block in events:
+        before.append((slips[LATERAL], slips[CENTER]))
         slips[block] = not slips[block]
-        arcs.append(Arc((slips[0], slips[1]), events[(k + 1) % len(events)][1]))
-    clock = [time for time, _ in events] + [first + orbit.period]
-    position = [float(x) / orbit.model.v - first for x in orbit.reference.position[:2]]
-    return tuple(arcs), position + [late - early for early, late in pairwise(clock)]
+    if sorted(block for _, block in events) != [0, 0, 1, 1] or (False, False) not in before:
+        raise ProofError(f"a = {orbit.model.a!r}: not covered: all blocks stick at once, and each stops once a period")
+    first = before.index((False, False))
+    # A period from the first start on, to the next.
+    cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]
+    slipping = before[first + 1 :] + before[: first + 1]
+    arcs = [Arc(state, block) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
+    start = flow(orbit.model, orbit.reference, cycle[0][0])[0].instant()
+    position = [float(x) / orbit.model.v for x in start.position[:PLACES]]
+    return tuple(arcs), position + [late - early for (early, _), (late, _) in pairwise(cycle)]
 
 
 @dataclass(frozen=True, eq=False)

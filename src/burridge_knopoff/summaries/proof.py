@@ -168,7 +168,7 @@ def digest(dataset: xarray.Dataset) -> str:
         "",
         f"a_c = {dataset['critical_a_digits'].item()}",
         f"    lies between the doubles {_between(dataset['critical_a'])}.",
-        f"    For every a from {low:g} to {high:g} there is a synchronized orbit; each block stops once a period on it.",
+        f"    For every a from {low:g} to {high:g} there is a synchronized orbit, and each block stops once a period.",
         "    Its transverse multiplier mu rises with a: below 1 before a_c, 1 there and nowhere else, above 1 beyond.",
         f"    At a_c it passes 1 with d mu/d a between {_between(dataset['multiplier_slope'].sel(orbit='critical'))}.",
     ]
