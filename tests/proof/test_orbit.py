@@ -47,7 +47,7 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
 
 
 # Below 0.0757 the lateral blocks start first.
-@pytest.mark.parametrize("a", [0.04, 0.05, 0.07, 0.08, 0.0869, 0.15, 0.3])
+@pytest.mark.parametrize("a", [0.05, 0.07, 0.08, 0.0869, 0.15, 0.3])
 def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     proved, orbit = proved_at(family, a), family.at(a)
     assert float(proved.period) == pytest.approx(orbit.period, abs=1e-13)
@@ -190,9 +190,9 @@ def push_of(state, push):
     return replace(state, velocity=(state.velocity[0], state.velocity[1] + arb(push)))
 
 
-@pytest.mark.parametrize("a", [0.01, 0.037])
+@pytest.mark.parametrize("a", [0.01, 0.04])
 def test_an_orbit_on_which_not_all_blocks_stick_at_once_is_not_covered(family, a):
-    """At 0.01 block 2 never stops, at 0.037 it does so while blocks 1 and 3 slip."""
+    """At 0.01 block 2 never stops, at 0.04 it does so only after blocks 1 and 3 have started."""
     with pytest.raises(ProofError, match=rf"a = {a}: not covered: all blocks stick at once, and each stops once a per"):
         prove_orbit(family.at(a), arb(a))
 

@@ -49,7 +49,7 @@ def test_intervals_are_narrow_and_open_to_the_right_sides(found):
     for name in ("critical_a", "a", "period", "event_time", "position", "multiplier", "multiplier_slope"):
         low, high = (found[name].sel(end=end).values for end in proof.END)
         assert (low <= high).all()
-        assert (high - low < 1e-14).all()
+        assert (high - low < 1e-13).all()
     low, high = found["critical_a"].values
     assert high - low < proof.NARROW
     assert found["critical_a_width"].item() < 1e-50
