@@ -98,13 +98,15 @@ def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a)
 
 
 def test_a_shift_along_the_flow_returns(proved):
-    """The multiplier of the flow is 1: what a period makes of x = y + nothing else."""
+    """The multiplier of the flow is 1: all blocks stick, and a shift of all of them alike comes back as it was."""
     change = State((1, 1), (0, 0), ground=0)
     with arithmetic():
         for arc, time in zip(proved.arcs, proved.times, strict=True):
             change = arc.last(arc.after(change, proved.a, time))
-        assert (change.position[0] - change.position[1]).contains(0)
-        assert abs(change.position[0] - change.position[1]) < 1e-45
+        for shift, rate in zip(change.position, change.velocity, strict=True):
+            assert shift.contains(1)
+            assert abs(shift - 1) < 1e-45
+            assert rate == 0
 
 
 def test_bounds_of_speed_and_force_are_those_of_a_run(proved, family):

@@ -68,7 +68,8 @@ class Arc:
             return _sliding(state, a, time)
         if any(self.slips):
             return _pulled(state, a, time, self.slips.index(True))
-        return replace(state, position=tuple(x - time for x in state.position))
+        x, y = state.position
+        return replace(state, position=(x + state.ground * time, y + state.ground * time))
 
     def margin(self, block: int, state: State, a: Any) -> Any:
         """Return what is positive while a block goes on as it does, in units of v.
