@@ -1,13 +1,8 @@
 # Proof: the synchronized orbit of the paper's chain under its linearized law, and where it is lost, in ball arithmetic.
 
 
-def proved_config():
-    """Return what decides the model of the proof; raises ConfigError if the proof covers no model of the study."""
-    if not STUDY.proved_law:
-        raise ConfigError(
-            f"study {STUDY.name}: nothing to prove: the proof is of the paper's linearized law and chain of 3 blocks"
-        )
-    return model_config([STUDY.proved_law])
+# For stages that take it where there is one.
+PROOF = [f"{SUMMARY}/proof.nc"] if STUDY.proved_law else []
 
 
 rule proof:
@@ -35,7 +30,3 @@ rule proof:
         "proof: the loss of synchrony in ball arithmetic"
     script:
         "../scripts/proof.py"
-
-
-# For stages that take it where there is one.
-PROOF = [f"{SUMMARY}/proof.nc"] if STUDY.proved_law else []

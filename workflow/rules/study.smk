@@ -16,6 +16,7 @@ except KernelError as error:
     sys.exit(f"{error}")
 
 from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.proof.scope import LARGEST_V
 from burridge_knopoff.provenance.files import (
     check_folder,
     check_folders,
@@ -154,6 +155,16 @@ def other_length_config(laws=STUDY.laws):
             f"chain.{key}: {STUDY.config['chain'][key]} is not allowed for chains of another length: one number"
         )
     return model_config(laws)
+
+
+def proved_config():
+    """Return what decides the model of the proof; raises ConfigError if the proof covers no model of the study."""
+    if not STUDY.proved_law:
+        raise ConfigError(
+            f"study {STUDY.name}: nothing to prove: the proof is of the paper's linearized law and chain of 3 blocks, "
+            f"with v at most {LARGEST_V:g} under a symmetric contact"
+        )
+    return model_config([STUDY.proved_law])
 
 
 def motion_config():
