@@ -52,4 +52,4 @@ def test_a_study_without_what_is_proved_is_told_so_and_goes_on(tmp_path, other):
 
 def test_claims_and_summaries_ask_for_it(study):
     for target in ("summary", "results/tiny/summary/claims.json"):
-        assert re.search(r"^proof +1$", study.ok("-n", "--quiet", "rules", target), re.MULTILINE)
+        assert re.search(r"^proof +1$", study.ok(target, "-n", "--quiet", "rules"), re.MULTILINE)
