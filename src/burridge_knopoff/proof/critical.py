@@ -17,7 +17,6 @@ from burridge_knopoff.proof.arcs import Arc
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around
 from burridge_knopoff.proof.krawczyk import (
     Enclosure,
-    Equations,
     derivatives,
     enclose,
     inflated,
@@ -26,7 +25,7 @@ from burridge_knopoff.proof.krawczyk import (
     solved,
     widest,
 )
-from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, arcs_of, equations, transverse
+from burridge_knopoff.proof.orbit import ProvedOrbit, arcs_of, equations
 from burridge_knopoff.stability.orbit import Orbit
 
 # A range of a is halved into pieces of this width at most, and so often at most.
@@ -76,15 +75,6 @@ class Piece:
                 raise ProofError(f"a = {a}: not proved to be an orbit of the family")
 
 
-def critical_equations(arcs: Sequence[Arc]) -> Equations:
-    """Return the equations of a periodic orbit with the multiplier 1, whose last unknown is a."""
-
-    def values(unknown: Sequence[Any]) -> list[Any]:
-        return [*equations(arcs)(unknown), transverse(arcs, unknown[PLACES:-1], unknown[-1]) - 1]
-
-    return values
-
-
 def prove_critical(orbit: Orbit) -> Critical:
     """Return the proof that the multiplier of the synchronized orbit passes 1, at an a near that of an orbit.
 
@@ -92,7 +82,7 @@ def prove_critical(orbit: Orbit) -> Critical:
     Raises ProofError, one line, where there is no proof of it.
     """
     arcs, guess = arcs_of(orbit)
-    system = critical_equations(arcs)
+    system = equations(arcs, critical=True)
     found = widest(system, polished(system, [*guess, orbit.model.a]))
     proved = ProvedOrbit(arcs, found.inner[-1], Enclosure(found.inner[:-1], found.outer[:-1]))
     proved.check_arcs()

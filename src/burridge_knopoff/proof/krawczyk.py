@@ -21,6 +21,8 @@ Equations = Callable[[Sequence[Any]], Sequence[Any]]
 
 # Newton's method doubles the digits of a guess this often: those of a double to more than there are.
 POLISHING = 6
+# A step this small has more than doubled its digits: to more than the remainders of any arc leave.
+POLISHED = 2.0**-60
 # The box in which there is one solution is looked for with these half-widths.
 LARGEST_RADIUS = 2.0**-8
 HALVINGS = 20
@@ -40,12 +42,15 @@ class Enclosure:
     outer: tuple[arb, ...]
 
 
-def derivatives(function: Equations, at: Sequence[arb]) -> arb_mat:
-    """Return the enclosure of the derivatives of each value (rows) with respect to each unknown (columns)."""
+def derivatives(function: Equations, at: Sequence[arb], chosen: Sequence[int] | None = None) -> arb_mat:
+    """Return the enclosure of the derivatives of each value (rows) with respect to each unknown (columns).
+
+    chosen : numbers of the unknowns if not all are wanted
+    """
     columns = []
     with arithmetic(2):
-        for chosen in range(len(at)):
-            point = [arb_series([value, 1] if k == chosen else [value]) for k, value in enumerate(at)]
+        for column in range(len(at)) if chosen is None else chosen:
+            point = [arb_series([value, 1] if k == column else [value]) for k, value in enumerate(at)]
             columns.append([arb_series(value)[1] for value in function(point)])
     return arb_mat(columns).transpose()
 
@@ -61,8 +66,10 @@ def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[ar
         point = [arb(value).mid() for value in guess]
         for _ in range(POLISHING):
             at = [*point, *parameters]
-            step = solved(part(derivatives(equations, at), count, count), _column(equations(at)))
+            step = solved(part(derivatives(equations, at, count), count, count), _column(equations(at)))
             point = [(value - step[k, 0]).mid() for k, value in enumerate(point)]
+            if all(abs(step[k, 0].mid()) < POLISHED for k in count):
+                break
     return point
 
 
@@ -127,7 +134,7 @@ def _krawczyk(equations: Equations, box: Sequence[arb], parameters: Sequence[arb
 def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> arb_mat:
     """Return a matrix of exact numbers, the inverse of the derivatives up to their error."""
     count = range(len(middle))
-    derivative = derivatives(equations, [*middle, *(value.mid() for value in parameters)])
+    derivative = derivatives(equations, [*middle, *(value.mid() for value in parameters)], count)
     exact = arb_mat([[derivative[i, k].mid() for k in count] for i in count])
     try:
         return arb_mat([[entry.mid() for entry in row] for row in exact.inv().tolist()])

@@ -1,9 +1,9 @@
 """The synchronized orbit, proved: that it exists, its events, that no others come between them, its multipliers.
 
 The unknowns are the positions just after the first start of a period, when all blocks are at rest, and how long each
-arc takes. The equations are that each arc ends with its event, and that the positions return. The transverse
-multiplier has a closed form (docs/synchronization.md); of the five others one is that of the flow, three are 0 since
-three blocks stop, and one is the derivative of the return map.
+arc takes. The equations are that each arc ends with its event, and that the positions return. Of the six multipliers
+one is that of the flow, three are 0 since three blocks stop, one is what a period makes of a small difference of
+blocks 1 and 3, and one what it makes of a shift of both.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from typing import Any
 
 from flint import arb
 
-from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, STIFFNESS, Arc, State, oscillation
+from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.bounds import Function, bounds, check_positive
+from burridge_knopoff.proof.flows import flow_of
 from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
 from burridge_knopoff.stability.orbit import Orbit, flow
 
@@ -26,43 +27,33 @@ from burridge_knopoff.stability.orbit import Orbit, flow
 PLACES = 2
 
 
-def followed(arcs: Sequence[Arc], unknown: Sequence[Any], a: Any) -> list[State]:
-    """Return the states at the beginning of each arc and, after the last of them, at the end of the period.
+def followed(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
+    """Return the states at the beginning of each arc and at the end of the period, and what is 0 as each arc ends.
 
-    unknown : positions x and y of blocks at rest, and the duration of each arc
+    unknown : positions x and y of blocks at rest, the duration of each arc, and a
     """
-    states = [State((unknown[0], unknown[1]), (-1, -1))]
-    for arc, time in zip(arcs, unknown[PLACES:], strict=True):
-        states.append(arc.last(arc.after(states[-1], a, time)))
-    return states
+    *orbit, a = unknown
+    states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
+    for arc, time in zip(arcs, orbit[PLACES:], strict=True):
+        # Only of the state before the event may be asked whether it is one: a stop makes the speed 0 anyway.
+        before = arc.after(states[-1], a, time)
+        found.append(arc.margin(arc.ends, before, a))
+        states.append(arc.last(before))
+    return states, found
 
 
-def equations(arcs: Sequence[Arc]) -> Equations:
-    """Return the equations of a periodic orbit: what is 0 as each arc ends, and how far positions return.
+def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
+    """Return the equations of a periodic orbit, in the unknowns of `followed`: events, and that positions return.
 
-    They take the unknowns of `followed` and a.
+    critical : whether the transverse multiplier is to be 1 as well
     """
 
     def values(unknown: Sequence[Any]) -> list[Any]:
-        *orbit, a = unknown
-        found, state = [], State((orbit[0], orbit[1]), (-1, -1))
-        for arc, time in zip(arcs, orbit[PLACES:], strict=True):
-            # Only of the state before the event may be asked whether it is one: a stop makes the speed 0 anyway.
-            before = arc.after(state, a, time)
-            found.append(arc.margin(arc.ends, before, a))
-            state = arc.last(before)
-        return found + [state.position[k] - orbit[k] for k in range(PLACES)]
+        states, found = followed(arcs, unknown)
+        returned = [states[-1].position[k] - unknown[k] for k in range(PLACES)]
+        return [*found, *returned, *([states[-1].difference[0] - 1] if critical else [])]
 
     return values
-
-
-def transverse(arcs: Sequence[Arc], times: Sequence[Any], a: Any) -> Any:
-    """Return by what a small difference of blocks 1 and 3 is multiplied in a period.
-
-    times : durations of the arcs. The difference grows while they slip, from rest, as (1, 0, −1) does.
-    """
-    slip = sum(time for arc, time in zip(arcs, times, strict=True) if arc.slips[LATERAL])
-    return oscillation(STIFFNESS[LATERAL], a, slip, 1, 0)[0]
 
 
 def arcs_of(orbit: Orbit) -> tuple[tuple[Arc, ...], list[float]]:
@@ -82,7 +73,8 @@ def arcs_of(orbit: Orbit) -> tuple[tuple[Arc, ...], list[float]]:
     # A period from the first start on, to the next.
     cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]
     slipping = before[first + 1 :] + before[: first + 1]
-    arcs = [Arc(state, block) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
+    flow_of_law = flow_of(orbit.model)
+    arcs = [Arc(state, block, flow_of_law) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
     start = flow(orbit.model, orbit.reference, cycle[0][0])[0].instant()
     position = [float(x) / orbit.model.v for x in start.position[:PLACES]]
     return tuple(arcs), position + [late - early for (early, _), (late, _) in pairwise(cycle)]
@@ -118,11 +110,15 @@ class ProvedOrbit:
         with arithmetic():
             return [sum(self.times[: k + 1], arb(0)) for k in range(len(self.times))]
 
+    @property
+    def _unknown(self) -> list[arb]:
+        return [*self.enclosure.inner, self.a]
+
     @cached_property
     def multiplier(self) -> arb:
-        """The transverse Floquet multiplier μ."""
+        """The transverse Floquet multiplier μ: what a period makes of a small difference of blocks 1 and 3."""
         with arithmetic():
-            return transverse(self.arcs, self.times, self.a)
+            return followed(self.arcs, self._unknown)[0][-1].difference[0]
 
     @cached_property
     def symmetric_multiplier(self) -> arb:
@@ -131,21 +127,18 @@ class ProvedOrbit:
         When all blocks stick, a shift of all of them alike is one along the flow. What a period makes of x − y is the
         multiplier: a start changes no perturbation, a stop takes the velocity away (docs/synchronization.md).
         """
-        change = State((1, 0), (0, 0), ground=0)
-        with arithmetic():
-            for arc, time in zip(self.arcs, self.times, strict=True):
-                change = arc.last(arc.after(change, self.a, time))
-            return change.position[LATERAL] - change.position[CENTER]
+
+        def apart(unknown: Sequence[Any]) -> list[Any]:
+            x, y = followed(self.arcs, unknown)[0][-1].position
+            return [x - y]
+
+        return derivatives(apart, self._unknown, [0])[0, 0]
 
     @cached_property
     def slope(self) -> arb:
         """The derivative dμ/da along the family of orbits, for all a of the ball."""
-
-        def values(unknown: Sequence[Any]) -> list[Any]:
-            return [*equations(self.arcs)(unknown), transverse(self.arcs, unknown[PLACES:-1], unknown[-1])]
-
+        matrix = derivatives(equations(self.arcs, critical=True), self._unknown)
         count = len(self.enclosure.inner)
-        matrix = derivatives(values, [*self.enclosure.inner, self.a])
         orbit, last = range(count), [count]
         with arithmetic():
             moved = solved(part(matrix, orbit, orbit), part(matrix, orbit, last))
@@ -186,12 +179,13 @@ class ProvedOrbit:
 
     def _margin(self, arc: Arc, state: State, block: int) -> Function:
         """Return the margin of a block as a function of the time since the state at the beginning of an arc."""
-        return lambda time: arc.margin(block, arc.after(state, self.a, time), self.a)
+        path = arc.flow.path(arc.slips, state, self.a)
+        return lambda time: arc.margin(block, path(time), self.a)
 
     def _each_arc(self) -> list[tuple[Arc, State, arb]]:
         """Return each arc, the state at its beginning and its duration."""
         with arithmetic():
-            states = followed(self.arcs, self.enclosure.inner, self.a)
+            states, _ = followed(self.arcs, self._unknown)
         return list(zip(self.arcs, states, self.times, strict=False))
 
 
