@@ -161,7 +161,7 @@ def test_csv_has_a_line_for_each_figure(content: dict) -> None:
 
 
 def test_what_is_proved_is_told_beside_its_number() -> None:
-    proof = xarray.Dataset({"critical_a": (("end",), [0.0800999, 0.0801001])}, attrs={"law": "linearized"})
+    proof = xarray.Dataset({"critical_a": (("law", "end"), [[0.0800999, 0.0801001]])}, {"law": ["linearized"]})
     world = {**paper_world(), "proof": proof}
     world["orbits"]["critical_a"].values[:] = 0.0801, 0.0802
     claims = [claim for claim in read_claims(ROOT / "config/claims.yaml") if claim.name == "upper_edge"]

@@ -11,7 +11,8 @@ from flint import arb, fmpq
 from burridge_knopoff.proof import critical
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.critical import prove_branch, prove_critical
-from burridge_knopoff.proof.orbit import prove_orbit
+from burridge_knopoff.proof.krawczyk import enclose
+from burridge_knopoff.proof.orbit import arcs_of, equations, prove_orbit
 from burridge_knopoff.stability.orbit import multipliers
 from burridge_knopoff.stability.transition import critical_a
 from tests.proof.conftest import holds
@@ -57,11 +58,9 @@ def test_the_multiplier_is_1_there_and_passes_it(found, family):
 
 def test_a_guess_far_from_a_c_is_refused(family):
     """Newton's method may go anywhere from there; Krawczyk's operator does not follow."""
-    system = critical.critical_equations(critical.arcs_of(family.at(0.2))[0])
-    arcs, guess = critical.arcs_of(family.at(0.2))
-    assert arcs
+    arcs, guess = arcs_of(family.at(0.2))
     with pytest.raises(ProofError, match="is not allowed: in the interior of"):
-        critical.enclose(system, [*map(arb, guess), arb(0.2)], [1e-3] * 7)
+        enclose(equations(arcs, critical=True), [*map(arb, guess), arb(0.2)], [1e-3] * 7)
 
 
 def test_a_range_is_covered_without_gaps(branch):

@@ -10,6 +10,8 @@ from flint import arb, arb_mat
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.krawczyk import derivatives, enclose, inflated, polished, solved, widest
 
+RADII = [2.0**-k for k in range(8, 30)]
+
 
 def circle_and_line(unknown):
     """x² + y² = 2 and x = y: solved by (1, 1) and (−1, −1)."""
@@ -50,12 +52,12 @@ def test_a_double_solution_is_refused():
     with pytest.raises(ProofError, match="cannot be inverted"):
         enclose(lambda unknown: [unknown[0] * unknown[0]], [arb(0)], [0.1])
     with pytest.raises(ProofError):
-        widest(lambda unknown: [unknown[0] * unknown[0]], [arb(1e-30)])
+        widest(lambda unknown: [unknown[0] * unknown[0]], [arb(1e-30)], [0.1, 1e-6])
 
 
 def test_two_solutions_nearby_are_told_apart():
     """x² = 1e-8: the widest cube that is found has one of them only."""
-    found = widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)])
+    found = widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
     assert found.inner[0].contains(arb(1e-8).sqrt()) or found.inner[0].overlaps(arb(1e-8).sqrt())
     assert not found.outer[0].contains(-1e-4)
     assert width(found.outer[0]) > 5e-5

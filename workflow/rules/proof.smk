@@ -1,8 +1,8 @@
-# Proof: the synchronized orbit of the paper's chain under its linearized law, and where it is lost, in ball arithmetic.
+# Proof: the synchronized orbit of the paper's chain, and where it is lost, in ball arithmetic.
 
 
 # For stages that take it where there is one.
-PROOF = [f"{SUMMARY}/proof.nc"] if STUDY.proved_law else []
+PROOF = [f"{SUMMARY}/proof.nc"] if STUDY.proved_laws else []
 
 
 rule proof:

@@ -163,9 +163,9 @@ class Evidence:
 
         Raises ValueError, one line, if another a_c was computed: then one of the two is wrong.
         """
-        if "proof" not in self.summaries or self.summaries["proof"].attrs["law"] != law:
+        if "proof" not in self.summaries or law not in self.summaries["proof"]["law"]:
             return None
-        low, high = self.summaries["proof"]["critical_a"].values.tolist()
+        low, high = self.summaries["proof"]["critical_a"].sel(law=law).values.tolist()
         middle = 0.5 * (low + high)
         critical, error = self.critical_a(law)
         if abs(critical - middle) > error + COMPUTED_WITHIN:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 LATERAL, CENTER = 0, 1
 NAMES = ("blocks 1 and 3", "block 2")
@@ -42,7 +42,12 @@ class State:
 
 
 class Flow(Protocol):
-    """A friction law, as the arcs need it."""
+    """A friction law, as the arcs need it.
+
+    reaches : half-widths of the boxes in which it is worth looking for an orbit, the widest first
+    """
+
+    reaches: ClassVar[tuple[float, ...]]
 
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, by how much friction is below that at the velocity of the driver, in units of v."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 from flint import arb, fmpq
 
@@ -14,6 +14,8 @@ from burridge_knopoff.proof.arcs import LATERAL, STIFFNESS, State
 @dataclass(frozen=True)
 class Linearized:
     """Arcs under the linearized law, for any v."""
+
+    reaches: ClassVar[tuple[float, ...]] = tuple(2.0**-k for k in range(8, 30))
 
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, by how much friction is below that at the velocity of the driver, in units of v."""

@@ -83,7 +83,7 @@ def prove_critical(orbit: Orbit) -> Critical:
     """
     arcs, guess = arcs_of(orbit)
     system = equations(arcs, critical=True)
-    found = widest(system, polished(system, [*guess, orbit.model.a]))
+    found = widest(system, polished(system, [*guess, orbit.model.a]), arcs[0].flow.reaches)
     proved = ProvedOrbit(arcs, found.inner[-1], Enclosure(found.inner[:-1], found.outer[:-1]))
     proved.check_arcs()
     if not abs(proved.slope) > 0:

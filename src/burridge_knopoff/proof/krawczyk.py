@@ -23,9 +23,6 @@ Equations = Callable[[Sequence[Any]], Sequence[Any]]
 POLISHING = 6
 # A step this small has more than doubled its digits: to more than the remainders of any arc leave.
 POLISHED = 2.0**-60
-# The box in which there is one solution is looked for with these half-widths.
-LARGEST_RADIUS = 2.0**-8
-HALVINGS = 20
 # A box shrinks to the square of its size, down to the rounding of the arithmetic; it is done when it no longer halves.
 SHRINKING = 12
 
@@ -50,7 +47,8 @@ def derivatives(function: Equations, at: Sequence[arb], chosen: Sequence[int] | 
     columns = []
     with arithmetic(2):
         for column in range(len(at)) if chosen is None else chosen:
-            point = [arb_series([value, 1] if k == column else [value]) for k, value in enumerate(at)]
+            # What does not depend on that unknown is computed without series, which takes a third of the time.
+            point = [arb_series([value, 1]) if k == column else value for k, value in enumerate(at)]
             columns.append([arb_series(value)[1] for value in function(point)])
     return arb_mat(columns).transpose()
 
@@ -89,8 +87,9 @@ def enclose(
         for k, (box, mapped) in enumerate(zip(outer, inner, strict=True)):
             if not box.contains_interior(mapped):
                 raise ProofError(f"unknown {k + 1}: {mapped} is not allowed: in the interior of {box}")
+        # The box is so much smaller by now that derivatives in its middle are better than those that it began with.
+        inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
         for _ in range(SHRINKING):
-            inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
             before, image = inner, _krawczyk(equations, inner, parameters, inverse)
             # Both hold the solution, and so does what they have in common.
             inner = [box.intersection(smaller) for box, smaller in zip(before, image, strict=True)]
@@ -99,18 +98,20 @@ def enclose(
     return Enclosure(tuple(inner), tuple(outer))
 
 
-def widest(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb] = ()) -> Enclosure:
-    """Return the proof of `enclose` for the widest cube around a point, among halves of halves, that has one.
+def widest(
+    equations: Equations, middle: Sequence[arb], radii: Sequence[float], parameters: Sequence[arb] = ()
+) -> Enclosure:
+    """Return the proof of `enclose` for the widest cube around a point that has one.
 
-    Raises ProofError if even the smallest one has none.
+    radii : half-widths of the cubes, the widest first
+    Raises ProofError if even the last one has none.
     """
-    for halvings in range(HALVINGS + 1):
+    for radius in radii[:-1]:
         try:
-            return enclose(equations, middle, [LARGEST_RADIUS / 2**halvings] * len(middle), parameters)
+            return enclose(equations, middle, [radius] * len(middle), parameters)
         except ProofError:
-            if halvings == HALVINGS:
-                raise
-    raise AssertionError
+            continue
+    return enclose(equations, middle, [radii[-1]] * len(middle), parameters)
 
 
 def inflated(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:

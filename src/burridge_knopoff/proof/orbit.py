@@ -197,6 +197,6 @@ def prove_orbit(orbit: Orbit, a: arb) -> ProvedOrbit:
     """
     arcs, guess = arcs_of(orbit)
     middle = polished(equations(arcs), guess, [a.mid()])
-    proved = ProvedOrbit(arcs, a, widest(equations(arcs), middle, [a]))
+    proved = ProvedOrbit(arcs, a, widest(equations(arcs), middle, arcs[0].flow.reaches, [a]))
     proved.check_arcs()
     return proved

@@ -12,15 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from flint import arb, arb_series, fmpq
 
 from burridge_knopoff.proof.arcs import COUPLING, LATERAL, STIFFNESS, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
 
-#: Length of a step, and terms of the series in it: at frequencies up to 2.5 the last is about 1e-35.
-STEP = fmpq(1, 8)
+#: Length of a step, and terms of the series in it: at frequencies up to 2.5 the last is about 1e-28.
+STEP = fmpq(1, 4)
 ORDER = 24
 
 # No arc lasts longer.
@@ -35,6 +35,9 @@ LEAST = 2.0**-120
 @dataclass(frozen=True)
 class Nonlinear:
     """Arcs under the nonlinear law, drawn at a velocity v, a ball."""
+
+    # Boxes widen a million times on their way through a period in steps, and must stay small all the while.
+    reaches: ClassVar[tuple[float, ...]] = (2.0**-26, 2.0**-32)
 
     v: arb
 
@@ -70,12 +73,12 @@ class Nonlinear:
                     continue
                 ratio = ratios[block]
                 rest = sum((ratio[j] * rate[k - j] for j in range(k)), zero)
-                ratio.append((rate[k] - b * rest) / (one + b * rate[0]))
+                ratio.append((rate[k] - b * rest) / _positive(one + b * rate[0]))
                 rates.append((COUPLING[block] * other[k] - STIFFNESS[block] * place[k] + strength * ratio[k]) / (k + 1))
             bend = zero
             if slips[LATERAL]:
                 rest = sum((inverse[j] * p[k - j] for j in range(k)), zero)
-                inverse.append(((1 if k == 0 else 0) - b * rest) / (one + b * p[0]))
+                inverse.append(((1 if k == 0 else 0) - b * rest) / _positive(one + b * p[0]))
                 square.append(sum((inverse[i] * inverse[k - i] for i in range(k + 1)), zero))
                 slope = sum((square[j] * e[k - j] for j in range(k + 1)), zero)
                 bend = (a * slope - STIFFNESS[LATERAL] * d[k]) / (k + 1)
@@ -153,6 +156,13 @@ class _Path:
 
     def _last(self) -> list[Any]:
         return [_value(coefficients, arb(STEP)) for coefficients in self.pieces[-1]]
+
+
+def _positive(value: Any) -> Any:
+    """Return 1 + aU'; raises ProofError where it may come to 0, at which friction is not defined."""
+    if not _parts(value)[0] > 0:
+        raise ProofError(f"1 + aU' = {_parts(value)[0]}: not allowed: above 0")
+    return value
 
 
 def _value(coefficients: Sequence[Any], time: arb) -> Any:

@@ -95,9 +95,9 @@ class Study:
         return self.blocks == 3 and self.is_mirror_symmetric
 
     @property
-    def proved_law(self) -> str:
-        """The law under which the synchronized orbit and its loss are proved; empty if that covers none."""
-        return next((law for law in self.laws if is_covered(self.model(law, self.shown_a))), "")
+    def proved_laws(self) -> list[str]:
+        """The laws under which the synchronized orbit and its loss are proved."""
+        return [law for law in self.laws if is_covered(self.model(law, self.shown_a))]
 
     @property
     def basin_maps(self) -> list[tuple[str, float]]:

@@ -5,6 +5,7 @@ The numbers are enclosures: ends between which the true value lies, whatever rou
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,13 +13,13 @@ import numpy as np
 import xarray
 from flint import arb, fmpq
 
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import AXES, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, digits, limits, width
 from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
-from burridge_knopoff.proof.scope import is_covered
+from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.transition import critical_a
 
@@ -26,10 +27,8 @@ from burridge_knopoff.stability.transition import critical_a
 CHAIN_BLOCKS = 3
 #: The friction parameter of the orbit that is proved besides the critical one, as a fraction: the paper's 0.08.
 GIVEN = (8, 100)
-#: Ends of the range of a in which a_c is shown to be the only one.
+#: Ends of the range of a in which the family of orbits is proved under the linearized law.
 RANGE = ((8, 100), (10, 100))
-#: At this v the proofs are guessed by a simulation; they do not contain v.
-GUESSED_AT = 0.1
 #: The interval of a_c is narrower than this.
 NARROW = 1e-15
 
@@ -41,28 +40,30 @@ BLOCKS = (1, 2)
 
 #: What the proof takes for granted.
 ASSUMED = (
-    "Assumed: the model of docs/model.md, with the linearized law and the chain of the paper; v is only a scale.",
-    "Shown by hand, in docs/synchronization.md: mirror-symmetric motion stays so; its closed forms; what stops and",
-    "starts do to perturbations. Taken for granted: Arb's balls hold what they say, and the machine computes as told.",
+    "Assumed: the model of docs/model.md, with the laws and the chain of the paper. Linearized: v is only a scale.",
+    "Nonlinear: v is the decimal. Shown by hand, in docs/synchronization.md: mirror-symmetric motion stays so; the",
+    "closed forms; what stops and starts do to perturbations. Taken for granted: Arb's balls hold what they say, and",
+    "the machine computes as told.",
 )
 
-_ORBIT = ("orbit", "end")
+_LAW, _ORBIT = ("law", "end"), ("law", "orbit", "end")
 VARIABLES = {
-    "critical_a": Variable(("end",), "f8", "a_c, at which the transverse multiplier mu is 1"),
-    "critical_a_digits": Variable((), "O", "a_c with all digits, and how far it may be off"),
-    "critical_a_width": Variable((), "f8", "width of the interval of those digits"),
-    "only_between": Variable(("end",), "f8", "range of a in which the orbit exists and mu is 1 at a_c only"),
-    "pieces": Variable((), "i4", "balls of a that cover that range"),
+    "critical_a": Variable(_LAW, "f8", "a_c, at which the transverse multiplier mu is 1"),
+    "critical_a_digits": Variable(("law",), "O", "a_c with all digits, and how far it may be off"),
+    "critical_a_width": Variable(("law",), "f8", "width of the interval of those digits"),
+    "only_between": Variable(_LAW, "f8", "range of a in which a_c is the only a with mu = 1, for orbits near this one"),
+    "family_between": Variable(_LAW, "f8", "range of a in which the orbit exists for every a, and mu rises with a"),
+    "pieces": Variable(("law",), "i4", "balls of a that cover that range"),
     "a": Variable(_ORBIT, "f8", "friction parameter a of an orbit"),
     "period": Variable(_ORBIT, "f8", "period T"),
     "event_time": Variable(
-        ("orbit", "event", "end"), "f8", "time of an event since the first start of the period, when block 2 starts"
+        ("law", "orbit", "event", "end"), "f8", "time of an event since block 2 starts, the first one of the period"
     ),
-    "position": Variable(("orbit", "block", "end"), "f8", "U - v tau - e of blocks 1 and 2 at that first start"),
-    "multiplier": Variable(("orbit", "mode", "end"), "f8", "Floquet multipliers that are not 0, but that of the flow"),
+    "position": Variable(("law", "orbit", "block", "end"), "f8", "U - v tau - e of blocks 1 and 2 at that start"),
+    "multiplier": Variable(("law", "orbit", "mode", "end"), "f8", "Floquet multipliers, but 0 and that of the flow"),
     "multiplier_slope": Variable(_ORBIT, "f8", "d mu/d a, of the transverse one"),
-    "least_friction": Variable(("orbit",), "f8", "lower bound of the friction on slipping blocks"),
-    "least_spring_force": Variable(("orbit",), "f8", "lower bound of the spring force on blocks that stick"),
+    "least_friction": Variable(("law", "orbit"), "f8", "lower bound of the friction on slipping blocks"),
+    "least_spring_force": Variable(("law", "orbit"), "f8", "lower bound of the spring force on blocks that stick"),
 }
 _COORDINATES = {
     "orbit": (ORBITS, "O", "orbit: at the given a, or at a_c"),
@@ -73,52 +74,69 @@ _COORDINATES = {
 }
 
 
-def summarize(model: Model) -> xarray.Dataset:
-    """Return the Dataset of what is proved of a model of the paper's chain under its linearized law, at any a.
+def summarize(models: Sequence[Model]) -> xarray.Dataset:
+    """Return the Dataset of what is proved of models of the paper's chain, one for each law, at any a.
 
-    Raises ProofError, one line, for another model, and where a proof fails.
+    Raises ProofError, one line, for a model that is not covered, and where a proof fails.
     """
-    if not is_covered(model):
-        raise ProofError(f"law {model.law.name}: not covered: the paper's linearized law and chain of 3 blocks")
-    family = Family(replace(model, v=GUESSED_AT, contact="one_sided"))
-    given = prove_orbit(family.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
-    critical = prove_critical(family.at(critical_a(family)))
-    low, high = (fmpq(*end) for end in RANGE)
-    branch = prove_branch(family.at(RANGE[0][0] / RANGE[0][1]), low, high)
-    _check(model, given, critical, branch)
-    values: dict[str, Any] = {
-        "critical_a": limits(critical.a),
-        "critical_a_digits": digits(critical.a),
-        "critical_a_width": width(critical.a),
-        "only_between": [end[0] / end[1] for end in RANGE],
-        "pieces": len(branch),
+    each = [_of_law(model) for model in models]
+    coordinates = {
+        "law": ("law", np.array([model.law.name for model in models], dtype=object), AXES["law"].all_attributes())
     }
-    each = [_of_orbit(orbit, model) for orbit in (given, critical.orbit)]
-    values |= {name: [one[name] for one in each] for name in each[0]}
+    for name, (named, dtype, long_name) in _COORDINATES.items():
+        attributes = Variable((name,), dtype, long_name).all_attributes()
+        coordinates[name] = (name, np.array(named, dtype=dtype), attributes)
     return summary(
         "What is proved of the synchronized orbit of three blocks, as intervals that hold the true numbers",
         VARIABLES,
-        values,
-        {
-            name: (name, np.array(named, dtype=dtype), Variable((name,), dtype, long_name).all_attributes())
-            for name, (named, dtype, long_name) in _COORDINATES.items()
-        },
+        {name: np.array([one[name] for one in each], dtype=item.dtype) for name, item in VARIABLES.items()},
+        coordinates,
         {
             "history": "snakemake, from the equations of motion",
-            "law": model.law.name,
-            "v": model.v,
-            "contact": model.contact,
+            "v": models[0].v,
+            "contact": models[0].contact,
             "bits": BITS,
         },
         module=__name__,
     )
 
 
-def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: list[Piece]) -> None:
-    """Prove what is left: the family has both orbits, stuck blocks hold, the given orbit attracts, a_c is narrow.
+def _of_law(model: Model) -> dict[str, Any]:
+    """Return the variables for one law; raises ProofError as `summarize` does."""
+    if not is_covered(model):
+        raise ProofError(f"law {model.law.name}: not covered: the paper's laws and chain of {CHAIN_BLOCKS} blocks")
+    # Only the guess comes from a simulation. Under the linearized law it serves for every v.
+    family = Family(replace(model, v=NONLINEAR_V, contact="one_sided"))
+    given = prove_orbit(family.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
+    critical = prove_critical(family.at(critical_a(family)))
+    branch: list[Piece] = []
+    between = np.nan, np.nan
+    if is_linearized(model):
+        low, high = (fmpq(*end) for end in RANGE)
+        branch = prove_branch(family.at(RANGE[0][0] / RANGE[0][1]), low, high)
+        _check_branch(given, critical, branch)
+        between = RANGE[0][0] / RANGE[0][1], RANGE[1][0] / RANGE[1][1]
+    _check(model, given, critical, branch)
+    orbits = [_of_orbit(orbit, model) for orbit in (given, critical.orbit)]
+    return {
+        "critical_a": limits(critical.a),
+        "critical_a_digits": digits(critical.a),
+        "critical_a_width": width(critical.a),
+        "only_between": between if branch else _inward(critical.unique),
+        "family_between": between,
+        "pieces": len(branch),
+        **{name: [one[name] for one in orbits] for name in orbits[0]},
+    }
 
-    Raises ProofError, one line, if that fails.
-    """
+
+def _inward(ball: arb) -> tuple[float, float]:
+    """Return doubles that lie in a ball, next to its ends."""
+    low, high = limits(ball)
+    return float(np.nextafter(low, np.inf)), float(np.nextafter(high, -np.inf))
+
+
+def _check_branch(given: ProvedOrbit, critical: Critical, branch: Sequence[Piece]) -> None:
+    """Prove that the family has both orbits; raises ProofError, one line, if that fails."""
     branch[0].check_holds(given.enclosure, arb(fmpq(*GIVEN)))
     for piece in branch:
         if piece.orbit.a.overlaps(critical.a):
@@ -126,6 +144,13 @@ def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: list[Pi
     low, high = (decimal(*end) for end in RANGE)
     if not low < critical.a < high:
         raise ProofError(f"a_c = {critical.a}: not in the range of a that is covered")
+
+
+def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: Sequence[Piece]) -> None:
+    """Prove what is left: stuck blocks hold, the given orbit attracts, a_c is narrow.
+
+    Raises ProofError, one line, if that fails.
+    """
     if model.contact == "symmetric":
         for orbit in (given, critical.orbit, *(piece.orbit for piece in branch)):
             if not model.v * orbit.tightest() < 2:
@@ -146,7 +171,8 @@ def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
         raise ProofError(f"events: {', '.join(names)} is not allowed: {', '.join(EVENTS)}")
     with arithmetic():
         positions = [limits(model.v * place) for place in orbit.enclosure.inner[:PLACES]]
-        friction = limits(1 - model.v * orbit.a * orbit.fastest())[0]
+        speed = orbit.a * model.v * orbit.fastest()
+        friction = limits(1 - speed if is_linearized(model) else 1 / (1 + speed))[0]
         force = limits(1 - model.v * orbit.tightest())[0]
     return {
         "a": limits(orbit.a),
@@ -162,27 +188,36 @@ def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
 
 def digest(dataset: xarray.Dataset) -> str:
     """Return the summary in words: what is proved, with its numbers, and what is assumed."""
-    low, high = dataset["only_between"].values
+    lines = ["Proved by Krawczyk's operator in ball arithmetic, and by bounds over whole arcs of the motion.", ""]
+    for law in dataset["law"].values:
+        lines += [*_of_one(dataset.sel(law=law), f"{law} law"), ""]
+    return "\n".join([*lines, *ASSUMED]) + "\n"
+
+
+def _of_one(dataset: xarray.Dataset, name: str) -> list[str]:
+    """Return the lines on one law."""
+    low, high = dataset["family_between"].values
     lines = [
-        "Proved by Krawczyk's operator in ball arithmetic, and by bounds over whole arcs of the motion:",
-        "",
-        f"a_c = {dataset['critical_a_digits'].item()}",
+        f"{name}: a_c = {dataset['critical_a_digits'].item()}",
         f"    lies between the doubles {_between(dataset['critical_a'])}.",
-        f"    For every a from {low:g} to {high:g} there is a synchronized orbit, and each block stops once a period.",
-        "    Its transverse multiplier mu rises with a: below 1 before a_c, 1 there and nowhere else, above 1 beyond.",
-        f"    At a_c it passes 1 with d mu/d a between {_between(dataset['multiplier_slope'].sel(orbit='critical'))}.",
+        f"    It is the only a between {_between(dataset['only_between'])} with mu = 1 on orbits near this one.",
+        f"    There mu passes 1 with d mu/d a between {_between(dataset['multiplier_slope'].sel(orbit='critical'))}.",
     ]
-    for name, one in zip(("At a = 0.08, where the orbit attracts", "At a_c"), dataset["orbit"].values, strict=True):
+    if np.isfinite(low):
+        lines += [
+            f"    For every a from {low:g} to {high:g} there is such an orbit; each block stops once a period.",
+            "    Its transverse multiplier mu rises with a: below 1 before a_c, 1 there, above 1 beyond.",
+        ]
+    for title, one in zip(("At a = 0.08, where the orbit attracts", "At a_c"), dataset["orbit"].values, strict=True):
         orbit = dataset.sel(orbit=one)
-        lines += ["", f"{name}, these lie between"]
+        lines += ["", f"{name}: {title}, these lie between"]
         lines += [f"    period              {_between(orbit['period'])}"]
         lines += [f"    {event:<19} {_between(orbit['event_time'].sel(event=event))}" for event in EVENTS]
         lines += [f"    mu, {mode:<15} {_between(orbit['multiplier'].sel(mode=mode))}" for mode in MODES]
         lines += ["    All other multipliers but that of the flow are 0. No block stops or starts in between."]
         friction, force = orbit["least_friction"].item(), orbit["least_spring_force"].item()
         lines += [f"    Friction is above {friction!r}, the spring force on stuck blocks above {force!r}."]
-    lines += ["", *ASSUMED]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _between(ends: xarray.DataArray) -> str:
