@@ -78,7 +78,7 @@ def test_an_arc_holds_the_solution_of_mpmath(slips):
             found = [arb(value) for value in (*end.position, *end.velocity, *end.difference)]
             for ball, number in zip(found, exact(mpf(time)), strict=True):
                 assert holds(ball, number, "1e-30")
-                assert width(ball) < 1e-22
+                assert width(ball) < 1e-20
 
 
 def test_a_ball_of_times_holds_all_states_meanwhile():
@@ -112,8 +112,8 @@ def test_derivatives_are_those_of_differences():
             sides = [ends([one + side * step * (k == column) for k, one in enumerate(at)]) for side in (-1, 1)]
             for row in range(6):
                 quotient = (sides[1][row] - sides[0][row]) / (2 * step)
-                assert abs(found[row, column] - quotient) < 1e-10
-                assert width(found[row, column]) < 1e-20
+                assert abs(found[row, column] - quotient) < 1e-8
+                assert width(found[row, column]) < 1e-18
 
 
 def test_second_derivatives_in_time_obey_the_equations():

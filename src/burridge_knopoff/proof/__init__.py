@@ -1,1 +1,1 @@
-"""Proofs: orbits, multipliers and transitions of the linearized law enclosed in ball arithmetic."""
+"""Proofs: the synchronized orbit, its multipliers and its loss under the paper's laws, enclosed in ball arithmetic."""
