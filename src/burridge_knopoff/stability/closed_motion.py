@@ -1,0 +1,108 @@
+"""The periodic orbit that a motion has settled on, from one state of it: when it returns, and whether in a mirror."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.stability.return_map import mirror
+from burridge_knopoff.stability.steady import instant_of
+
+#: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
+CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
+
+#: Time for which returns are looked for, and how much farther than it returned the orbit that is found may lie.
+WINDOW = 1500.0
+FARTHER = 30.0
+
+# Share of a period that may be rounding.
+PERIOD_ROUNDING = 1e-6
+
+# Stops closer to each other in time are one.
+SIMULTANEOUS = 1e-9
+
+
+def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: float = WINDOW) -> PeriodicOrbit:
+    """Return the periodic orbit on which a motion that has settled lies; the shortest return that closes it.
+
+    state : of the motion; settling : time that it is left to settle first
+
+    Raises OrbitError if the motion does not return within the window, or to no periodic orbit.
+    """
+    runner = Runner(model, keep_events=True, events_from=settling)
+    runner.begin(state)
+    if runner.run(settling + window) != Status.COMPLETED:
+        raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
+    times, values = runner.log.events.times(), runner.log.events.values()
+    for start, time, symmetry, size in _returns(model, times, values):
+        try:
+            found = find_periodic_orbit(model, start, time, symmetry)
+        except OrbitError:
+            continue
+        if _distance(found, values) <= FARTHER * max(size, CLOSENESS[0]) * model.scale:
+            return simplest(found, CLOSENESS[0])
+    raise OrbitError(f"a = {model.a!r}: no periodic orbit found within {window!r}")
+
+
+def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
+    """Return an orbit that a periodic orbit is within a tolerance, for v = 0.1, with the shortest return; else itself.
+
+    Orbits of a twofold period, or of less symmetry, may be written for one of more; a branch of them begins there.
+    """
+    stops = [time for time, _, kind in orbit.events if kind == 0]
+    if not stops:
+        return orbit
+    runner = Runner(orbit.model, keep_events=True)
+    runner.begin(orbit.reference)
+    # From a little before a stop to the same stop a period later.
+    if runner.run(stops[0] + orbit.period * (1.0 + PERIOD_ROUNDING)) != Status.COMPLETED:
+        return orbit
+    times, values = runner.log.events.times(), runner.log.events.values()
+    for start, time, symmetry, _ in _returns(orbit.model, times, values, (tolerance,)):
+        if time < (1.0 - PERIOD_ROUNDING) * orbit.return_time or symmetry < orbit.symmetry:
+            try:
+                return find_periodic_orbit(orbit.model, start, time, symmetry)
+            except OrbitError:
+                continue
+    return orbit
+
+
+def _returns(
+    model: Model, times: np.ndarray, values: np.ndarray, closeness: tuple[float, ...] = CLOSENESS
+) -> Iterator[tuple[Instant, float, Symmetry, float]]:
+    """Yield a state, after which time it returns, how, and how closely: the closest first, then the shortest."""
+    stops = values[:, 1] == 0
+    if not stops.any():
+        return
+    block = int(values[stops, 0].min())
+    other = model.blocks + 1 - block
+    own = np.flatnonzero(stops & (values[:, 0] == block))
+    state, begun = values[own[0], 2:], times[own[0]]
+    repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
+    if model.chain.is_mirror_symmetric:
+        order = mirror(model.blocks)
+        for k in np.flatnonzero(stops & (values[:, 0] == other)):
+            if times[k] > begun + SIMULTANEOUS:
+                repeated.append((times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]))
+        if np.abs(state - state[order]).max() <= closeness[0] * model.scale:
+            repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, symmetry, at in repeated]
+    repeated.sort(key=lambda item: item[0])
+    for size in closeness:
+        for time, symmetry, at in repeated:
+            if np.abs(at - state).max() <= size * model.scale:
+                yield instant_of(state), float(time), symmetry, size
+                break
+
+
+def _distance(orbit: PeriodicOrbit, values: np.ndarray) -> float:
+    """Return how far the orbit's own stop lies from the nearest of those that were observed, of the same block."""
+    block = min(moved for _, moved, kind in orbit.events if kind == 0)
+    stops = values[(values[:, 0] == block + 1) & (values[:, 1] == 0), 2:]
+    return float(np.abs(stops - orbit.start(block).vector()).max(axis=1).min())

@@ -1,0 +1,100 @@
+"""Corners of a branch of periodic orbits, where an orbit grazes: how to come to one, and how to go around it.
+
+The return of a grazing orbit is continuous, but its derivative jumps, since a stop takes a perturbation of the velocity
+away however short the stick is; the next terms are of order 3/2. So the branch has a corner there, and Floquet
+multipliers jump. Either the orbit goes on with one stick more or less, or both kinds of it exist on the same side and
+meet: the branch turns back in a (a non-smooth fold).
+
+Where friction drops at the start of a slip the return itself jumps, and the branch ends.
+
+Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
+2008), Sections 3.1 (border collisions) and 8.3 (grazing-sliding).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along, tangent_of
+
+# A corner has been reached at this length from it; it takes fewer steps than these.
+REACHED = 1e-11
+STEPS = 60
+
+# First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
+# length that is predicted, changed by these factors after a step that was made and one that was not.
+PROBE = 1e-2
+CAUTIOUS = 0.97
+LONGER = 2.0
+SHORTER = 0.4
+
+# How far beyond a corner the tangent of its other side is taken, and lengths of first steps along it, in turn.
+BEYOND = (1e-5, 1e-4, 1e-6)
+FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
+
+
+def corner_ahead(before: BranchOrbit, point: BranchOrbit, length: float) -> float:
+    """Return the length to the next grazing after two points of a branch, a length apart; infinite if none is ahead.
+
+    What is 0 there falls in proportion to the length.
+    """
+    last, here = before.contacts.values(), point.contacts.values()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ahead = here * length / (last - here)
+    ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
+    return float(ahead.min()) if len(ahead) else np.inf
+
+
+def come_to_corner(point: BranchOrbit, length: float) -> BranchOrbit | None:
+    """Return the orbit next to the grazing that lies within a length ahead of a point; None if none is reached.
+
+    Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
+    """
+    before, gone, step = point, 0.0, PROBE * length
+    share = CAUTIOUS
+    for _ in range(STEPS):
+        try:
+            found = step_along(point, step)
+        except OrbitError:
+            found = None
+        if found is None or found.orbit.signature != point.orbit.signature:
+            share *= SHORTER
+            step *= SHORTER
+            if step < REACHED:
+                return None
+            continue
+        before, point, gone = point, found, step
+        ahead = corner_ahead(before, point, gone)
+        if ahead < REACHED:
+            return replace(point, remaining=ahead)
+        share = min(LONGER * share, CAUTIOUS)
+        step = min(share * ahead, length)
+    return None
+
+
+def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
+    """Return an orbit on the other side of the grazing that a branch has come to; None if the branch ends there."""
+    orbit = point.orbit
+    blocks = orbit.model.blocks
+    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2]).max()), 1e-3)
+    for beyond in BEYOND:
+        vector = orbit.reference.vector() + beyond * change
+        state = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+        model = orbit.model.at(max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
+        try:
+            tangent = tangent_of(model, state, orbit.return_time, orbit.symmetry)
+        except OrbitError:
+            continue
+        for length in FIRST_STEPS:
+            for side in (1.0, -1.0):
+                try:
+                    found = step_along(point, length, side * tangent)
+                except OrbitError:
+                    continue
+                if found.orbit.signature != orbit.signature:
+                    return found
+    return None

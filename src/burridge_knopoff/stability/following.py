@@ -1,0 +1,71 @@
+"""Branches of periodic orbits followed in the friction parameter a: through folds and around grazings, stable or not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from burridge_knopoff.stability.corner import come_to_corner, turn_corner
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit
+from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, begin_branch, step_along
+
+# Growth of a step after one that was made.
+FASTER = 1.5
+
+
+@dataclass(frozen=True)
+class Following:
+    """How a branch is followed: lengths of steps along it, mostly lengths in a, and the most orbits that are kept."""
+
+    first_step: float = 1e-4
+    largest_step: float = 5e-4
+    least_step: float = 1e-9
+    most_orbits: int = 200
+
+
+FOLLOWING = Following()
+
+
+def follow(
+    orbit: PeriodicOrbit,
+    a_range: tuple[float, float],
+    settings: Following = FOLLOWING,
+    *,
+    upward: bool = True,
+    enough: Callable[[list[BranchOrbit]], bool] = lambda points: False,
+) -> list[BranchOrbit]:
+    """Return the orbits of a branch from one on, until a leaves a range or enough is known.
+
+    upward : whether a grows at first
+    enough : told after each orbit, with all orbits so far
+
+    Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
+    The branch also ends where no step is short enough. Raises OrbitError if it cannot begin.
+    """
+    low, high = a_range
+    points = [begin_branch(orbit, upward)]
+    length = settings.first_step
+    while len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points):
+        here = points[-1]
+        try:
+            found = step_along(here, length)
+        except OrbitError:
+            found = None
+        if found is not None and found.orbit.signature == here.orbit.signature:
+            points.append(found)
+            length = min(FASTER * length, settings.largest_step)
+            continue
+        reached = come_to_corner(here, length)
+        if reached is not None:
+            points.append(reached)
+            turned = turn_corner(reached)
+            if turned is None:
+                break
+            points.append(turned)
+            length = settings.first_step
+            continue
+        length *= 0.1
+        if length < settings.least_step:
+            break
+    return points
