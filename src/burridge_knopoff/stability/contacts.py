@@ -64,7 +64,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))
     whole = event[:-1] == event[1:]
     force, force_rate, acceleration, jerk = _derivatives(model, position, velocity)
-    again = Runner(model)
+    again: Runner | None = None
     speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
     for block in range(model.blocks):
         slips = whole[:, block] & ~stuck[:-1, block]
@@ -73,6 +73,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
         peaks = sticks & (force_rate[:-1, block] > ROUNDING) & (force_rate[1:, block] < -ROUNDING)
         for k in sorted(np.flatnonzero(turns), key=lambda k: velocity[k, block])[:SLOWEST]:
             share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * SPACING)
+            again = again or Runner(model)
             at = after(again, Instant(position[k], velocity[k], stuck[k]), share * SPACING)
             here = _derivatives(model, at.position[None], at.velocity[None])
             lowest = at.velocity[block] - 0.5 * float(here[2][0, block] ** 2 / here[3][0, block])

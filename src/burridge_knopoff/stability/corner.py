@@ -37,43 +37,43 @@ BEYOND = (1e-5, 1e-4, 1e-6)
 FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
 
 
-def corner_ahead(before: BranchOrbit, point: BranchOrbit, length: float) -> float:
-    """Return the length to the next grazing after two points of a branch, a length apart; infinite if none is ahead.
+def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
+    """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
 
     What is 0 there falls in proportion to the length.
     """
     last, here = before.contacts.values(), point.contacts.values()
     with np.errstate(invalid="ignore", divide="ignore"):
-        ahead = here * length / (last - here)
+        ahead = here * point.length / (last - here)
     ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
     return float(ahead.min()) if len(ahead) else np.inf
 
 
-def come_to_corner(point: BranchOrbit, length: float) -> BranchOrbit | None:
-    """Return the orbit next to the grazing that lies within a length ahead of a point; None if none is reached.
+def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
+    """Return orbits ahead of a point up to the one next to the grazing that lies within a length; none if not reached.
 
     Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
     """
-    before, gone, step = point, 0.0, PROBE * length
+    way, step = [point], PROBE * length
     share = CAUTIOUS
     for _ in range(STEPS):
         try:
-            found = step_along(point, step)
+            found = step_along(way[-1], step)
         except OrbitError:
             found = None
         if found is None or found.orbit.signature != point.orbit.signature:
             share *= SHORTER
             step *= SHORTER
             if step < REACHED:
-                return None
+                return []
             continue
-        before, point, gone = point, found, step
-        ahead = corner_ahead(before, point, gone)
+        ahead = corner_ahead(way[-1], found)
+        way.append(found)
         if ahead < REACHED:
-            return replace(point, remaining=ahead)
+            return [*way[1:-1], replace(found, remaining=ahead)]
         share = min(LONGER * share, CAUTIOUS)
         step = min(share * ahead, length)
-    return None
+    return []
 
 
 def turn_corner(point: BranchOrbit) -> BranchOrbit | None:

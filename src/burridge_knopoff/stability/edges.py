@@ -29,14 +29,14 @@ TOLERANCE = 1e-14
 SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
 
 # Rounding of a, below which no error is told.
-ROUNDING = 1e-13
+ROUNDING = 1e-12
 
 # Multipliers with an imaginary part below this are real.
 REAL = 1e-6
 
 # Distance, for v = 0.1, within which an orbit at a root is one of more symmetry or of a shorter period: near a root the
 # difference is that of a root, too.
-JOINED = 1e-3
+JOINED = 1e-4
 
 
 @dataclass(frozen=True, eq=False)

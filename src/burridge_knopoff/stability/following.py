@@ -57,9 +57,9 @@ def follow(
             length = min(FASTER * length, settings.largest_step)
             continue
         reached = come_to_corner(here, length)
-        if reached is not None:
-            points.append(reached)
-            turned = turn_corner(reached)
+        if reached:
+            points += reached
+            turned = turn_corner(reached[-1])
             if turned is None:
                 break
             points.append(turned)

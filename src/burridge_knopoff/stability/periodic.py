@@ -99,6 +99,7 @@ def solve_return(
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
     first, last = start.vector(), np.inf
     state, blocks = first.copy(), model.blocks
+    by_a: np.ndarray | None = None
     for _ in range(ITERATIONS):
         here = Instant(state[:blocks], state[blocks:], start.stuck)
         mapping = ReturnMap(model, symmetry)
@@ -115,7 +116,9 @@ def solve_return(
             vector, amount = constraint
             change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
             values[-1] = vector @ change - amount
-            jacobian[:count, -1] = basis.T @ mapping.a_derivative(here, time)
+            # Costly, and it changes little from one iteration to the next.
+            by_a = basis.T @ mapping.a_derivative(here, time) if by_a is None else by_a
+            jacobian[:count, -1] = by_a
             jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
         size = float(np.abs(values).max())
         if size <= 1e-14 or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
@@ -146,9 +149,10 @@ def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> P
 
     Raises OrbitError if the run does not complete.
     """
-    end, changed = ReturnMap(model, symmetry).with_tangent(state, time)
+    mapping = ReturnMap(model, symmetry)
+    end, changed = mapping.with_tangent(state, time)
     residual = float(np.abs(end.vector() - state.vector()).max())
-    return PeriodicOrbit(model, symmetry, state, time, residual, changed, _events(model, state, time, symmetry))
+    return PeriodicOrbit(model, symmetry, state, time, residual, changed, _events(mapping, time))
 
 
 def safe_offset(orbit: PeriodicOrbit) -> float:
@@ -165,7 +169,9 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     """
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image")
-    events = _events(model, guess, return_time, symmetry)
+    mapping = ReturnMap(model, symmetry)
+    mapping.end(guess, return_time)
+    events = _events(mapping, return_time)
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
     # The guess may lie at a stop itself, which rounding puts before or after it.
     times = sorted([*(event[0] for event in events), return_time, period])
@@ -177,12 +183,11 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     return orbit_of(model, state, time, symmetry)
 
 
-def _events(model: Model, start: Instant, time: float, symmetry: Symmetry) -> tuple[tuple[float, int, int], ...]:
-    """Return the events of a whole period."""
-    _, events = flow(model, start, time)
-    if symmetry != Symmetry.SYMMETRIC:
+def _events(mapping: ReturnMap, time: float) -> tuple[tuple[float, int, int], ...]:
+    """Return the events of a whole period, of which a return has just been made."""
+    events, last = mapping.events(), mapping.model.blocks - 1
+    if mapping.symmetry != Symmetry.SYMMETRIC:
         return events
-    last = model.blocks - 1
     return events + tuple((time + at, last - block, kind) for at, block, kind in events)
 
 

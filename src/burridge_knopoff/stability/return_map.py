@@ -32,10 +32,13 @@ class ReturnMap:
         self.model = model
         self.symmetry = symmetry
         self._free = np.eye(2 * model.blocks)
-        self._runner = Runner(model, perturbations=self._free)
+        # To make a runner takes longer than most returns do.
+        self._runner = Runner(model, keep_events=True, perturbations=self._free)
+        self._kept = 0
 
     def end(self, start: Instant, time: float) -> Instant:
         """Return the state that a state comes to; raises OrbitError if the run does not complete."""
+        self._kept = len(self._runner.log.events.times())
         return self._mirrored(after(self._runner, start, time))
 
     def with_tangent(self, start: Instant, time: float) -> tuple[Instant, np.ndarray]:
@@ -47,20 +50,24 @@ class ReturnMap:
         end = self.end(start, time)
         return end, self._mirrored_rows(self._runner.perturbations)
 
+    def events(self) -> tuple[tuple[float, int, int], ...]:
+        """Return time, block (0 …) and kind (0 stop, 1 start) of the events of the last return, not mirrored."""
+        return tuple(zip(*(values[self._kept :].tolist() for values in self._runner.events()), strict=True))
+
     def a_derivative(self, start: Instant, time: float) -> np.ndarray:
         """Return how the end changes with a, from finite differences, shape (2 blocks,).
 
         Next to a grazing, where the derivative jumps, they are taken on the side on which the orbit is.
         """
         here = self.end(start, time).vector()
-        events = self._runner.log.count
+        events = len(self.events())
         step = STEP
         while step > LEAST_STEP:
             ends = []
             for a in (max(self.model.a - step, 0.0), self.model.a + step):
                 other = ReturnMap(self.model.at(a), self.symmetry)
                 end = other.end(start, time).vector()
-                if other._runner.log.count == events:
+                if len(other.events()) == events:
                     ends.append((a, end))
             if len(ends) == 2 and ends[0][0] < self.model.a:
                 return (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])
