@@ -21,6 +21,7 @@ from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.closed_motion import simplest
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.floquet import critical_values
+from burridge_knopoff.stability.following import follow
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along
 
@@ -30,6 +31,9 @@ SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
 
 # Rounding of a, below which no error is told.
 ROUNDING = 1e-12
+
+# How far from where a branch has joined another one its end is looked for, in steps.
+NEAR_JOINT = 2.0
 
 # Multipliers with an imaginary part below this are real.
 REAL = 1e-6
@@ -44,7 +48,8 @@ class Edge:
     """A place on a branch of periodic orbits where it changes.
 
     a, a_error : friction parameter, and half the width within which it has been held from both sides
-    before, after : orbits on the branch on both sides; `after` is None where the branch ends
+    before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
+        a branch of simpler orbits
     turns : whether the branch turns back in a there
     """
 
@@ -80,6 +85,8 @@ def locate_edges(branch: Sequence[BranchOrbit]) -> list[Edge]:
         following = branch[k + 1] if k + 1 < len(branch) else None
         if point.corner:
             edges.append(_grazing(point, following))
+        elif following is not None and following.joined is not None:
+            edges += _joining(point, following)
         elif following is not None:
             edges += _roots(point, following)
     return edges
@@ -131,6 +138,23 @@ def _root(first: BranchOrbit, second: BranchOrbit, key: tuple[EdgeKind, str]) ->
     error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
     turns = first.tangent[-1] * second.tangent[-1] < 0.0
     return root, Edge(at.orbit.a, error, kind, first, second, turns)
+
+
+def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Edge]:
+    """Return the edge at which a branch has come to one of simpler orbits, found along that one."""
+    simple = following.joined
+    if simple is None:
+        return []
+    reach = NEAR_JOINT * abs(following.orbit.a - point.orbit.a) + point.length + following.length
+    around = following.orbit.a - reach, following.orbit.a + reach
+    found = []
+    for upward in (True, False):
+        along = follow(simple, around, upward=upward)
+        found += [edge for edge in locate_edges(along) if edge.kind in (EdgeKind.PITCHFORK, EdgeKind.FLIP)]
+    if not found:
+        return []
+    edge = min(found, key=lambda edge: abs(edge.a - following.orbit.a))
+    return [Edge(edge.a, edge.a_error, edge.kind, point, None, False)]
 
 
 def _kind(at: BranchOrbit, key: tuple[EdgeKind, str]) -> EdgeKind | None:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import gcd
 
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.closed_motion import simplest
 from burridge_knopoff.stability.corner import come_to_corner, turn_corner
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, begin_branch, step_along
+
+# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period.
+SAME = 1e-8
 
 # Growth of a step after one that was made.
 FASTER = 1.5
@@ -41,7 +47,7 @@ def follow(
     enough : told after each orbit, with all orbits so far
 
     Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
-    The branch also ends where no step is short enough. Raises OrbitError if it cannot begin.
+    The branch also ends where it joins one of simpler orbits, and where no step is short enough. Raises OrbitError if it cannot begin.
     """
     low, high = a_range
     points = [begin_branch(orbit, upward)]
@@ -53,6 +59,10 @@ def follow(
         except OrbitError:
             found = None
         if found is not None and found.orbit.signature == here.orbit.signature:
+            simpler = simpler_orbit(found.orbit)
+            if simpler is not None:
+                points.append(replace(found, joined=simpler))
+                break
             points.append(found)
             length = min(FASTER * length, settings.largest_step)
             continue
@@ -69,3 +79,12 @@ def follow(
         if length < settings.least_step:
             break
     return points
+
+
+def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
+    """Return the orbit of more symmetry, or of half the period, that an orbit is to rounding; None if it is its own."""
+    mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.signature == orbit.signature[::-1]
+    if not mirrored and gcd(*orbit.signature) == 1:
+        return None
+    found = simplest(orbit, SAME)
+    return None if found is orbit else found

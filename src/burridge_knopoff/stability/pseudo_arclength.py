@@ -37,12 +37,15 @@ class BranchOrbit:
     """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, a).
 
     length : along the tangent of the orbit before, from there to here
+    joined : the simpler orbit that this one is, where the branch has come to another one: an orbit of more symmetry, or
+        of half the period; the branch ends before it
     remaining : length from here to the corner of the branch where the orbit grazes; NaN if it is not right there
     """
 
     orbit: PeriodicOrbit
     tangent: np.ndarray
     length: float = 0.0
+    joined: PeriodicOrbit | None = None
     remaining: float = np.nan
 
     @property
