@@ -8,13 +8,20 @@ from math import gcd
 
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.closed_motion import simplest
+from scipy.optimize import brentq
+
 from burridge_knopoff.stability.corner import come_to_corner, turn_corner
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.floquet import critical_values
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, begin_branch, step_along
 
-# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period.
+# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period: of an orbit on a branch,
+# and of one at the end of a branch, found to VERTEX along it.
 SAME = 1e-8
+JOINED = 1e-4
+VERTEX = 1e-10
 
 # Growth of a step after one that was made.
 FASTER = 1.5
@@ -59,7 +66,7 @@ def follow(
         except OrbitError:
             found = None
         if found is not None and found.orbit.signature == here.orbit.signature:
-            simpler = simpler_orbit(found.orbit)
+            simpler = simpler_orbit(found.orbit) or _passed(here, found)
             if simpler is not None:
                 points.append(replace(found, joined=simpler))
                 break
@@ -88,3 +95,22 @@ def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
         return None
     found = simplest(orbit, SAME)
     return None if found is orbit else found
+
+
+def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
+    """Return the simpler orbit that a branch has come to and gone past, on to its own mirror image; None if none.
+
+    The branch turns back in a there, but no multiplier goes through 1, as at a fold: it only touches it.
+    """
+    if first.tangent[-1] * second.tangent[-1] > 0.0:
+        return None
+    signs = [critical_values(point.orbit, point.multipliers)[EdgeKind.FOLD, "keeping"] for point in (first, second)]
+    if signs[0] * signs[1] < 0.0:
+        return None
+    try:
+        vertex = brentq(lambda length: float(step_along(first, length).tangent[-1]), 0.0, second.length, xtol=VERTEX)
+        at = step_along(first, float(vertex)).orbit
+    except (OrbitError, ValueError):
+        return None
+    found = simplest(at, JOINED)
+    return None if found is at else found
