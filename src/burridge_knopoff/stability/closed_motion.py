@@ -13,6 +13,7 @@ from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.stability.return_map import mirror
+from burridge_knopoff.stability.simpler import simplest
 from burridge_knopoff.stability.steady import instant_of
 
 #: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
@@ -21,9 +22,6 @@ CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 #: Time for which returns are looked for, and how much farther than it returned the orbit that is found may lie.
 WINDOW = 1500.0
 FARTHER = 30.0
-
-# Share of a period that may be rounding.
-PERIOD_ROUNDING = 1e-6
 
 # Stops closer to each other in time are one.
 SIMULTANEOUS = 1e-9
@@ -51,32 +49,7 @@ def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: f
     raise OrbitError(f"a = {model.a!r}: no periodic orbit found within {window!r}")
 
 
-def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
-    """Return an orbit that a periodic orbit is within a tolerance, for v = 0.1, with the shortest return; else itself.
-
-    Orbits of a twofold period, or of less symmetry, may be written for one of more; a branch of them begins there.
-    """
-    stops = [time for time, _, kind in orbit.events if kind == 0]
-    if not stops:
-        return orbit
-    runner = Runner(orbit.model, keep_events=True)
-    runner.begin(orbit.reference)
-    # From a little before a stop to the same stop a period later.
-    if runner.run(stops[0] + orbit.period * (1.0 + PERIOD_ROUNDING)) != Status.COMPLETED:
-        return orbit
-    times, values = runner.log.events.times(), runner.log.events.values()
-    for start, time, symmetry, _ in _returns(orbit.model, times, values, (tolerance,)):
-        if time < (1.0 - PERIOD_ROUNDING) * orbit.return_time or symmetry < orbit.symmetry:
-            try:
-                return find_periodic_orbit(orbit.model, start, time, symmetry)
-            except OrbitError:
-                continue
-    return orbit
-
-
-def _returns(
-    model: Model, times: np.ndarray, values: np.ndarray, closeness: tuple[float, ...] = CLOSENESS
-) -> Iterator[tuple[Instant, float, Symmetry, float]]:
+def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tuple[Instant, float, Symmetry, float]]:
     """Yield a state, after which time it returns, how, and how closely: the closest first, then the shortest."""
     stops = values[:, 1] == 0
     if not stops.any():
@@ -91,10 +64,10 @@ def _returns(
         for k in np.flatnonzero(stops & (values[:, 0] == other)):
             if times[k] > begun + SIMULTANEOUS:
                 repeated.append((times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]))
-        if np.abs(state - state[order]).max() <= closeness[0] * model.scale:
+        if np.abs(state - state[order]).max() <= CLOSENESS[0] * model.scale:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, symmetry, at in repeated]
     repeated.sort(key=lambda item: item[0])
-    for size in closeness:
+    for size in CLOSENESS:
         for time, symmetry, at in repeated:
             if np.abs(at - state).max() <= size * model.scale:
                 yield instant_of(state), float(time), symmetry, size

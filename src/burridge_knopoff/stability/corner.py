@@ -19,11 +19,12 @@ import numpy as np
 
 from burridge_knopoff.model.model import Instant
 from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import orbit_of
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
 # A corner has been reached at this length from it; it takes fewer steps than these.
 REACHED = 1e-11
-STEPS = 60
+STEPS = 40
 
 # First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
 # length that is predicted, changed by these factors after a step that was made and one that was not.
@@ -50,13 +51,15 @@ def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
 
 
 def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
-    """Return orbits ahead of a point up to the one next to the grazing that lies within a length; none if not reached.
+    """Return orbits ahead of a point up to the one next to the grazing that lies within a length, or about so far.
 
     Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
     """
     way, step = [point], PROBE * length
     share = CAUTIOUS
     for _ in range(STEPS):
+        if sum(point.length for point in way[1:]) > length:
+            break
         try:
             found = step_along(way[-1], step)
         except OrbitError:
@@ -65,7 +68,7 @@ def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
             share *= SHORTER
             step *= SHORTER
             if step < REACHED:
-                return []
+                break
             continue
         ahead = corner_ahead(way[-1], found)
         way.append(found)
@@ -73,7 +76,7 @@ def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
             return [*way[1:-1], replace(found, remaining=ahead)]
         share = min(LONGER * share, CAUTIOUS)
         step = min(share * ahead, length)
-    return []
+    return way[1:]
 
 
 def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
@@ -86,7 +89,7 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
         state = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
         model = orbit.model.at(max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
         try:
-            tangent = tangent_of(model, state, orbit.return_time, orbit.symmetry)
+            tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry))
         except OrbitError:
             continue
         for length in FIRST_STEPS:

@@ -18,12 +18,12 @@ import numpy as np
 from scipy.optimize import brentq
 
 from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.closed_motion import simplest
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.floquet import critical_values
 from burridge_knopoff.stability.following import follow
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along
+from burridge_knopoff.stability.simpler import simplest
 
 # Lengths along a branch to which roots are found, and by which they are held from both sides, in turn.
 TOLERANCE = 1e-14
@@ -34,6 +34,9 @@ ROUNDING = 1e-12
 
 # How far from where a branch has joined another one its end is looked for, in steps.
 NEAR_JOINT = 2.0
+
+# A stick as short as this next to a grazing is the one that shrinks to nothing: it does so like a square root.
+NO_STICK = 1e-4
 
 # Multipliers with an imaginary part below this are real.
 REAL = 1e-6
@@ -48,6 +51,7 @@ class Edge:
     """A place on a branch of periodic orbits where it changes.
 
     a, a_error : friction parameter, and half the width within which it has been held from both sides
+    at : the orbit there, as near as it is known
     before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
         a branch of simpler orbits
     turns : whether the branch turns back in a there
@@ -56,19 +60,16 @@ class Edge:
     a: float
     a_error: float
     kind: EdgeKind
+    at: BranchOrbit
     before: BranchOrbit
     after: BranchOrbit | None
     turns: bool
 
     @property
     def stick_time(self) -> float:
-        """Shortest stick of the orbit with more stops next to a grazing, of the nearest orbit else."""
-        return float(self.before.contacts.stick.min())
-
-    @property
-    def gains_stability(self) -> bool:
-        """Whether the orbits after it are stable and those before are not."""
-        return self.after is not None and self.before.multipliers.unstable > 0 == self.after.multipliers.unstable
+        """Shortest stick of the orbit there; 0 where it shrinks to nothing."""
+        shortest = float(self.at.contacts.stick.min())
+        return 0.0 if self.kind == EdgeKind.GRAZING and shortest < NO_STICK else shortest
 
     @property
     def loses_stability(self) -> bool:
@@ -96,7 +97,7 @@ def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Edge:
     """Return the edge at a corner; its a is known to the length that is left to it."""
     left = point.remaining * float(point.tangent[-1])
     turns = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
-    return Edge(point.orbit.a + left, max(abs(left), ROUNDING), EdgeKind.GRAZING, point, following, turns)
+    return Edge(point.orbit.a + left, max(abs(left), ROUNDING), EdgeKind.GRAZING, point, point, following, turns)
 
 
 def _roots(first: BranchOrbit, second: BranchOrbit) -> list[Edge]:
@@ -123,7 +124,8 @@ def _root(first: BranchOrbit, second: BranchOrbit, key: tuple[EdgeKind, str]) ->
 
     try:
         root = float(brentq(value, 0.0, max(known), xtol=TOLERANCE, rtol=1e-12))
-        at = known.get(root) or step_along(first, root)
+        value(root)
+        at = known[root]
         for side in SIDES:
             if value(root - side) * value(root + side) < 0.0:
                 break
@@ -137,7 +139,7 @@ def _root(first: BranchOrbit, second: BranchOrbit, key: tuple[EdgeKind, str]) ->
         return None
     error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
     turns = first.tangent[-1] * second.tangent[-1] < 0.0
-    return root, Edge(at.orbit.a, error, kind, first, second, turns)
+    return root, Edge(at.orbit.a, error, kind, at, first, second, turns)
 
 
 def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Edge]:
@@ -154,7 +156,7 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Edge]:
     if not found:
         return []
     edge = min(found, key=lambda edge: abs(edge.a - following.orbit.a))
-    return [Edge(edge.a, edge.a_error, edge.kind, point, None, False)]
+    return [Edge(edge.a, edge.a_error, edge.kind, point, point, None, False)]
 
 
 def _kind(at: BranchOrbit, key: tuple[EdgeKind, str]) -> EdgeKind | None:

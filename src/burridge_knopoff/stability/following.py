@@ -7,21 +7,18 @@ from dataclasses import dataclass, replace
 from math import gcd
 
 from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.closed_motion import simplest
-from scipy.optimize import brentq
-
 from burridge_knopoff.stability.corner import come_to_corner, turn_corner
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.floquet import critical_values
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, begin_branch, step_along
+from burridge_knopoff.stability.simpler import simplest
 
-# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period: of an orbit on a branch,
-# and of one at the end of a branch, found to VERTEX along it.
+# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period, and within which one that
+# is about to become one comes back to itself in a mirror, or after half its period.
 SAME = 1e-8
-JOINED = 1e-4
-VERTEX = 1e-10
+JOINED = 3e-2
 
 # Growth of a step after one that was made.
 FASTER = 1.5
@@ -66,24 +63,23 @@ def follow(
         except OrbitError:
             found = None
         if found is not None and found.orbit.signature == here.orbit.signature:
-            simpler = simpler_orbit(found.orbit) or _passed(here, found)
-            if simpler is not None:
-                points.append(replace(found, joined=simpler))
-                break
-            points.append(found)
+            way = [found]
             length = min(FASTER * length, settings.largest_step)
-            continue
-        reached = come_to_corner(here, length)
-        if reached:
-            points += reached
-            turned = turn_corner(reached[-1])
+        else:
+            way = come_to_corner(here, length)
+            length = max(0.1 * length, way[-1].length if way else 0.0)
+        for point in way:
+            simpler = simpler_orbit(point.orbit) or _passed(points[-1], point)
+            points.append(replace(point, joined=simpler))
+            if simpler is not None:
+                return points
+        if points[-1].corner:
+            turned = turn_corner(points[-1])
             if turned is None:
                 break
             points.append(turned)
             length = settings.first_step
-            continue
-        length *= 0.1
-        if length < settings.least_step:
+        elif length < settings.least_step:
             break
     return points
 
@@ -107,10 +103,5 @@ def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
     signs = [critical_values(point.orbit, point.multipliers)[EdgeKind.FOLD, "keeping"] for point in (first, second)]
     if signs[0] * signs[1] < 0.0:
         return None
-    try:
-        vertex = brentq(lambda length: float(step_along(first, length).tangent[-1]), 0.0, second.length, xtol=VERTEX)
-        at = step_along(first, float(vertex)).orbit
-    except (OrbitError, ValueError):
-        return None
-    found = simplest(at, JOINED)
-    return None if found is at else found
+    found = simplest(first.orbit, JOINED)
+    return None if found is first.orbit else found

@@ -86,8 +86,8 @@ def solve_return(
     symmetry: Symmetry,
     constraint: tuple[np.ndarray, float] | None = None,
     origin: tuple[np.ndarray, float, float] | None = None,
-) -> tuple[Model, Instant, float]:
-    """Return model, state and return time that solve the equations, by Newton's method from a guess.
+) -> PeriodicOrbit:
+    """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
 
     constraint : a vector over (positions and velocities, time, a) and what its product with the change from the
         origin, a point of the same form, has to be: the orbit is sought with a as another unknown
@@ -117,14 +117,14 @@ def solve_return(
             change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
             values[-1] = vector @ change - amount
             # Costly, and it changes little from one iteration to the next.
-            by_a = basis.T @ mapping.a_derivative(here, time) if by_a is None else by_a
+            by_a = basis.T @ mapping.a_derivative(here, time, end) if by_a is None else by_a
             jacobian[:count, -1] = by_a
             jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
         size = float(np.abs(values).max())
         if size <= 1e-14 or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
             if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
                 break
-            return model, here, time
+            return PeriodicOrbit(model, symmetry, here, time, residual, changed, _events(mapping, time))
         last = size
         try:
             step = np.linalg.solve(jacobian, -values)
@@ -145,7 +145,7 @@ def solve_return(
 
 
 def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> PeriodicOrbit:
-    """Return the orbit through a state between two events that returns after a time.
+    """Return the orbit through a state between two events that returns after a time, whether it does or not.
 
     Raises OrbitError if the run does not complete.
     """
@@ -179,8 +179,7 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
         guess = Instant(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
-    _, state, time = solve_return(model, guess, return_time, symmetry)
-    return orbit_of(model, state, time, symmetry)
+    return solve_return(model, guess, return_time, symmetry)
 
 
 def _events(mapping: ReturnMap, time: float) -> tuple[tuple[float, int, int], ...]:

@@ -14,7 +14,6 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.contacts import Contacts, contacts
 from burridge_knopoff.stability.floquet import Multipliers, multipliers
 from burridge_knopoff.stability.orbit import OrbitError, flow, rate
@@ -69,16 +68,17 @@ def weights(model: Model) -> np.ndarray:
     return np.concatenate([np.full(2 * model.blocks, STATE_WEIGHT / model.scale**2), [TIME_WEIGHT, 1.0]])
 
 
-def tangent_of(model: Model, start: Instant, time: float, symmetry: Symmetry) -> np.ndarray:
+def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
     """Return the unit tangent of the branch through an orbit, of either sign."""
-    basis = directions(start.stuck, symmetry)
+    model, start, time = orbit.model, orbit.reference, orbit.return_time
+    basis = directions(start.stuck, orbit.symmetry)
     count = basis.shape[1]
-    mapping = ReturnMap(model, symmetry)
-    end, changed = mapping.with_tangent(start, time)
+    mapping = ReturnMap(model, orbit.symmetry)
+    end = mapping.end(start, time)
     matrix = np.zeros((count + 1, count + 2))
-    matrix[:count, :count] = basis.T @ changed @ basis - np.eye(count)
+    matrix[:count, :count] = basis.T @ orbit.monodromy @ basis - np.eye(count)
     matrix[:count, count] = basis.T @ mapping.time_derivative(end)
-    matrix[:count, count + 1] = basis.T @ mapping.a_derivative(start, time)
+    matrix[:count, count + 1] = basis.T @ mapping.a_derivative(start, time, end)
     matrix[count, :count] = rate(model, start) @ basis
     null = np.linalg.svd(matrix)[2][-1]
     vector = np.concatenate([basis @ null[:count], null[count:]])
@@ -87,7 +87,7 @@ def tangent_of(model: Model, start: Instant, time: float, symmetry: Symmetry) ->
 
 def begin_branch(orbit: PeriodicOrbit, upward: bool) -> BranchOrbit:
     """Return an orbit with the tangent along which a grows, or falls."""
-    tangent = tangent_of(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry)
+    tangent = tangent_of(orbit)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent)
 
 
@@ -109,7 +109,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     guess = base + length * tangent[:-2]
     start = Instant(guess[:blocks], guess[blocks:], orbit.reference.stuck)
     time = orbit.return_time + length * float(tangent[-2])
-    model, state, time = solve_return(
+    found = solve_return(
         model,
         start,
         time,
@@ -117,8 +117,8 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
         (weights(model) * tangent, length),
         (base, orbit.return_time, orbit.a),
     )
-    found = orbit_of(model, state, time, orbit.symmetry)
-    following = tangent_of(model, state, time, orbit.symmetry)
+    model = found.model
+    following = tangent_of(found)
     cosine = float(following @ (weights(model) * tangent))
     if tangent is point.tangent and abs(cosine) < STRAIGHT:
         raise OrbitError(f"a = {model.a!r}: the branch turns too sharply within a step of {length!r}")
@@ -127,8 +127,9 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     if offset == 0.0:
         return BranchOrbit(found, following, length)
     carried = _carried(found, following, offset)
-    moved = orbit_of(model, flow(model, state, offset)[0].instant(), time, orbit.symmetry)
-    following = tangent_of(model, moved.reference, time, orbit.symmetry)
+    there = flow(model, found.reference, offset)[0].instant()
+    moved = orbit_of(model, there, found.return_time, orbit.symmetry)
+    following = tangent_of(moved)
     side = following @ (weights(model) * carried)
     return BranchOrbit(moved, following if side > 0.0 else -following, length)
 

@@ -17,9 +17,9 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.orbit import OrbitError, after, rate
 
-# Step in a for the derivative of a return: its square and the rounding of a state over it both stay below 1e-9.
-STEP = 1e-6
-LEAST_STEP = 1e-12
+# Step in a for the derivative of a return, which is good to about as much: enough for Newton's method and for tangents.
+STEP = 1e-7
+LEAST_STEP = 1e-13
 
 
 class ReturnMap:
@@ -54,25 +54,22 @@ class ReturnMap:
         """Return time, block (0 …) and kind (0 stop, 1 start) of the events of the last return, not mirrored."""
         return tuple(zip(*(values[self._kept :].tolist() for values in self._runner.events()), strict=True))
 
-    def a_derivative(self, start: Instant, time: float) -> np.ndarray:
-        """Return how the end changes with a, from finite differences, shape (2 blocks,).
+    def a_derivative(self, start: Instant, time: float, end: Instant) -> np.ndarray:
+        """Return how the end of the last return, that of this start after this time, changes with a, shape (2 blocks,).
 
-        Next to a grazing, where the derivative jumps, they are taken on the side on which the orbit is.
+        From a finite difference: next to a grazing, where the derivative jumps, on the side of the orbit. Raises
+        OrbitError if there is none.
         """
-        here = self.end(start, time).vector()
-        events = len(self.events())
+        count = len(self.events())
         step = STEP
         while step > LEAST_STEP:
-            ends = []
-            for a in (max(self.model.a - step, 0.0), self.model.a + step):
+            for a in (self.model.a + step, self.model.a - step):
+                if a < 0.0:
+                    continue
                 other = ReturnMap(self.model.at(a), self.symmetry)
-                end = other.end(start, time).vector()
-                if len(other.events()) == events:
-                    ends.append((a, end))
-            if len(ends) == 2 and ends[0][0] < self.model.a:
-                return (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])
-            if ends:
-                return (ends[-1][1] - here) / (ends[-1][0] - self.model.a)
+                change = other.end(start, time).vector() - end.vector()
+                if len(other.events()) == count:
+                    return change / (a - self.model.a)
             step *= 0.1
         raise OrbitError(f"a = {self.model.a!r}: stops and starts change however little a does")
 

@@ -54,6 +54,8 @@ class Stretch:
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
         """Tell whether an orbit is one of the stable ones, by its a and, within a share of it, its period."""
         stable = self.stable
+        if not stable:
+            return False
         a = [point.orbit.a for point in stable]
         low = self.low_end.a if self.low_end else min(a)
         high = self.high_end.a if self.high_end else max(a)
