@@ -3,7 +3,10 @@
 
 rule claims:
     input:
-        [f"{SUMMARY}/{name}.nc" for name in [*SUMMARIES, "attractors", "solvers"]],
+        [
+            f"{SUMMARY}/{name}.nc"
+            for name in [*SUMMARIES, "attractors", "edges", "solvers"]
+        ],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
     output:
         content=f"{SUMMARY}/claims.json",

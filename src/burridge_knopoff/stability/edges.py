@@ -11,7 +11,7 @@ Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,7 +51,7 @@ class Edge:
     """A place on a branch of periodic orbits where it changes.
 
     a, a_error : friction parameter, and half the width within which it has been held from both sides
-    at : the orbit there, as near as it is known
+    at : the orbit there, as near as it is known; the simpler one where the branch joins one of these
     before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
         a branch of simpler orbits
     turns : whether the branch turns back in a there
@@ -74,23 +74,19 @@ class Edge:
     @property
     def loses_stability(self) -> bool:
         """Whether the orbits before it are stable, and those after are not or do not exist."""
-        return self.before.multipliers.unstable == 0 and (
-            self.after is None or self.after.multipliers.unstable > 0
-        )
+        return self.before.multipliers.unstable == 0 and (self.after is None or self.after.multipliers.unstable > 0)
 
 
-def locate_edges(branch: Sequence[BranchOrbit]) -> list[Edge]:
-    """Return all edges along a followed branch, in the order in which it meets them."""
-    edges = []
+def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
+    """Yield all edges along a followed branch, in the order in which it meets them, each found as it is asked for."""
     for k, point in enumerate(branch):
         following = branch[k + 1] if k + 1 < len(branch) else None
         if point.corner:
-            edges.append(_grazing(point, following))
+            yield _grazing(point, following)
         elif following is not None and following.joined is not None:
-            edges += _joining(point, following)
+            yield from _joining(point, following)
         elif following is not None:
-            edges += _roots(point, following)
-    return edges
+            yield from _roots(point, following)
 
 
 def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Edge:
@@ -156,7 +152,7 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Edge]:
     if not found:
         return []
     edge = min(found, key=lambda edge: abs(edge.a - following.orbit.a))
-    return [Edge(edge.a, edge.a_error, edge.kind, point, point, None, False)]
+    return [Edge(edge.a, edge.a_error, edge.kind, edge.at, point, None, False)]
 
 
 def _kind(at: BranchOrbit, key: tuple[EdgeKind, str]) -> EdgeKind | None:

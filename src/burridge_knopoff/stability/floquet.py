@@ -1,7 +1,7 @@
-"""Floquet multipliers of a periodic orbit without that of the flow, and functions that are 0 where one leaves the circle.
+"""Floquet multipliers of a periodic orbit without that of the flow, and what is 0 where one leaves the unit circle.
 
-For an orbit that is its own mirror image after half its period all is taken from the map H of the half: its multipliers
-ν are those of the whole with ν² = μ. ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a fold. A single μ = −1
+For an orbit that is its own mirror image after half its period all is taken from the map of the half: its multipliers ν
+are those of the whole by μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a fold. A single μ = −1
 would need ν = ±i, both at once: such orbits do not double their period before they have lost the symmetry.
 
 If mirror blocks move as one, perturbations that keep this and those that break it do not mix: +1 is a fold among the
@@ -65,8 +65,8 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
         breaking = left[:, keeping.shape[1] :]
     flow = rate(orbit.model, orbit.reference) @ keeping
     across = keeping @ np.linalg.svd(flow[:, None])[0][:, 1:]
-    parts = [_sorted(np.linalg.eigvals(basis.T @ orbit.monodromy @ basis)) for basis in (across, breaking)]
-    return Multipliers(*parts, power=2 if orbit.symmetry == Symmetry.SYMMETRIC else 1)
+    kept, broken = (_sorted(np.linalg.eigvals(basis.T @ orbit.monodromy @ basis)) for basis in (across, breaking))
+    return Multipliers(kept, broken, power=2 if orbit.symmetry == Symmetry.SYMMETRIC else 1)
 
 
 def _sorted(values: np.ndarray) -> np.ndarray:
@@ -77,8 +77,8 @@ def _sorted(values: np.ndarray) -> np.ndarray:
 def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[EdgeKind, str], float]:
     """Return for each kind of edge, and part of the perturbations, a smooth function that changes sign there.
 
-    They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1, which is also 0 for a pair
-    of real ones at an ordinary saddle.
+    They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1, which is also 0 where the
+    product of two real ones is 1, at an ordinary saddle.
     """
     found = multipliers(orbit) if found is None else found
     values = {}

@@ -1,4 +1,4 @@
-"""Branches of periodic orbits followed in the friction parameter a: through folds and around grazings, stable or not."""
+"""Branches of periodic orbits followed in a: through folds and around grazings, stable or not."""
 
 from __future__ import annotations
 
@@ -51,7 +51,9 @@ def follow(
     enough : told after each orbit, with all orbits so far
 
     Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
-    The branch also ends where it joins one of simpler orbits, and where no step is short enough. Raises OrbitError if it cannot begin.
+    The branch also ends where it joins one of simpler orbits, and where no step is short enough.
+
+    Raises OrbitError if it cannot begin.
     """
     low, high = a_range
     points = [begin_branch(orbit, upward)]

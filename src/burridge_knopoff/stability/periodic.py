@@ -69,7 +69,7 @@ class PeriodicOrbit:
         return tuple(sum((block, kind) == (i, 0) for _, block, kind in self.events) for i in range(self.model.blocks))
 
     def start(self, block: int) -> Instant:
-        """Return the state at a stop of a block, the first one after the reference; raises OrbitError if it has none."""
+        """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
         times = [time for time, moved, kind in self.events if (moved, kind) == (block, 0)]
         if not times:
             raise OrbitError(f"block = {block!r}: it never stops on this orbit")
@@ -168,7 +168,9 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     Raises OrbitError if none is found, ValueError if the chain has no mirror image and the symmetry needs one.
     """
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
-        raise ValueError(f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image")
+        raise ValueError(
+            f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image"
+        )
     mapping = ReturnMap(model, symmetry)
     mapping.end(guess, return_time)
     events = _events(mapping, return_time)

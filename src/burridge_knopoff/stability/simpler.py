@@ -1,4 +1,4 @@
-"""What a periodic orbit is apart from how it was found: one of more symmetry, or of a shorter period, gone round again."""
+"""What an orbit is besides how it was found: one of more symmetry, or of a shorter period, gone round several times."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,18 +48,24 @@ class Stretch:
     @cached_property
     def stable(self) -> list[BranchOrbit]:
         """The stable orbits, a ascending."""
-        found = [point for points in (self.downward[:0:-1], self.upward) for point in points if _is_between(self, point)]
+        found = [
+            point for points in (self.downward[:0:-1], self.upward) for point in points if _is_between(self, point)
+        ]
         return sorted(found, key=lambda point: point.orbit.a)
 
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
-        """Tell whether an orbit is one of the stable ones, by its a and, within a share of it, its period."""
+        """Tell whether an orbit is one of the stable ones: by its a, its stops, and its period within a share of it."""
         stable = self.stable
         if not stable:
             return False
-        a = [point.orbit.a for point in stable]
-        low = self.low_end.a if self.low_end else min(a)
-        high = self.high_end.a if self.high_end else max(a)
+        a = np.array([point.orbit.a for point in stable])
+        low = self.low_end.a if self.low_end else a[0]
+        high = self.high_end.a if self.high_end else a[-1]
         if not low <= orbit.a <= high:
+            return False
+        above = int(np.clip(np.searchsorted(a, orbit.a), 1, len(a) - 1)) if len(a) > 1 else 0
+        near = [stable[k].orbit.signature for k in {max(above - 1, 0), above}]
+        if not {orbit.signature, orbit.signature[::-1]} & set(near):
             return False
         period = float(np.interp(orbit.a, a, [point.orbit.period for point in stable]))
         return abs(orbit.period - period) <= tolerance * period
@@ -91,12 +97,14 @@ def _enough(beyond: int) -> Callable[[list[BranchOrbit]], bool]:
     return enough
 
 
-def _until_lost(edges: list[Edge]) -> list[Edge]:
+def _until_lost(edges: Iterator[Edge]) -> list[Edge]:
     """Return the edges up to the first at which stability is lost."""
-    for k, edge in enumerate(edges):
+    found = []
+    for edge in edges:
+        found.append(edge)
         if edge.loses_stability:
-            return edges[: k + 1]
-    return edges
+            break
+    return found
 
 
 def _end(edges: list[Edge]) -> Edge | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import pairwise
 
 import numpy as np
 import xarray
@@ -49,7 +50,7 @@ def branch_changes(attractors: xarray.Dataset) -> list[BranchChange]:
     slots = _slots(attractors)
     upward, downward = attractors["upward_branch"].values, attractors["downward_branch"].values
     found = []
-    for k, (here, there) in enumerate(zip(slots, slots[1:], strict=False)):
+    for k, (here, there) in enumerate(pairwise(slots)):
         for branch in sorted(here.keys() | there.keys()):
             before, after = here.get(branch, -1), there.get(branch, -1)
             if after < 0:

@@ -16,26 +16,30 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.branch import mean_distance
+from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.edges import Edge
 from burridge_knopoff.stability.following import Following
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.stability.stretch import Stretch, stretch
 from burridge_knopoff.summaries.branch_changes import BranchChange, Change, branch_changes
 
 #: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
-BEYOND = 6
+BEYOND = 5
 
 #: Smallest a down to which orbits are followed: at a = 0 no periodic orbit is isolated.
 LEAST_A = 1e-3
 
+# Orbits closer than this along a branch are not kept apart in the file.
+CLOSE = 1e-5
+
 # Share of its period within which a closed orbit is the one that has been followed.
-SAME_PERIOD = 3e-3
+SAME_PERIOD = 1e-3
 
 # Least error that is told: how far rounding changes a root differs between linear-algebra libraries.
 LEAST_ERROR = 1e-10
@@ -108,8 +112,7 @@ def summarize(models: Sequence[Model], attractors: xarray.Dataset) -> xarray.Dat
             _append_orbits(values, number, index, branch_of[index], stretch_)
     rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
     rounded["a_error"] = np.maximum(10.0 ** np.ceil(np.log10(rounded["a_error"])), LEAST_ERROR)
-    width = [entry is not None for entry in values["period"]]
-    located = np.isfinite(rounded["period"]) & np.array(width, dtype=bool)
+    located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
     shapes = {"stops": (-1, blocks), "stops_beyond": (-1, blocks), "multiplier": (-1, 2), "multiplier_beyond": (-1, 2)}
     for name, shape in shapes.items():
@@ -123,7 +126,9 @@ def summarize(models: Sequence[Model], attractors: xarray.Dataset) -> xarray.Dat
     head = {"laws": " ".join(map(str, laws)), "v": models[0].v, "contact": models[0].contact}
     described = {**VARIABLES, **{name: _numbered(VARIABLES[name], names) for name in ("law", "orbit_law")}}
     history = {"history": "snakemake, from the attractors and the equations of motion"}
-    return summary("Edges of the branches of attractors", described, rounded, coordinates, head | history, module=__name__)
+    return summary(
+        "Edges of the branches of attractors", described, rounded, coordinates, head | history, module=__name__
+    )
 
 
 def _numbered(item: Variable, names: Sequence[str]) -> Variable:
@@ -161,7 +166,7 @@ def entries(one: xarray.Dataset, stretches: Sequence[Stretch], of_slot: Mapping[
     a, branch, kind = (one[name].values for name in ("a", "branch", "kind"))
     found = []
     for change in branch_changes(one):
-        ends = []
+        ends: list[Edge] = []
         numbers = of_slot.get((change.index, change.before)), of_slot.get((change.index + 1, change.after))
         if numbers[0] is not None and numbers[0] == numbers[1]:
             # One orbit on both sides; only its section points were counted differently.
@@ -198,9 +203,9 @@ def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: i
     after = edge.after if edge else None
     values["a_error"].append(edge.a_error if edge else 1.0)
     values["turns"].append(int(edge.turns) if edge else -1)
-    values["period"].append(edge.at.orbit.period if edge else np.nan)
+    values["period"].append(edge.before.orbit.period if edge else np.nan)
     values["stick_time"].append(edge.stick_time if edge else np.nan)
-    values["stops"] += edge.at.orbit.signature if edge else [-1] * blocks
+    values["stops"] += edge.before.orbit.signature if edge else [-1] * blocks
     values["stops_beyond"] += after.orbit.signature if after else [-1] * blocks
     for name, point in (("multiplier", edge.at if edge else None), ("multiplier_beyond", after)):
         largest = complex(point.multipliers.whole[0]) if point else complex(np.nan, np.nan)
@@ -209,13 +214,24 @@ def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: i
 
 def _append_orbits(values: dict[str, list[Any]], law: int, number: int, branch: int, one: Stretch) -> None:
     for point in [*one.downward[:0:-1], *one.upward]:
+        if 0.0 < point.length < CLOSE and not point.corner:
+            # On the way to a corner.
+            continue
         values["orbit_law"].append(law)
         values["orbit_stretch"].append(number)
         values["orbit_branch"].append(branch)
         values["orbit_a"].append(point.orbit.a)
         values["orbit_stable"].append(int(point.multipliers.unstable == 0))
         values["orbit_period"].append(point.orbit.period)
-        values["orbit_mean_distance"].append(mean_distance(point.orbit))
+        values["orbit_mean_distance"].append(_mean_distance(point.orbit))
+
+
+def _mean_distance(orbit: PeriodicOrbit) -> float:
+    observer = new_observer(orbit.model, [0.0, orbit.period])
+    runner = Runner(orbit.model, observer=observer)
+    runner.begin(orbit.reference)
+    runner.run()
+    return float(observer.results()["batch_integral"][0]) / orbit.period
 
 
 def _rounded(item: Variable, values: Sequence[Any], digits: int) -> np.ndarray:
