@@ -21,8 +21,8 @@ from burridge_knopoff.stability.orbit import after
 from burridge_knopoff.stability.periodic import PeriodicOrbit
 
 # Time between the states among which least speeds and greatest forces are looked for; the Hermite cubic through two of
-# them finds the instant to 1e-6, a step along the acceleration there all the rest.
-SPACING = 0.05
+# them finds the instant to 1e-5, a step along the acceleration there all the rest.
+SPACING = 0.1
 
 # Instants of least speed of a block that are looked at more closely, the slowest ones.
 SLOWEST = 2

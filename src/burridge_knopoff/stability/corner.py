@@ -24,7 +24,7 @@ from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along,
 
 # A corner has been reached at this length from it; it takes fewer steps than these.
 REACHED = 1e-11
-STEPS = 40
+STEPS = 24
 
 # First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
 # length that is predicted, changed by these factors after a step that was made and one that was not.

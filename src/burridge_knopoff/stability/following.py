@@ -21,7 +21,7 @@ SAME = 1e-8
 JOINED = 3e-2
 
 # Growth of a step after one that was made.
-FASTER = 1.5
+FASTER = 2.0
 
 
 @dataclass(frozen=True)

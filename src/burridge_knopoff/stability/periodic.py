@@ -22,10 +22,14 @@ from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.orbit import OrbitError, flow, rate
 from burridge_knopoff.stability.return_map import ReturnMap, directions, mirror
 
-#: Largest difference of a position or velocity after a return, times v beyond 1; Newton's method goes on below it as
-#: long as it gains.
+#: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
+#: long as it gains, down to where rounding begins to count.
 TOLERANCE = 1e-10
-ITERATIONS = 12
+ENOUGH = 1e-12
+ITERATIONS = 10
+
+# From this iteration on equations are nearer to solved after each, or they never will be.
+FIRST = 2
 
 # A correction larger than this, in units of v, leads to another orbit, if to any.
 FARTHEST = 5.0
@@ -100,7 +104,7 @@ def solve_return(
     first, last = start.vector(), np.inf
     state, blocks = first.copy(), model.blocks
     by_a: np.ndarray | None = None
-    for _ in range(ITERATIONS):
+    for iteration in range(ITERATIONS):
         here = Instant(state[:blocks], state[blocks:], start.stuck)
         mapping = ReturnMap(model, symmetry)
         end, changed = mapping.with_tangent(here, time)
@@ -121,10 +125,12 @@ def solve_return(
             jacobian[:count, -1] = by_a
             jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
         size = float(np.abs(values).max())
-        if size <= 1e-14 or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
+        if size <= ENOUGH or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
             if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
                 break
             return PeriodicOrbit(model, symmetry, here, time, residual, changed, _events(mapping, time))
+        if iteration > FIRST and size > last:
+            break
         last = size
         try:
             step = np.linalg.solve(jacobian, -values)

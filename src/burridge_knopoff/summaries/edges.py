@@ -30,7 +30,7 @@ from burridge_knopoff.summaries.branch_changes import BranchChange, Change, bran
 
 #: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
-BEYOND = 5
+BEYOND = 4
 
 #: Smallest a down to which orbits are followed: at a = 0 no periodic orbit is isolated.
 LEAST_A = 1e-3
@@ -63,6 +63,7 @@ VARIABLES = {
     "stops_beyond": _V(("edge", "block"), "i4", "the same of the orbits beyond the edge"),
     "multiplier": _V(("edge", "part"), "f8", "Floquet multiplier of the largest modulus next to the edge"),
     "multiplier_beyond": _V(("edge", "part"), "f8", "the same of the orbits beyond the edge"),
+    "mean_distance": _V(_EDGE, "f8", "<J> over a period of that orbit"),
     "stick_time": _V(_EDGE, "f8", "shortest stick at the edge, 0 where it shrinks to nothing"),
     "orbit_law": _V(_ORBIT, "i1", "friction law, by its number in the attribute laws"),
     "orbit_stretch": _V(_ORBIT, "i4", "number of the stretch of orbits that were followed together, in this order"),
@@ -204,6 +205,7 @@ def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: i
     values["a_error"].append(edge.a_error if edge else 1.0)
     values["turns"].append(int(edge.turns) if edge else -1)
     values["period"].append(edge.before.orbit.period if edge else np.nan)
+    values["mean_distance"].append(_mean_distance(edge.before.orbit) if edge else np.nan)
     values["stick_time"].append(edge.stick_time if edge else np.nan)
     values["stops"] += edge.before.orbit.signature if edge else [-1] * blocks
     values["stops_beyond"] += after.orbit.signature if after else [-1] * blocks
