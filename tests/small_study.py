@@ -22,6 +22,7 @@ from burridge_knopoff.summaries import (
     attractors,
     basins,
     bifurcation,
+    edges,
     equilibrium,
     lyapunov,
     mean_distance,
@@ -146,6 +147,7 @@ class SmallStudy:
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
             "basins": self._basins(found["attractors"]),
+            "edges": edges.summarize(self.models, found["attractors"]),
         }
 
     def _solvers(self) -> xarray.Dataset:

@@ -14,7 +14,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
+from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
 from burridge_knopoff.model import ranges
@@ -30,6 +30,7 @@ TOPICS = {
     "synchronization": synchronization,
     "history": history,
     "kinds": kinds,
+    "locking": locking,
     "motion": motion,
     "model": model,
     "laws": laws,

@@ -47,6 +47,7 @@ LEAST_ERROR = 1e-10
 PARTS = ("real", "imaginary")
 _EDGE, _ORBIT = ("edge",), ("orbit",)
 _V = Variable
+_YES = flag("i1", {-1: "undetermined", 0: "no", 1: "yes"})
 VARIABLES = {
     "law": _V(_EDGE, "i1", "friction law, by its number in the attribute laws"),
     "a": _V(_EDGE, "f8", "friction parameter a of the edge"),
@@ -57,7 +58,9 @@ VARIABLES = {
     "to_branch": _V(_EDGE, "i2", "branch above the edge, or reached from below it", {"comment": "-1 undetermined"}),
     "grid_low": _V(_EDGE, "f8", "largest a of the attractors at which the branch is as before"),
     "grid_high": _V(_EDGE, "f8", "smallest a of the attractors at which it is as after"),
-    "turns": _V(_EDGE, "i1", "whether orbits on both sides of the edge lie at a on one side of it"),
+    "motion_before": _V(_EDGE, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
+    "motion_after": _V(_EDGE, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
+    "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the edge lie at a on one side of it", _YES),
     "period": _V(_EDGE, "f8", "period of the orbit at the edge"),
     "stops": _V(("edge", "block"), "i4", "stops of each block in a period of the stable orbits"),
     "stops_beyond": _V(("edge", "block"), "i4", "the same of the orbits beyond the edge"),
@@ -69,7 +72,9 @@ VARIABLES = {
     "orbit_stretch": _V(_ORBIT, "i4", "number of the stretch of orbits that were followed together, in this order"),
     "orbit_branch": _V(_ORBIT, "i2", "branch of the attractors that they began from"),
     "orbit_a": _V(_ORBIT, "f8", "friction parameter a of the periodic orbit"),
-    "orbit_stable": _V(_ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle"),
+    "orbit_stable": _V(
+        _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", _YES
+    ),
     "orbit_period": _V(_ORBIT, "f8", "period of the orbit"),
     "orbit_mean_distance": _V(_ORBIT, "f8", "<J> over a period of the orbit"),
 }
@@ -86,6 +91,7 @@ class Entry:
     to_branch: int
     low: float
     high: float
+    motion: tuple[int, int]
     kind: EdgeKind
     edge: Edge | None
 
@@ -176,15 +182,24 @@ def entries(one: xarray.Dataset, stretches: Sequence[Stretch], of_slot: Mapping[
             edge = getattr(stretches[number], name) if number is not None else None
             if edge is not None and all(abs(edge.a - other.a) > LEAST_ERROR for other in ends):
                 ends.append(edge)
-        own = change.change, change.from_branch, change.to_branch, float(a[change.index]), float(a[change.index + 1])
+        k = change.index
+        motion = _motion(one, k, change.from_branch), _motion(one, k + 1, change.to_branch)
+        own = change.change, change.from_branch, change.to_branch, float(a[k]), float(a[k + 1]), motion
         found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
     for number, one_stretch in enumerate(stretches):
         n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
         for edge in one_stretch.low_edges + one_stretch.high_edges:
             if not edge.loses_stability and not edge.turns:
                 k = int(np.clip(np.searchsorted(a, edge.a) - 1, 0, len(a) - 2))
-                found.append(Entry(Change.PASSED, n, n, float(a[k]), float(a[k + 1]), edge.kind, edge))
+                motion = _motion(one, k, n), _motion(one, k + 1, n)
+                found.append(Entry(Change.PASSED, n, n, float(a[k]), float(a[k + 1]), motion, edge.kind, edge))
     return found
+
+
+def _motion(one: xarray.Dataset, k: int, branch: int) -> int:
+    """Return the kind of motion on a branch at one a; undetermined where it does not exist."""
+    slots = np.flatnonzero((one["branch"].values[k] == branch) & (branch >= 0))
+    return int(one["kind"].values[k, slots[0]]) if len(slots) else int(MotionKind.UNDETERMINED)
 
 
 def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
@@ -200,6 +215,8 @@ def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: i
     values["law"].append(law)
     values["grid_low"].append(entry.low)
     values["grid_high"].append(entry.high)
+    values["motion_before"].append(entry.motion[0])
+    values["motion_after"].append(entry.motion[1])
     edge = entry.edge
     after = edge.after if edge else None
     values["a_error"].append(edge.a_error if edge else 1.0)
