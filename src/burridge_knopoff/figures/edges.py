@@ -21,7 +21,7 @@ CAPTION = """\
 ⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to: solid
 where they are stable, dashed where they are not and were followed a little beyond an edge. Grey points: all attractors.
 Marks: edges, by what happens there; a short line is one that is only known to lie between two values of a. Below: the
-road from one period to chaos, enlarged.
+road from one period to chaos, enlarged, with the stops of the three blocks in a period.
 """
 
 # Marker and name of each kind of edge.
@@ -38,7 +38,10 @@ UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
 }
 
 #: Ranges of a and ⟨J⟩ of the panels below.
-ROAD = ((0.08, 0.18), (-0.003, 0.09))
+ROAD = ((0.108, 0.182), (0.0412, 0.0488))
+
+# Stretches of stable orbits at least this long in a have their stops beside them there.
+NAMED = 0.004
 
 
 @styled
@@ -53,6 +56,7 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
             _orbits(panel, edges, number, colors)
             _edges(panel, edges, number)
             panel.set_xlabel("$a$")
+        _stops(panels[len(laws) + number], edges, number)
         panels[number].set_xlim(0.0, float(attractors["a"].values[-1]))
         panels[number].set_ylim(-0.008, None)
         panels[len(laws) + number].set_xlim(*ROAD[0])
@@ -103,6 +107,21 @@ def _edges(panel: Axes, edges: xarray.Dataset, law: int) -> None:
     for one, (dashes, _) in UNLOCATED.items():
         for value in np.unique(a[own & (kind == one)]):
             panel.axvline(value, ymax=0.05, color="black", linestyle=dashes, linewidth=0.7, zorder=2)
+
+
+def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
+    """Write how often each block stops in a period beside the longer stretches of stable orbits."""
+    own = (edges["orbit_law"].values == law) & (edges["orbit_stable"].values == 1)
+    number, a, mean = (edges[f"orbit_{name}"].values for name in ("stretch", "a", "mean_distance"))
+    for one in np.unique(number[own]):
+        chosen = np.flatnonzero(own & (number == one))
+        inside = chosen[(mean[chosen] > ROAD[1][0]) & (mean[chosen] < ROAD[1][1]) & (a[chosen] > ROAD[0][0])]
+        inside = inside[a[inside] < ROAD[0][1]]
+        if not len(inside) or np.ptp(a[inside]) < NAMED:
+            continue
+        middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]
+        stops = ", ".join(str(count) for count in edges["orbit_stops"].values[middle])
+        panel.annotate(stops, (a[middle], mean[middle]), (0, 6), textcoords="offset points", ha="center", fontsize=7.5)
 
 
 def _legend(figure: Figure) -> None:

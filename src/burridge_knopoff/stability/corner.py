@@ -22,9 +22,10 @@ from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import orbit_of
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
-# A corner has been reached at this length from it; it takes fewer steps than these.
-REACHED = 1e-11
+# A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
+REACHED = 1e-10
 STEPS = 24
+FAILURES = 8
 
 # First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
 # length that is predicted, changed by these factors after a step that was made and one that was not.
@@ -56,15 +57,16 @@ def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
     Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
     """
     way, step = [point], PROBE * length
-    share = CAUTIOUS
+    share, failures = CAUTIOUS, 0
     for _ in range(STEPS):
-        if sum(point.length for point in way[1:]) > length:
+        if sum(point.length for point in way[1:]) > length or failures > FAILURES:
             break
         try:
             found = step_along(way[-1], step)
         except OrbitError:
             found = None
         if found is None or found.orbit.signature != point.orbit.signature:
+            failures += 1
             share *= SHORTER
             step *= SHORTER
             if step < REACHED:

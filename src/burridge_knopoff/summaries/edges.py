@@ -76,9 +76,11 @@ VARIABLES = {
         _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", _YES
     ),
     "orbit_period": _V(_ORBIT, "f8", "period of the orbit"),
+    "orbit_stops": _V(("orbit", "block"), "i4", "stops of each block in a period of the orbit"),
     "orbit_mean_distance": _V(_ORBIT, "f8", "<J> over a period of the orbit"),
 }
 #: Significant digits of what is written: the last ones differ between machines.
+PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5}
 
 
@@ -121,7 +123,10 @@ def summarize(models: Sequence[Model], attractors: xarray.Dataset) -> xarray.Dat
     rounded["a_error"] = np.maximum(10.0 ** np.ceil(np.log10(rounded["a_error"])), LEAST_ERROR)
     located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
-    shapes = {"stops": (-1, blocks), "stops_beyond": (-1, blocks), "multiplier": (-1, 2), "multiplier_beyond": (-1, 2)}
+    shapes = {name: (-1, blocks) for name in ("stops", "stops_beyond", "orbit_stops")} | {
+        "multiplier": (-1, 2),
+        "multiplier_beyond": (-1, 2),
+    }
     for name, shape in shapes.items():
         rounded[name] = rounded[name].reshape(shape)
     names = [str(law) for law in attractors["law"].values]
@@ -242,6 +247,7 @@ def _append_orbits(values: dict[str, list[Any]], law: int, number: int, branch: 
         values["orbit_a"].append(point.orbit.a)
         values["orbit_stable"].append(int(point.multipliers.unstable == 0))
         values["orbit_period"].append(point.orbit.period)
+        values["orbit_stops"] += point.orbit.signature
         values["orbit_mean_distance"].append(_mean_distance(point.orbit))
 
 
@@ -257,4 +263,5 @@ def _rounded(item: Variable, values: Sequence[Any], digits: int) -> np.ndarray:
     """Return values of a variable with so many significant digits."""
     if item.dtype != "f8":
         return np.array(values, dtype=item.dtype)
-    return np.array([float(f"{value:.{digits - 1}e}") for value in values], dtype=float)
+    # Next to 0 digits behind the point count as well: nothing is known to more of them.
+    return np.array([float(f"{round(value, PLACES):.{digits - 1}e}") for value in values], dtype=float)
