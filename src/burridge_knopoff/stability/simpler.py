@@ -34,7 +34,8 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
         except OrbitError:
             continue
         turns = round(orbit.period / found.period)
-        if tuple(turns * stops for stops in found.signature) == orbit.signature:
+        # A state at rest relative to the driver returns after any time, however short.
+        if any(found.signature) and tuple(turns * stops for stops in found.signature) == orbit.signature:
             return simplest(found, tolerance)
     return orbit
 

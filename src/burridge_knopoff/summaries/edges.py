@@ -120,10 +120,10 @@ def summarize(models: Sequence[Model], attractors: xarray.Dataset) -> xarray.Dat
         for index, stretch_ in enumerate(stretches):
             _append_orbits(values, number, index, branch_of[index], stretch_)
     rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
-    rounded["a_error"] = np.maximum(10.0 ** np.ceil(np.log10(rounded["a_error"])), LEAST_ERROR)
+    rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
-    shapes = {name: (-1, blocks) for name in ("stops", "stops_beyond", "orbit_stops")} | {
+    shapes = dict.fromkeys(("stops", "stops_beyond", "orbit_stops"), (-1, blocks)) | {
         "multiplier": (-1, 2),
         "multiplier_beyond": (-1, 2),
     }
