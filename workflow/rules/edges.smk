@@ -16,7 +16,7 @@ rule edges:
     params:
         model=model_config(),
         blocks=STUDY.blocks,
-        a=STUDY.shown_a,
+        a=min(STUDY.grid.values()),
         sources=sources("edges", "summaries.edges"),
     message:
         "edges of all branches of attractors"
