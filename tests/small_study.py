@@ -23,6 +23,7 @@ from burridge_knopoff.summaries import (
     attractors,
     basins,
     bifurcation,
+    edges,
     equilibrium,
     lyapunov,
     mean_distance,
@@ -163,6 +164,7 @@ class SmallStudy:
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
             "basins": self._basins(found["attractors"]),
+            "edges": edges.summarize(self.models, found["attractors"]),
         }
 
     def _solvers(self) -> xarray.Dataset:

@@ -150,6 +150,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("transition", NOT_TESTABLE, alter("attractors", "kind", UNDETERMINED, a=lambda a: a < 0.105)),
     # Chaos of a run may be a transient.
     ("transition", HOLDS, alter("lyapunov", "kind", CHAOTIC)),
+    ("locking_precedes_chaos", FAILS, alter("edges", "motion_before", QUASIPERIODIC)),
+    ("locking_precedes_chaos", LOOSELY, alter("edges", "motion_before", QUASIPERIODIC, edge=5)),
+    ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "motion_after", PERIODIC)),
     ("periodic_is_synchronized", FAILS, alter("lyapunov", "kind", PERIODIC, initial="plus")),
     # A run that leads to synchrony and is not there yet is not another motion.
     ("periodic_is_synchronized", HOLDS, alter("lyapunov", "kind", PERIODIC, a=ONE_OF_MANY, initial="minus")),

@@ -56,6 +56,7 @@ def paper_world() -> Summaries:
             other_law=["nonlinear"],
         ).assign_attrs(synchronization_threshold=1e-6),
         "attractors": _attractors(),
+        "edges": _edges(),
         "orbits": _dataset(
             {
                 "critical_a": (("law",), [0.0801, 0.0802]),
@@ -177,6 +178,22 @@ def _attractors() -> xarray.Dataset:
         start=["moving", "tested"],
         block=BLOCKS,
     )
+
+
+def _edges() -> xarray.Dataset:
+    """Return four edges of each law at which a locked orbit, at a grazing, gives way to chaos."""
+    count = 8
+    law = np.repeat(np.arange(2, dtype="i1"), 4)
+    low = np.tile(A[A >= 0.1][:4], 2)
+    flags = {
+        "law": law,
+        "kind": np.zeros(count, "i1"),
+        "motion_before": np.full(count, PERIODIC, "i1"),
+        "motion_after": np.full(count, CHAOTIC, "i1"),
+        "to_branch": np.full(count, 1, "i2"),
+        "grid_low": low,
+    }
+    return xarray.Dataset({name: ("edge", values) for name, values in flags.items()}, attrs={"laws": " ".join(LAWS)})
 
 
 def _equilibrium() -> xarray.Dataset:

@@ -11,6 +11,7 @@ from burridge_knopoff.figures import (
     basins,
     bifurcation,
     distance,
+    edges,
     equilibrium,
     friction_laws,
     lyapunov,
@@ -48,6 +49,7 @@ def figures_of(small):
     yield "agreement", agreement.draw(found["agreement"])
     yield "basin_fractions", basin_fractions.draw(found["attractors"])
     yield "basins", basins.draw(found["basins"], found["attractors"], study.marked_states)
+    yield "edges", edges.draw(found["attractors"], found["edges"])
     yield "orbits", orbits.draw(found["orbits"], found["mean_distance"])
     yield "stick_slip", stick_slip.draw(found["stick_slip"], law)
     yield "equilibrium", equilibrium.draw(found["equilibrium"])

@@ -19,6 +19,22 @@ EXPECTED = {
     },
     "bifurcation": {"crossing_direction": DIRECTION},
     "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},
+    "edges": {
+        "kind": {
+            -1: "undetermined",
+            0: "grazing",
+            1: "fold",
+            2: "flip",
+            3: "neimark_sacker",
+            4: "pitchfork",
+            5: "crisis",
+        },
+        "change": {0: "beginning", 1: "end", 2: "change", 3: "passed"},
+        "motion_before": MOTION,
+        "motion_after": MOTION,
+        "turns": VERDICT,
+        "orbit_stable": VERDICT,
+    },
     "lyapunov": {"kind": MOTION, "status": STATUS},
     "mean_distance": {"synchronized": YES_NO, "status": STATUS},
     "orbits": {

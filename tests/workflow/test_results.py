@@ -177,6 +177,7 @@ def test_solvers_summary(results):
         "lyapunov",
         "basins",
         "basin_fractions",
+        "edges",
         "orbits",
         "stick_slip",
         "equilibrium",

@@ -16,12 +16,12 @@ from tests.workflow.test_runs import jobs
 POINTS = ("simulate", "simulate_solver")
 OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
 SUMMARIES = (*OF_POINTS, "solvers")
-STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "orbits", "equilibrium", "two_blocks")
+STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "edges", "orbits", "equilibrium", "two_blocks")
 FIGURES = tuple(
     f"figure_{name}"
     for name in (
         *("friction_laws", "mean_distance", "bifurcation", "distance", "lyapunov", "agreement", "basin_fractions"),
-        *("basins", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion"),
+        *("basins", "edges", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion"),
     )
 )
 OF_SUMMARIES = tuple(name for name in FIGURES if name not in ("figure_distance", "figure_motion"))

@@ -3,7 +3,10 @@
 
 rule claims:
     input:
-        [f"{SUMMARY}/{name}.nc" for name in [*SUMMARIES, "attractors", "refined", "solvers"]],
+        [
+            f"{SUMMARY}/{name}.nc"
+            for name in [*SUMMARIES, "attractors", "refined", "edges", "solvers"]
+        ],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
         PROOF,
     output:

@@ -31,7 +31,10 @@ SUMMARY_PARAMS = {
 
 rule summary:
     input:
-        expand(f"{SUMMARY}/{{name}}.nc", name=[*SUMMARIES, "attractors", "solvers"]),
+        expand(
+            f"{SUMMARY}/{{name}}.nc",
+            name=[*SUMMARIES, "attractors", "edges", "solvers"],
+        ),
         multiext(f"{SUMMARY}/agreement", ".csv", ".txt"),
         f"{SUMMARY}/attractors.txt",
         multiext(f"{SUMMARY}/basins", ".nc", ".txt") if STUDY.basin_maps else [],

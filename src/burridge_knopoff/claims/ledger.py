@@ -15,7 +15,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from burridge_knopoff.claims import history, kinds, laws, model, motion, synchronization
+from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.margins import NOTHING, turns
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
@@ -32,6 +32,7 @@ TOPICS = {
     "synchronization": synchronization,
     "history": history,
     "kinds": kinds,
+    "locking": locking,
     "motion": motion,
     "model": model,
     "laws": laws,

@@ -1,0 +1,54 @@
+"""The claim that frequency locking precedes chaos, from the edges of the branches of attractors."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.verdict import Measured, NotTestableError, Verdict, by_share, worst
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.study.paper import PAPER_LAWS
+
+
+def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
+    """Judge whether branches of attractors, as a grows, become chaotic where a locked orbit ends, under both laws.
+
+    A locked orbit is a closed one: the blocks stop in a ratio of whole numbers. A torus is not locked. What a branch is
+    like before it turns chaotic is taken at the value of a next below.
+
+    loose_share : share of the beginnings of chaos from which on the claim holds loosely
+    """
+    evidence.check_blocks()
+    edges = evidence.summary("edges")
+    laws = edges.attrs["laws"].split()
+    verdicts, measured, texts, others = [], [], [], []
+    for name in PAPER_LAWS:
+        if name not in laws:
+            raise NotTestableError(f"the study has no {name} law")
+        own = edges["law"].values == laws.index(name)
+        before, after = edges["motion_before"].values, edges["motion_after"].values
+        onset = own & (after == MotionKind.CHAOTIC) & ~np.isin(before, (MotionKind.CHAOTIC, MotionKind.UNDETERMINED))
+        places = {
+            (float(edges["grid_low"].values[k]), int(edges["to_branch"].values[k])): int(before[k])
+            for k in np.flatnonzero(onset)
+        }
+        if not places:
+            raise NotTestableError(f"no branch of attractors becomes chaotic under the {name} law")
+        locked = [kind != MotionKind.QUASIPERIODIC for kind in places.values()]
+        share = float(np.mean(locked))
+        verdicts.append(by_share(share, loose_share))
+        texts.append(f"{sum(locked)} of {len(locked)} ({name})")
+        measured.append(Measured(f"share of the beginnings of chaos at which a locked orbit ends, {name}", share))
+        ends = Counter(int(edges["kind"].values[k]) for k in np.flatnonzero(onset))
+        for kind, count in sorted(ends.items()):
+            measured.append(Measured(f"edges there that are a {EdgeKind(kind).name.lower()}, {name}", count))
+        torus = sorted(place for (place, _), right in zip(places, locked, strict=True) if not right)
+        if torus:
+            others.append(f"a torus before chaos above a = {', '.join(f'{value:g}' for value in torus)} ({name})")
+    reason = (
+        f"Where a branch of attractors becomes chaotic as a grows, a locked orbit comes before: {', '.join(texts)}."
+    )
+    return Verdict(worst(verdicts), reason, measured, "; ".join(others))

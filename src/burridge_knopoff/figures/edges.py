@@ -1,0 +1,142 @@
+"""Where branches of attractors begin, end and change, and by what: ⟨J⟩ of periodic orbits against a, with the edges."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
+from burridge_knopoff.figures.style import label_panels, new_figure, page_width, styled
+from burridge_knopoff.stability.edge_kind import EdgeKind
+
+TITLE = "Edges of the attractors"
+CATEGORY = "Attractors"
+INPUTS = ("attractors", "edges")
+CAPTION = """\
+⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to: solid
+where they are stable, dashed where they are not and were followed a little beyond an edge. Grey points: all attractors.
+Marks: edges, by what happens there; a short line is one that is only known to lie between two values of a. Below: the
+road from one period to chaos, enlarged, with the stops of the three blocks in a period.
+"""
+
+# Marker and name of each kind of edge.
+MARKS = {
+    EdgeKind.GRAZING: ("v", "grazing"),
+    EdgeKind.FOLD: ("s", "fold"),
+    EdgeKind.FLIP: ("D", "flip"),
+    EdgeKind.NEIMARK_SACKER: ("o", "Neimark–Sacker"),
+    EdgeKind.PITCHFORK: ("P", "pitchfork"),
+}
+UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
+    EdgeKind.CRISIS: ("-", "crisis"),
+    EdgeKind.UNDETERMINED: (":", "undetermined"),
+}
+
+#: Ranges of a and ⟨J⟩ of the panels below.
+ROAD = ((0.108, 0.182), (0.0412, 0.0488))
+
+# Stretches of stable orbits at least this long in a have their stops beside them there.
+NAMED = 0.004
+
+
+@styled
+def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
+    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and a mark at each edge, for each law."""
+    laws = [str(law) for law in attractors["law"].values]
+    figure, panels = new_figure(page_width(len(laws)), 6.2, 2, len(laws), share_columns=False)
+    colors = branch_colors(attractors)
+    for number, law in enumerate(laws):
+        for panel in (panels[number], panels[len(laws) + number]):
+            _attractors(panel, attractors.sel(law=law))
+            _orbits(panel, edges, number, colors)
+            _edges(panel, edges, number)
+            panel.set_xlabel("$a$")
+        _stops(panels[len(laws) + number], edges, number)
+        panels[number].set_xlim(0.0, float(attractors["a"].values[-1]))
+        panels[number].set_ylim(-0.008, None)
+        panels[len(laws) + number].set_xlim(*ROAD[0])
+        panels[len(laws) + number].set_ylim(*ROAD[1])
+    for panel in panels[:: len(laws)]:
+        panel.set_ylabel(r"$\langle J\rangle$")
+    _legend(figure)
+    label_panels(panels, [*(f"{law} law" for law in laws), *(f"{law} law, the road to chaos" for law in laws)])
+    return figure
+
+
+def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:
+    there = attractors["branch"].values >= 0
+    a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
+    panel.plot(a, attractors["mean_distance"].values[there], ".", color="#bbbbbb", markersize=2.0, zorder=0)
+
+
+def _orbits(panel: Axes, edges: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
+    own = edges["orbit_law"].values == law
+    number, branch = edges["orbit_stretch"].values, edges["orbit_branch"].values
+    a, mean, stable = (edges[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
+    for one in np.unique(number[own]):
+        chosen = np.flatnonzero(own & (number == one))
+        color = colors.get(int(branch[chosen[0]]), OTHER_COLOR)
+        ends = np.flatnonzero(np.diff(stable[chosen])) + 1
+        for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
+            # An unstable piece is drawn from the stable orbit before it to the one after it.
+            piece = chosen[first:last] if stable[chosen[first]] else chosen[max(first - 1, 0) : last + 1]
+            style, width = ("-", 1.3) if stable[chosen[first]] else ("--", 0.7)
+            panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
+
+
+def _edges(panel: Axes, edges: xarray.Dataset, law: int) -> None:
+    own = edges["law"].values == law
+    a, mean, kind = edges["a"].values, edges["mean_distance"].values, edges["kind"].values
+    for one, (marker, _) in MARKS.items():
+        chosen = own & (kind == one) & np.isfinite(mean)
+        panel.plot(
+            a[chosen],
+            mean[chosen],
+            marker,
+            color="black",
+            markersize=3.6,
+            markerfacecolor="white",
+            markeredgewidth=0.7,
+            zorder=3,
+        )
+    for one, (dashes, _) in UNLOCATED.items():
+        for value in np.unique(a[own & (kind == one)]):
+            panel.axvline(value, ymax=0.05, color="black", linestyle=dashes, linewidth=0.7, zorder=2)
+
+
+def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
+    """Write how often each block stops in a period beside the longer stretches of stable orbits."""
+    own = (edges["orbit_law"].values == law) & (edges["orbit_stable"].values == 1)
+    number, a, mean = (edges[f"orbit_{name}"].values for name in ("stretch", "a", "mean_distance"))
+    for one in np.unique(number[own]):
+        chosen = np.flatnonzero(own & (number == one))
+        inside = chosen[(mean[chosen] > ROAD[1][0]) & (mean[chosen] < ROAD[1][1]) & (a[chosen] > ROAD[0][0])]
+        inside = inside[a[inside] < ROAD[0][1]]
+        if not len(inside) or np.ptp(a[inside]) < NAMED:
+            continue
+        middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]
+        stops = ", ".join(str(count) for count in edges["orbit_stops"].values[middle])
+        panel.annotate(stops, (a[middle], mean[middle]), (0, 6), textcoords="offset points", ha="center", fontsize=7.5)
+
+
+def _legend(figure: Figure) -> None:
+    handles = [
+        Line2D([], [], color="#555555", linewidth=1.3, label="stable orbits"),
+        Line2D([], [], color="#555555", linewidth=0.7, linestyle="--", label="unstable orbits"),
+        *(
+            Line2D(
+                [], [], color="black", linestyle="", marker=marker, markersize=4, markerfacecolor="white", label=name
+            )
+            for marker, name in MARKS.values()
+        ),
+        *(
+            Line2D([], [], color="black", linewidth=0.7, linestyle=line, label=name)
+            for line, name in UNLOCATED.values()
+        ),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5)

@@ -1,0 +1,81 @@
+"""The periodic orbit that a motion has settled on, from one state of it: when it returns, and whether in a mirror."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.stability.return_map import mirror
+from burridge_knopoff.stability.simpler import simplest
+from burridge_knopoff.stability.steady import instant_of
+
+#: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
+CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
+
+#: Time for which returns are looked for, and how much farther than it returned the orbit that is found may lie.
+WINDOW = 1500.0
+FARTHER = 30.0
+
+# Stops closer to each other in time are one.
+SIMULTANEOUS = 1e-9
+
+
+def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: float = WINDOW) -> PeriodicOrbit:
+    """Return the periodic orbit on which a motion that has settled lies; the shortest return that closes it.
+
+    state : of the motion; settling : time that it is left to settle first
+
+    Raises OrbitError if the motion does not return within the window, or to no periodic orbit.
+    """
+    runner = Runner(model, keep_events=True, events_from=settling)
+    runner.begin(state)
+    if runner.run(settling + window) != Status.COMPLETED:
+        raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
+    times, values = runner.log.events.times(), runner.log.events.values()
+    for start, time, symmetry, size in _returns(model, times, values):
+        try:
+            found = find_periodic_orbit(model, start, time, symmetry)
+        except OrbitError:
+            continue
+        if _distance(found, values) <= FARTHER * max(size, CLOSENESS[0]) * model.scale:
+            return simplest(found, CLOSENESS[0])
+    raise OrbitError(f"a = {model.a!r}: no periodic orbit found within {window!r}")
+
+
+def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tuple[Instant, float, Symmetry, float]]:
+    """Yield a state, after which time it returns, how, and how closely: the closest first, then the shortest."""
+    stops = values[:, 1] == 0
+    if not stops.any():
+        return
+    block = int(values[stops, 0].min())
+    other = model.blocks + 1 - block
+    own = np.flatnonzero(stops & (values[:, 0] == block))
+    state, begun = values[own[0], 2:], times[own[0]]
+    repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
+    if model.chain.is_mirror_symmetric:
+        order = mirror(model.blocks)
+        for k in np.flatnonzero(stops & (values[:, 0] == other)):
+            if times[k] > begun + SIMULTANEOUS:
+                repeated.append((times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]))
+        if np.abs(state - state[order]).max() <= CLOSENESS[0] * model.scale:
+            repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, symmetry, at in repeated]
+    repeated.sort(key=lambda item: item[0])
+    for size in CLOSENESS:
+        for time, symmetry, at in repeated:
+            if np.abs(at - state).max() <= size * model.scale:
+                yield instant_of(state), float(time), symmetry, size
+                break
+
+
+def _distance(orbit: PeriodicOrbit, values: np.ndarray) -> float:
+    """Return how far the orbit's own stop lies from the nearest of those that were observed, of the same block."""
+    block = min(moved for _, moved, kind in orbit.events if kind == 0)
+    stops = values[(values[:, 0] == block + 1) & (values[:, 1] == 0), 2:]
+    return float(np.abs(stops - orbit.start(block).vector()).max(axis=1).min())

@@ -1,0 +1,128 @@
+"""How far a periodic orbit is from gaining or losing a stick or a slip: what is 0 where it grazes.
+
+A slip splits where its least speed falls to 0: a stick is born, whose length grows like a square root, so that the
+square of it is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and a slip is
+born. In the other direction the shortest stick, or slip, shrinks to nothing.
+
+Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
+2008), Chapter 8 (sliding bifurcations).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.stability.orbit import after
+from burridge_knopoff.stability.periodic import PeriodicOrbit
+
+# Time between the states among which least speeds and greatest forces are looked for; the Hermite cubic through two of
+# them finds the instant to 1e-5, a step along the acceleration there all the rest.
+SPACING = 0.1
+
+# Instants of least speed of a block that are looked at more closely, the slowest ones.
+SLOWEST = 2
+
+# Rounding of accelerations and forces.
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Of each block, shape (blocks,), infinite where there is none.
+
+    stick, slip : length of its shortest stick and slip
+    speed : least speed within a slip; force : least distance of the spring force from the threshold within a stick
+    """
+
+    stick: np.ndarray
+    slip: np.ndarray
+    speed: np.ndarray
+    force: np.ndarray
+
+    def values(self) -> np.ndarray:
+        """Return all that falls to 0 in proportion to the distance from a grazing, shape (4 blocks,)."""
+        return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force])
+
+
+def contacts(orbit: PeriodicOrbit) -> Contacts:
+    """Return how far an orbit is from its grazings; raises OrbitError if it cannot be run along."""
+    model = orbit.model
+    lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
+    time = np.arange(0.0, orbit.period, SPACING)
+    time = np.append(time, orbit.period)
+    observer = new_observer(model, [0.0, orbit.period + SPACING], trajectory_time=time)
+    runner = Runner(model, observer=observer)
+    runner.begin(orbit.reference)
+    runner.run(orbit.period + SPACING)
+    results = observer.results()
+    position, velocity = results["position"], results["velocity"]
+    stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))
+    whole = event[:-1] == event[1:]
+    force, force_rate, acceleration, jerk = _derivatives(model, position, velocity)
+    again: Runner | None = None
+    speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
+    for block in range(model.blocks):
+        slips = whole[:, block] & ~stuck[:-1, block]
+        turns = slips & (acceleration[:-1, block] < -ROUNDING) & (acceleration[1:, block] > ROUNDING)
+        sticks = whole[:, block] & stuck[:-1, block]
+        peaks = sticks & (force_rate[:-1, block] > ROUNDING) & (force_rate[1:, block] < -ROUNDING)
+        for k in sorted(np.flatnonzero(turns), key=lambda k: velocity[k, block])[:SLOWEST]:
+            share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * SPACING)
+            again = again or Runner(model)
+            at = after(again, Instant(position[k], velocity[k], stuck[k]), share * SPACING)
+            here = _derivatives(model, at.position[None], at.velocity[None])
+            lowest = at.velocity[block] - 0.5 * float(here[2][0, block] ** 2 / here[3][0, block])
+            speed[block] = min(speed[block], lowest)
+        for k in np.flatnonzero(peaks):
+            share = force_rate[k, block] / (force_rate[k, block] - force_rate[k + 1, block])
+            highest = force[k, block] + 0.5 * share * SPACING * force_rate[k, block]
+            gap[block] = min(gap[block], model.chain.thresholds[block] - highest)
+    blocks = model.blocks
+    return Contacts(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap)
+
+
+def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
+    """Return the shortest time from an event of a kind to the next one of the block; infinite if there is none."""
+    own = [(time, event) for time, moved, event in orbit.events if moved == block]
+    following = [*own[1:], *((time + orbit.period, event) for time, event in own[:1])]
+    return min(
+        (later - time for (time, event), (later, _) in zip(own, following, strict=True) if event == kind),
+        default=np.inf,
+    )
+
+
+def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield for each block whether it sticks at each time, and how many of its events are over."""
+    for block in range(orbit.model.blocks):
+        own = [(at, kind) for at, moved, kind in orbit.events if moved == block]
+        over = np.searchsorted([at for at, _ in own], time)
+        first = 1 - own[0][1] if own else 1 - int(orbit.reference.stuck[block])
+        yield np.array([first, *(kind for _, kind in own)])[over] == 0, over
+
+
+def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return spring force, its rate, and acceleration and its rate of blocks that slip, each of shape (n, blocks)."""
+    chain = model.chain
+    force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
+    force_rate = -(velocity - model.v) @ chain.stiffness.T
+    speed = np.maximum(velocity, 0.0)
+    acceleration = force - chain.thresholds * model.law(speed)
+    return force, force_rate, acceleration, force_rate - chain.thresholds * model.law.slope(speed) * acceleration
+
+
+def _root(value: np.ndarray, slope: np.ndarray) -> float:
+    """Return where, from 0 to 1, the Hermite cubic through values of opposite sign, with these slopes, is 0."""
+    cubic = [
+        2.0 * (value[0] - value[1]) + slope[0] + slope[1],
+        3.0 * (value[1] - value[0]) - 2.0 * slope[0] - slope[1],
+        slope[0],
+        value[0],
+    ]
+    roots = np.roots(cubic)
+    inside = roots[(np.abs(roots.imag) < 1e-9) & (roots.real >= 0.0) & (roots.real <= 1.0)].real
+    return float(inside[0]) if len(inside) else float(value[0] / (value[0] - value[1]))

@@ -1,0 +1,105 @@
+"""Corners of a branch of periodic orbits, where an orbit grazes: how to come to one, and how to go around it.
+
+The return of a grazing orbit is continuous, but its derivative jumps, since a stop takes a perturbation of the velocity
+away however short the stick is; the next terms are of order 3/2. So the branch has a corner there, and Floquet
+multipliers jump. Either the orbit goes on with one stick more or less, or both kinds of it exist on the same side and
+meet: the branch turns back in a (a non-smooth fold).
+
+Where friction drops at the start of a slip the return itself jumps, and the branch ends.
+
+Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
+2008), Sections 3.1 (border collisions) and 8.3 (grazing-sliding).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import orbit_of
+from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along, tangent_of
+
+# A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
+REACHED = 1e-10
+STEPS = 24
+FAILURES = 8
+
+# First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
+# length that is predicted, changed by these factors after a step that was made and one that was not.
+PROBE = 1e-2
+CAUTIOUS = 0.97
+LONGER = 2.0
+SHORTER = 0.4
+
+# How far beyond a corner the tangent of its other side is taken, and lengths of first steps along it, in turn.
+BEYOND = (1e-5, 1e-4, 1e-6)
+FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
+
+
+def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
+    """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
+
+    What is 0 there falls in proportion to the length.
+    """
+    last, here = before.contacts.values(), point.contacts.values()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ahead = here * point.length / (last - here)
+    ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
+    return float(ahead.min()) if len(ahead) else np.inf
+
+
+def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
+    """Return orbits ahead of a point up to the one next to the grazing that lies within a length, or about so far.
+
+    Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
+    """
+    way, step = [point], PROBE * length
+    share, failures = CAUTIOUS, 0
+    for _ in range(STEPS):
+        if sum(point.length for point in way[1:]) > length or failures > FAILURES:
+            break
+        try:
+            found = step_along(way[-1], step)
+        except OrbitError:
+            found = None
+        if found is None or found.orbit.signature != point.orbit.signature:
+            failures += 1
+            share *= SHORTER
+            step *= SHORTER
+            if step < REACHED:
+                break
+            continue
+        ahead = corner_ahead(way[-1], found)
+        way.append(found)
+        if ahead < REACHED:
+            return [*way[1:-1], replace(found, remaining=ahead)]
+        share = min(LONGER * share, CAUTIOUS)
+        step = min(share * ahead, length)
+    return way[1:]
+
+
+def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
+    """Return an orbit on the other side of the grazing that a branch has come to; None if the branch ends there."""
+    orbit = point.orbit
+    blocks = orbit.model.blocks
+    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2]).max()), 1e-3)
+    for beyond in BEYOND:
+        vector = orbit.reference.vector() + beyond * change
+        state = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+        model = orbit.model.at(max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
+        try:
+            tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry))
+        except OrbitError:
+            continue
+        for length in FIRST_STEPS:
+            for side in (1.0, -1.0):
+                try:
+                    found = step_along(point, length, side * tangent)
+                except OrbitError:
+                    continue
+                if found.orbit.signature != orbit.signature:
+                    return found
+    return None

@@ -1,0 +1,25 @@
+"""What may end or change an attractor as a parameter moves: one list for orbits, files and figures."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class EdgeKind(IntEnum):
+    """Kinds of edges, numbered as in netCDF files.
+
+    grazing : a stick of a periodic orbit, or a slip, shrinks to nothing or is born
+    fold : two orbits meet and vanish, multiplier +1
+    flip : the period doubles, multiplier −1
+    neimark_sacker : a pair of complex multipliers leaves the unit circle, a torus branches off
+    pitchfork : mirror symmetry breaks, multiplier +1 of a perturbation that breaks it
+    crisis : a set that is no closed orbit ends
+    """
+
+    UNDETERMINED = -1
+    GRAZING = 0
+    FOLD = 1
+    FLIP = 2
+    NEIMARK_SACKER = 3
+    PITCHFORK = 4
+    CRISIS = 5

@@ -1,0 +1,171 @@
+"""Where and by what a branch of periodic orbits changes: grazing, fold, flip, Neimark-Sacker, pitchfork.
+
+Grazings are corners of the branch, which `following` has come to. Every other kind is a sign of a function of the
+multipliers that changes between two orbits; its root along the branch is found with orbits of their own. The function
+of a fold also changes its sign where a branch joins another one, of which it is a special case: orbits that break a
+symmetry begin as orbits that have it, and orbits of twice the period as orbits of the single one. What they become
+there tells a pitchfork and a flip, seen from the branch that begins, from a fold.
+
+Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.floquet import critical_values
+from burridge_knopoff.stability.following import follow
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along
+from burridge_knopoff.stability.simpler import simplest
+
+# Lengths along a branch to which roots are found, and by which they are held from both sides, in turn.
+TOLERANCE = 1e-14
+SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
+
+# Rounding of a, below which no error is told.
+ROUNDING = 1e-12
+
+# How far from where a branch has joined another one its end is looked for, in steps.
+NEAR_JOINT = 2.0
+
+# A stick as short as this next to a grazing is the one that shrinks to nothing: it does so like a square root.
+NO_STICK = 1e-4
+
+# Multipliers with an imaginary part below this are real.
+REAL = 1e-6
+
+# Distance, for v = 0.1, within which an orbit at a root is one of more symmetry or of a shorter period: near a root the
+# difference is that of a root, too.
+JOINED = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """A place on a branch of periodic orbits where it changes.
+
+    a, a_error : friction parameter, and half the width within which it has been held from both sides
+    at : the orbit there, as near as it is known; the simpler one where the branch joins one of these
+    before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
+        a branch of simpler orbits
+    turns : whether the branch turns back in a there
+    """
+
+    a: float
+    a_error: float
+    kind: EdgeKind
+    at: BranchOrbit
+    before: BranchOrbit
+    after: BranchOrbit | None
+    turns: bool
+
+    @property
+    def stick_time(self) -> float:
+        """Shortest stick of the orbit there; 0 where it shrinks to nothing."""
+        shortest = float(self.at.contacts.stick.min())
+        return 0.0 if self.kind == EdgeKind.GRAZING and shortest < NO_STICK else shortest
+
+    @property
+    def loses_stability(self) -> bool:
+        """Whether the orbits before it are stable, and those after are not or do not exist."""
+        return self.before.multipliers.unstable == 0 and (self.after is None or self.after.multipliers.unstable > 0)
+
+
+def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
+    """Yield all edges along a followed branch, in the order in which it meets them, each found as it is asked for."""
+    for k, point in enumerate(branch):
+        following = branch[k + 1] if k + 1 < len(branch) else None
+        if point.corner:
+            yield _grazing(point, following)
+        elif following is not None and following.joined is not None:
+            yield from _joining(point, following)
+        elif following is not None:
+            yield from _roots(point, following)
+
+
+def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Edge:
+    """Return the edge at a corner; its a is known to the length that is left to it."""
+    left = point.remaining * float(point.tangent[-1])
+    turns = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
+    return Edge(point.orbit.a + left, max(abs(left), ROUNDING), EdgeKind.GRAZING, point, point, following, turns)
+
+
+def _roots(first: BranchOrbit, second: BranchOrbit) -> list[Edge]:
+    """Return the edges between two neighbouring orbits of the same stops, sorted along the branch."""
+    signs = [critical_values(point.orbit, point.multipliers) for point in (first, second)]
+    found: list[tuple[float, Edge]] = []
+    for key in signs[0].keys() & signs[1].keys():
+        if (signs[0][key] > 0.0) != (signs[1][key] > 0.0):
+            root = _root(first, second, key)
+            if root is not None:
+                found.append(root)
+    return [edge for _, edge in sorted(found, key=lambda item: item[0])]
+
+
+def _root(first: BranchOrbit, second: BranchOrbit, key: tuple[EdgeKind, str]) -> tuple[float, Edge] | None:
+    """Return where along the step from the first orbit a function of its kind is 0, and the edge there."""
+    known: dict[float, BranchOrbit] = {0.0: first, second.length: second}
+
+    def value(length: float) -> float:
+        if length not in known:
+            known[length] = step_along(first, length)
+        point = known[length]
+        return critical_values(point.orbit, point.multipliers)[key]
+
+    try:
+        root = float(brentq(value, 0.0, max(known), xtol=TOLERANCE, rtol=1e-12))
+        value(root)
+        at = known[root]
+        for side in SIDES:
+            if value(root - side) * value(root + side) < 0.0:
+                break
+        else:
+            return None
+    except OrbitError:
+        return None
+    low, high = known[root - side], known[root + side]
+    kind = _kind(at, key)
+    if kind is None:
+        return None
+    error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
+    turns = first.tangent[-1] * second.tangent[-1] < 0.0
+    return root, Edge(at.orbit.a, error, kind, at, first, second, turns)
+
+
+def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Edge]:
+    """Return the edge at which a branch has come to one of simpler orbits, found along that one."""
+    simple = following.joined
+    if simple is None:
+        return []
+    reach = NEAR_JOINT * abs(following.orbit.a - point.orbit.a) + point.length + following.length
+    around = following.orbit.a - reach, following.orbit.a + reach
+    found = []
+    for upward in (True, False):
+        along = follow(simple, around, upward=upward)
+        found += [edge for edge in locate_edges(along) if edge.kind in (EdgeKind.PITCHFORK, EdgeKind.FLIP)]
+    if not found:
+        return []
+    edge = min(found, key=lambda edge: abs(edge.a - following.orbit.a))
+    return [Edge(edge.a, edge.a_error, edge.kind, edge.at, point, None, False)]
+
+
+def _kind(at: BranchOrbit, key: tuple[EdgeKind, str]) -> EdgeKind | None:
+    """Return the kind of an edge at the root of a function of multipliers; None for an ordinary saddle."""
+    kind, part = key
+    if kind == EdgeKind.NEIMARK_SACKER:
+        values = at.multipliers.keeping if part == "keeping" else at.multipliers.breaking
+        on_circle = values[np.abs(np.abs(values) - 1.0).argmin()]
+        return kind if abs(on_circle.imag) > REAL else None
+    if kind == EdgeKind.FOLD and at.orbit.symmetry != Symmetry.SYNCHRONIZED:
+        joined = simplest(at.orbit, JOINED)
+        if joined.symmetry != at.orbit.symmetry:
+            return EdgeKind.PITCHFORK
+        if joined.period < 0.75 * at.orbit.period:
+            return EdgeKind.FLIP
+    return kind

@@ -1,0 +1,109 @@
+"""Branches of periodic orbits followed in a: through folds and around grazings, stable or not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import gcd
+
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.corner import come_to_corner, turn_corner
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.floquet import critical_values
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit
+from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, begin_branch, step_along
+from burridge_knopoff.stability.simpler import simplest
+
+# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period, and within which one that
+# is about to become one comes back to itself in a mirror, or after half its period.
+SAME = 1e-8
+JOINED = 3e-2
+
+# Growth of a step after one that was made.
+FASTER = 2.0
+
+
+@dataclass(frozen=True)
+class Following:
+    """How a branch is followed: lengths of steps along it, mostly lengths in a, and the most orbits that are kept."""
+
+    first_step: float = 1e-4
+    largest_step: float = 5e-4
+    least_step: float = 1e-9
+    most_orbits: int = 200
+
+
+FOLLOWING = Following()
+
+
+def follow(
+    orbit: PeriodicOrbit,
+    a_range: tuple[float, float],
+    settings: Following = FOLLOWING,
+    *,
+    upward: bool = True,
+    enough: Callable[[list[BranchOrbit]], bool] = lambda points: False,
+) -> list[BranchOrbit]:
+    """Return the orbits of a branch from one on, until a leaves a range or enough is known.
+
+    upward : whether a grows at first
+    enough : told after each orbit, with all orbits so far
+
+    Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
+    The branch also ends where it joins one of simpler orbits, and where no step is short enough.
+
+    Raises OrbitError if it cannot begin.
+    """
+    low, high = a_range
+    points = [begin_branch(orbit, upward)]
+    length = settings.first_step
+    while len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points):
+        here = points[-1]
+        try:
+            found = step_along(here, length)
+        except OrbitError:
+            found = None
+        if found is not None and found.orbit.signature == here.orbit.signature:
+            way = [found]
+            length = min(FASTER * length, settings.largest_step)
+        else:
+            way = come_to_corner(here, length)
+            length = max(0.1 * length, way[-1].length if way else 0.0)
+        for point in way:
+            simpler = simpler_orbit(point.orbit) or _passed(points[-1], point)
+            points.append(replace(point, joined=simpler))
+            if simpler is not None:
+                return points
+        if points[-1].corner:
+            turned = turn_corner(points[-1])
+            if turned is None:
+                break
+            points.append(turned)
+            length = settings.first_step
+        elif length < settings.least_step:
+            break
+    return points
+
+
+def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
+    """Return the orbit of more symmetry, or of half the period, that an orbit is to rounding; None if it is its own."""
+    mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.signature == orbit.signature[::-1]
+    if not mirrored and gcd(*orbit.signature) == 1:
+        return None
+    found = simplest(orbit, SAME)
+    return None if found is orbit else found
+
+
+def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
+    """Return the simpler orbit that a branch has come to and gone past, on to its own mirror image; None if none.
+
+    The branch turns back in a there, but no multiplier goes through 1, as at a fold: it only touches it.
+    """
+    if first.tangent[-1] * second.tangent[-1] > 0.0:
+        return None
+    signs = [critical_values(point.orbit, point.multipliers)[EdgeKind.FOLD, "keeping"] for point in (first, second)]
+    if signs[0] * signs[1] < 0.0:
+        return None
+    found = simplest(first.orbit, JOINED)
+    return None if found is first.orbit else found

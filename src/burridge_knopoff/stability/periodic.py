@@ -1,0 +1,212 @@
+"""Periodic orbits of any order of stops and starts, of any chain under any law of friction, stable or not.
+
+An orbit is represented by a reference state in the middle of its longest time without a stop or start. There the return
+after a fixed time is smooth, whatever stops and starts lie between, so that Newton's method needs no list of them and
+an orbit may gain or lose sticks from one step to the next. The unknowns are all positions, the velocities of the
+blocks that slip, and the time; the equations are that the state returns (in a mirror, where the orbit is its own mirror
+image after half its period) and that corrections are perpendicular to the flow. The Jacobian comes from the tangent
+dynamics of the kernel, with the saltation at starts where friction drops.
+
+References: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493; M. di Bernardo,
+C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer 2008), Section 2.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.orbit import OrbitError, flow, rate
+from burridge_knopoff.stability.return_map import ReturnMap, directions, mirror
+
+#: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
+#: long as it gains, down to where rounding begins to count.
+TOLERANCE = 1e-10
+ENOUGH = 1e-12
+ITERATIONS = 10
+
+# From this iteration on equations are nearer to solved after each, or they never will be.
+FIRST = 2
+
+# A correction larger than this, in units of v, leads to another orbit, if to any.
+FARTHEST = 5.0
+
+# A reference state nearer than this share of the longest time without an event to an end of it is moved to the middle.
+NEAR_EVENT = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """A closed motion of a chain.
+
+    reference : a state between two events, well away from both
+    return_time : after which the state returns: the period, or half of it for an orbit that is its own mirror image
+    residual : max norm of the state after a return minus the reference state
+    monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
+    events : time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period
+    """
+
+    model: Model
+    symmetry: Symmetry
+    reference: Instant
+    return_time: float
+    residual: float
+    monodromy: np.ndarray
+    events: tuple[tuple[float, int, int], ...]
+
+    @property
+    def a(self) -> float:
+        """Friction parameter."""
+        return self.model.a
+
+    @property
+    def period(self) -> float:
+        """The time after which all blocks are where they were."""
+        return self.return_time * (2.0 if self.symmetry == Symmetry.SYMMETRIC else 1.0)
+
+    @property
+    def signature(self) -> tuple[int, ...]:
+        """How often each block stops in a period."""
+        return tuple(sum((block, kind) == (i, 0) for _, block, kind in self.events) for i in range(self.model.blocks))
+
+    def start(self, block: int) -> Instant:
+        """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
+        times = [time for time, moved, kind in self.events if (moved, kind) == (block, 0)]
+        if not times:
+            raise OrbitError(f"block = {block!r}: it never stops on this orbit")
+        state = flow(self.model, self.reference, times[0])[0].instant()
+        stuck = state.stuck.copy()
+        stuck[block] = True
+        return Instant(state.position, np.where(stuck, 0.0, state.velocity), stuck)
+
+
+def solve_return(
+    model: Model,
+    start: Instant,
+    time: float,
+    symmetry: Symmetry,
+    constraint: tuple[np.ndarray, float] | None = None,
+    origin: tuple[np.ndarray, float, float] | None = None,
+) -> PeriodicOrbit:
+    """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
+
+    constraint : a vector over (positions and velocities, time, a) and what its product with the change from the
+        origin, a point of the same form, has to be: the orbit is sought with a as another unknown
+
+    Raises OrbitError if Newton's method does not converge.
+    """
+    basis = directions(start.stuck, symmetry)
+    phase = basis.T @ rate(model, start)
+    count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
+    first, last = start.vector(), np.inf
+    state, blocks = first.copy(), model.blocks
+    by_a: np.ndarray | None = None
+    for iteration in range(ITERATIONS):
+        here = Instant(state[:blocks], state[blocks:], start.stuck)
+        mapping = ReturnMap(model, symmetry)
+        end, changed = mapping.with_tangent(here, time)
+        residual = float(np.abs(end.vector() - state).max())
+        values = np.zeros(unknowns)
+        values[:count] = basis.T @ (end.vector() - state)
+        values[count] = phase @ (basis.T @ (state - first))
+        jacobian = np.zeros((unknowns, unknowns))
+        jacobian[:count, :count] = basis.T @ changed @ basis - np.eye(count)
+        jacobian[:count, count] = basis.T @ mapping.time_derivative(end)
+        jacobian[count, :count] = phase
+        if constraint is not None and origin is not None:
+            vector, amount = constraint
+            change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
+            values[-1] = vector @ change - amount
+            # Costly, and it changes little from one iteration to the next.
+            by_a = basis.T @ mapping.a_derivative(here, time, end) if by_a is None else by_a
+            jacobian[:count, -1] = by_a
+            jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
+        size = float(np.abs(values).max())
+        if size <= ENOUGH or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
+            if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
+                break
+            return PeriodicOrbit(model, symmetry, here, time, residual, changed, _events(mapping, time))
+        if iteration > FIRST and size > last:
+            break
+        last = size
+        try:
+            step = np.linalg.solve(jacobian, -values)
+        except np.linalg.LinAlgError:
+            break
+        if not np.abs(step[:count]).max() < FARTHEST * model.v:
+            break
+        state = state + basis @ step[:count]
+        time += float(step[count])
+        if not time > 0.0:
+            break
+        if constraint is not None:
+            try:
+                model = model.at(model.a + float(step[-1]))
+            except ValueError:
+                break
+    raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
+
+
+def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> PeriodicOrbit:
+    """Return the orbit through a state between two events that returns after a time, whether it does or not.
+
+    Raises OrbitError if the run does not complete.
+    """
+    mapping = ReturnMap(model, symmetry)
+    end, changed = mapping.with_tangent(state, time)
+    residual = float(np.abs(end.vector() - state.vector()).max())
+    return PeriodicOrbit(model, symmetry, state, time, residual, changed, _events(mapping, time))
+
+
+def safe_offset(orbit: PeriodicOrbit) -> float:
+    """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe where it is."""
+    return _safe_offset([event[0] for event in orbit.events], orbit.period)
+
+
+def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
+    """Return the periodic orbit near a state between two events, by Newton's method.
+
+    return_time : after which the state about returns: a period, or half of one for SYMMETRIC, in a mirror
+
+    Raises OrbitError if none is found, ValueError if the chain has no mirror image and the symmetry needs one.
+    """
+    if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
+        raise ValueError(
+            f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image"
+        )
+    mapping = ReturnMap(model, symmetry)
+    mapping.end(guess, return_time)
+    events = _events(mapping, return_time)
+    period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
+    # The guess may lie at a stop itself, which rounding puts before or after it.
+    times = sorted([*(event[0] for event in events), return_time, period])
+    guess = flow(model, guess, _safe_offset(times, period))[0].instant()
+    if symmetry == Symmetry.SYNCHRONIZED:
+        vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
+        guess = Instant(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
+    return solve_return(model, guess, return_time, symmetry)
+
+
+def _events(mapping: ReturnMap, time: float) -> tuple[tuple[float, int, int], ...]:
+    """Return the events of a whole period, of which a return has just been made."""
+    events, last = mapping.events(), mapping.model.blocks - 1
+    if mapping.symmetry != Symmetry.SYMMETRIC:
+        return events
+    return events + tuple((time + at, last - block, kind) for at, block, kind in events)
+
+
+def _safe_offset(times: list[float], period: float) -> float:
+    """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe in one."""
+    if not times:
+        return 0.0
+    ordered = np.array([times[-1] - period, *times])
+    gaps = np.diff(ordered)
+    here = min(ordered[1], -ordered[0])
+    if here >= NEAR_EVENT * gaps.max():
+        return 0.0
+    longest = int(gaps.argmax())
+    middle = 0.5 * float(ordered[longest] + ordered[longest + 1])
+    return middle if middle >= 0.0 else middle + period

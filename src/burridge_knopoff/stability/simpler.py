@@ -1,0 +1,51 @@
+"""What an orbit is besides how it was found: one of more symmetry, or of a shorter period, gone round several times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.stability.return_map import ReturnMap
+
+# Parts of a period after which an orbit may already have closed.
+PARTS = (2, 3, 5)
+
+
+def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
+    """Return the orbit of the most symmetry and the shortest return that an orbit is; itself if there is none.
+
+    The simpler orbit has the same stops, gone round as often as it takes.
+
+    tolerance : how far, for v = 0.1, its state may be from where the simpler orbit would be; a branch of orbits of less
+        symmetry, or of twice the period, begins at such orbits
+    """
+    for time, symmetry in _simpler(orbit):
+        end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time) if time > 0.0 else orbit.reference
+        if symmetry == Symmetry.SYNCHRONIZED:
+            end, time = end.mirrored(), orbit.period
+        if np.abs(end.vector() - orbit.reference.vector()).max() > tolerance * orbit.model.scale:
+            continue
+        try:
+            found = find_periodic_orbit(orbit.model, orbit.reference, time, symmetry)
+        except OrbitError:
+            continue
+        turns = round(orbit.period / found.period)
+        # A state at rest relative to the driver returns after any time, however short.
+        if any(found.signature) and tuple(turns * stops for stops in found.signature) == orbit.signature:
+            return simplest(found, tolerance)
+    return orbit
+
+
+def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
+    """Yield times after which a simpler orbit would have returned, and its symmetry; 0 if it is the state itself."""
+    if orbit.symmetry != Symmetry.SYNCHRONIZED and orbit.model.chain.is_mirror_symmetric:
+        yield 0.0, Symmetry.SYNCHRONIZED
+    for part in PARTS:
+        if orbit.symmetry != Symmetry.SYMMETRIC or part % 2:
+            yield orbit.return_time / part, orbit.symmetry
+    if orbit.symmetry == Symmetry.ASYMMETRIC and orbit.model.chain.is_mirror_symmetric:
+        yield orbit.period / 2, Symmetry.SYMMETRIC

@@ -1,0 +1,267 @@
+"""The edges of all branches of attractors: where each begins, ends or changes, and by what, as a file.
+
+An attractor that is a closed orbit is followed in a to where it loses its stability or ends; that edge is known to
+1e-10. An edge of which both sides are no closed orbits is only known to lie between two values of a.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.stability.closed_motion import closed_motion
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.edges import Edge
+from burridge_knopoff.stability.following import Following
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit
+from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.stretch import Stretch, stretch
+from burridge_knopoff.summaries.branch_changes import BranchChange, Change, branch_changes
+
+#: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
+FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
+BEYOND = 4
+
+#: Smallest a down to which orbits are followed: at a = 0 no periodic orbit is isolated.
+LEAST_A = 1e-3
+
+# Orbits closer than this along a branch are not kept apart in the file.
+CLOSE = 1e-5
+
+# Share of its period within which a closed orbit is the one that has been followed.
+SAME_PERIOD = 1e-3
+
+# Least error that is told: how far rounding changes a root differs between linear-algebra libraries.
+LEAST_ERROR = 1e-10
+
+PARTS = ("real", "imaginary")
+_EDGE, _ORBIT = ("edge",), ("orbit",)
+_V = Variable
+_YES = flag("i1", {-1: "undetermined", 0: "no", 1: "yes"})
+VARIABLES = {
+    "law": _V(_EDGE, "i1", "friction law, by its number in the attribute laws"),
+    "a": _V(_EDGE, "f8", "friction parameter a of the edge"),
+    "a_error": _V(_EDGE, "f8", "its error: half the width within which it has been held"),
+    "kind": _V(_EDGE, "i1", "what happens there", flag("i1", EdgeKind)),
+    "change": _V(_EDGE, "i1", "what the branch of attractors does there", flag("i1", Change)),
+    "from_branch": _V(_EDGE, "i2", "branch below the edge, or reached from above it", {"comment": "-1 undetermined"}),
+    "to_branch": _V(_EDGE, "i2", "branch above the edge, or reached from below it", {"comment": "-1 undetermined"}),
+    "grid_low": _V(_EDGE, "f8", "largest a of the attractors at which the branch is as before"),
+    "grid_high": _V(_EDGE, "f8", "smallest a of the attractors at which it is as after"),
+    "motion_before": _V(_EDGE, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
+    "motion_after": _V(_EDGE, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
+    "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the edge lie at a on one side of it", _YES),
+    "period": _V(_EDGE, "f8", "period of the orbit at the edge"),
+    "stops": _V(("edge", "block"), "i4", "stops of each block in a period of the stable orbits"),
+    "stops_beyond": _V(("edge", "block"), "i4", "the same of the orbits beyond the edge"),
+    "multiplier": _V(("edge", "part"), "f8", "Floquet multiplier of the largest modulus next to the edge"),
+    "multiplier_beyond": _V(("edge", "part"), "f8", "the same of the orbits beyond the edge"),
+    "mean_distance": _V(_EDGE, "f8", "<J> over a period of that orbit"),
+    "stick_time": _V(_EDGE, "f8", "shortest stick at the edge, 0 where it shrinks to nothing"),
+    "orbit_law": _V(_ORBIT, "i1", "friction law, by its number in the attribute laws"),
+    "orbit_stretch": _V(_ORBIT, "i4", "number of the stretch of orbits that were followed together, in this order"),
+    "orbit_branch": _V(_ORBIT, "i2", "branch of the attractors that they began from"),
+    "orbit_a": _V(_ORBIT, "f8", "friction parameter a of the periodic orbit"),
+    "orbit_stable": _V(
+        _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", _YES
+    ),
+    "orbit_period": _V(_ORBIT, "f8", "period of the orbit"),
+    "orbit_stops": _V(("orbit", "block"), "i4", "stops of each block in a period of the orbit"),
+    "orbit_mean_distance": _V(_ORBIT, "f8", "<J> over a period of the orbit"),
+}
+#: Significant digits of what is written: the last ones differ between machines.
+PLACES = 11
+DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An edge of a branch: found on an orbit, or known only to lie within a range of a."""
+
+    change: Change
+    from_branch: int
+    to_branch: int
+    low: float
+    high: float
+    motion: tuple[int, int]
+    kind: EdgeKind
+    edge: Edge | None
+
+    @property
+    def a(self) -> float:
+        """Friction parameter: that of the edge, or the middle of the range."""
+        return self.edge.a if self.edge else 0.5 * (self.low + self.high)
+
+
+def summarize(models: Sequence[Model], attractors: xarray.Dataset) -> xarray.Dataset:
+    """Return the Dataset of all edges.
+
+    models : one for each law of the attractors, in their order, at any a
+    """
+    values: dict[str, list[Any]] = {name: [] for name in VARIABLES}
+    blocks = models[0].blocks
+    for number, model in enumerate(models):
+        one = attractors.isel(law=number)
+        stretches, of_slot = followed(model, one)
+        for entry in sorted(entries(one, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
+            _append_edge(values, number, entry, blocks)
+        branch = one["branch"].values
+        branch_of = {index: int(branch[slot]) for slot, index in reversed(of_slot.items())}
+        for index, stretch_ in enumerate(stretches):
+            _append_orbits(values, number, index, branch_of[index], stretch_)
+    rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
+    rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
+    located = np.isfinite(rounded["period"])
+    rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
+    shapes = dict.fromkeys(("stops", "stops_beyond", "orbit_stops"), (-1, blocks)) | {
+        "multiplier": (-1, 2),
+        "multiplier_beyond": (-1, 2),
+    }
+    for name, shape in shapes.items():
+        rounded[name] = rounded[name].reshape(shape)
+    names = [str(law) for law in attractors["law"].values]
+    laws = axes((), (), names)["law"][1]
+    coordinates = {
+        "part": ("part", np.array(PARTS, dtype=object), {"long_name": "part of a complex number"}),
+        "block": attractors["block"].variable,
+    }
+    head = {"laws": " ".join(map(str, laws)), "v": models[0].v, "contact": models[0].contact}
+    described = {**VARIABLES, **{name: _numbered(VARIABLES[name], names) for name in ("law", "orbit_law")}}
+    history = {"history": "snakemake, from the attractors and the equations of motion"}
+    return summary(
+        "Edges of the branches of attractors", described, rounded, coordinates, head | history, module=__name__
+    )
+
+
+def _numbered(item: Variable, names: Sequence[str]) -> Variable:
+    return Variable(item.dimensions, item.dtype, "friction law", flag("i1", dict(enumerate(names))))
+
+
+def followed(model: Model, one: xarray.Dataset) -> tuple[list[Stretch], dict[tuple[int, int], int]]:
+    """Follow every attractor of one law that is a closed orbit; return the stretches, and the one of each (a, slot)."""
+    a_values = one["a"].values
+    branch, side, kind = (one[name].values for name in ("branch", "side", "kind"))
+    closed = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)) & (branch >= 0) & (side >= 0)
+    found: list[Stretch] = []
+    of_slot: dict[tuple[int, int], int] = {}
+    for k, slot in np.argwhere(closed):
+        here = model.at(float(a_values[k]))
+        position = one["position"].values[k, slot] - here.sliding_offset
+        try:
+            orbit = closed_motion(here, instant_of(np.concatenate([position, one["velocity"].values[k, slot]])))
+            known = [index for index, other in enumerate(found) if other.holds(orbit, SAME_PERIOD)]
+            if not known:
+                found.append(stretch(orbit, (LEAST_A, float(a_values[-1])), BEYOND, FOLLOWING))
+        except OrbitError as error:
+            print(f"{model.law.name}: {error}")
+            continue
+        of_slot[int(k), int(slot)] = known[0] if known else len(found) - 1
+    return found, of_slot
+
+
+def entries(one: xarray.Dataset, stretches: Sequence[Stretch], of_slot: Mapping[tuple[int, int], int]) -> list[Entry]:
+    """Return an entry, or two, for each beginning, end and change, and one for each edge that stable orbits pass.
+
+    A change from one orbit to another has one for the end of the first and one for the beginning of the second, unless
+    they are the same edge.
+    """
+    a, branch, kind = (one[name].values for name in ("a", "branch", "kind"))
+    found = []
+    for change in branch_changes(one):
+        ends: list[Edge] = []
+        numbers = of_slot.get((change.index, change.before)), of_slot.get((change.index + 1, change.after))
+        if numbers[0] is not None and numbers[0] == numbers[1]:
+            # One orbit on both sides; only its section points were counted differently.
+            continue
+        for number, name in zip(numbers, ("high_end", "low_end"), strict=True):
+            edge = getattr(stretches[number], name) if number is not None else None
+            if edge is not None and all(abs(edge.a - other.a) > LEAST_ERROR for other in ends):
+                ends.append(edge)
+        k = change.index
+        motion = _motion(one, k, change.from_branch), _motion(one, k + 1, change.to_branch)
+        own = change.change, change.from_branch, change.to_branch, float(a[k]), float(a[k + 1]), motion
+        found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
+    for number, one_stretch in enumerate(stretches):
+        n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
+        for edge in one_stretch.low_edges + one_stretch.high_edges:
+            if not edge.loses_stability and not edge.turns:
+                k = int(np.clip(np.searchsorted(a, edge.a) - 1, 0, len(a) - 2))
+                motion = _motion(one, k, n), _motion(one, k + 1, n)
+                found.append(Entry(Change.PASSED, n, n, float(a[k]), float(a[k + 1]), motion, edge.kind, edge))
+    return found
+
+
+def _motion(one: xarray.Dataset, k: int, branch: int) -> int:
+    """Return the kind of motion on a branch at one a; undetermined where it does not exist."""
+    slots = np.flatnonzero((one["branch"].values[k] == branch) & (branch >= 0))
+    return int(one["kind"].values[k, slots[0]]) if len(slots) else int(MotionKind.UNDETERMINED)
+
+
+def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
+    """Return the kind of an edge next to which there is no closed orbit: a crisis if a chaotic set ends or begins."""
+    ends = [kind[change.index, change.before]] if change.before >= 0 else []
+    ends += [kind[change.index + 1, change.after]] if change.after >= 0 else []
+    return EdgeKind.CRISIS if MotionKind.CHAOTIC in ends and len(ends) == 1 else EdgeKind.UNDETERMINED
+
+
+def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: int) -> None:
+    for name in ("change", "from_branch", "to_branch", "kind", "a"):
+        values[name].append(getattr(entry, name))
+    values["law"].append(law)
+    values["grid_low"].append(entry.low)
+    values["grid_high"].append(entry.high)
+    values["motion_before"].append(entry.motion[0])
+    values["motion_after"].append(entry.motion[1])
+    edge = entry.edge
+    after = edge.after if edge else None
+    values["a_error"].append(edge.a_error if edge else 1.0)
+    values["turns"].append(int(edge.turns) if edge else -1)
+    values["period"].append(edge.before.orbit.period if edge else np.nan)
+    values["mean_distance"].append(_mean_distance(edge.before.orbit) if edge else np.nan)
+    values["stick_time"].append(edge.stick_time if edge else np.nan)
+    values["stops"] += edge.before.orbit.signature if edge else [-1] * blocks
+    values["stops_beyond"] += after.orbit.signature if after else [-1] * blocks
+    for name, point in (("multiplier", edge.at if edge else None), ("multiplier_beyond", after)):
+        largest = complex(point.multipliers.whole[0]) if point else complex(np.nan, np.nan)
+        values[name] += [largest.real, abs(largest.imag)]
+
+
+def _append_orbits(values: dict[str, list[Any]], law: int, number: int, branch: int, one: Stretch) -> None:
+    for point in [*one.downward[:0:-1], *one.upward]:
+        if 0.0 < point.length < CLOSE and not point.corner:
+            # On the way to a corner.
+            continue
+        values["orbit_law"].append(law)
+        values["orbit_stretch"].append(number)
+        values["orbit_branch"].append(branch)
+        values["orbit_a"].append(point.orbit.a)
+        values["orbit_stable"].append(int(point.multipliers.unstable == 0))
+        values["orbit_period"].append(point.orbit.period)
+        values["orbit_stops"] += point.orbit.signature
+        values["orbit_mean_distance"].append(_mean_distance(point.orbit))
+
+
+def _mean_distance(orbit: PeriodicOrbit) -> float:
+    observer = new_observer(orbit.model, [0.0, orbit.period])
+    runner = Runner(orbit.model, observer=observer)
+    runner.begin(orbit.reference)
+    runner.run()
+    return float(observer.results()["batch_integral"][0]) / orbit.period
+
+
+def _rounded(item: Variable, values: Sequence[Any], digits: int) -> np.ndarray:
+    """Return values of a variable with so many significant digits."""
+    if item.dtype != "f8":
+        return np.array(values, dtype=item.dtype)
+    # Next to 0 digits behind the point count as well: nothing is known to more of them.
+    return np.array([float(f"{round(value, PLACES):.{digits - 1}e}") for value in values], dtype=float)

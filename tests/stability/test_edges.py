@@ -1,0 +1,191 @@
+"""Edges along followed branches against those of the synchronized orbit, orbits found alone, and runs beside orbits."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, law_of
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.closed_motion import closed_motion
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.edges import locate_edges
+from burridge_knopoff.stability.following import Following, follow
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import find_periodic_orbit
+from burridge_knopoff.stability.stretch import stretch
+from burridge_knopoff.stability.transition import critical_a, grazing_a, symmetric_flip_a
+
+MINUS = (-0.989, -0.993, -0.991)
+STEPS = Following(largest_step=2e-3)
+
+
+def settled(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
+    """Return the closed orbit that a long run of the paper's chain ends on."""
+    model = Model(Chain(3), law_of(law, a))
+    end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 10_000.0)
+    return closed_motion(model, end)
+
+
+def synchronized(families, law, a):
+    known = families[law].at(a)
+    return find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
+
+
+def only(edges):
+    (edge,) = edges
+    return edge
+
+
+@pytest.fixture(scope="module")
+def six():
+    """The stretch of stable orbits on which the outer blocks stop six and three times."""
+    orbit = settled(0.12)
+    assert orbit.signature == (6, 6, 3)
+    return stretch(orbit, (0.1, 0.15), 4, STEPS)
+
+
+def ends_on(orbit, a):
+    """Return the stops of the closed orbit that a run ends on which begins on an orbit, but at another a; else none."""
+    model = orbit.model.at(a)
+    try:
+        return closed_motion(model, Runner(model).after(orbit.reference, 3000.0)).signature
+    except OrbitError:
+        return ()
+
+
+def test_synchrony_is_lost_in_a_pitchfork(families, law):
+    edge = only(locate_edges(follow(synchronized(families, law, 0.08), (0.01, 0.095), STEPS)))
+    assert edge.kind == EdgeKind.PITCHFORK
+    assert edge.a == pytest.approx(critical_a(families[law]), abs=1e-10)
+    assert edge.a_error <= 1e-10
+    assert edge.loses_stability
+    assert not edge.turns
+
+
+def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
+    for a, upward in ((0.03, True), (0.04, False)):
+        edge = only(locate_edges(follow(synchronized(families, law, a), (0.02, 0.05), STEPS, upward=upward)))
+        assert edge.kind == EdgeKind.GRAZING
+        assert edge.a == pytest.approx(grazing_a(families[law]), abs=1e-9)
+        assert {edge.before.orbit.signature, edge.after.orbit.signature} == {(1, 0, 1), (1, 1, 1)}
+        assert not edge.loses_stability
+
+
+def test_the_square_of_a_stick_goes_through_zero_along_a_straight_line(families, law):
+    """The return has no square root at a grazing: its derivative jumps, and the stick grows like a root of the way."""
+    points = follow(synchronized(families, law, 0.04), (0.02, 0.05), STEPS, upward=False)
+    edge = only(locate_edges(points))
+    near = [point for point in points if 1e-7 < point.orbit.a - edge.a < 1e-4 and point.orbit.signature == (1, 1, 1)]
+    slope = [float(point.contacts.stick[1]) ** 2 / (point.orbit.a - edge.a) for point in near]
+    assert len(slope) > 2
+    assert slope == pytest.approx([slope[-1]] * len(slope), rel=0.1)
+
+
+def test_symmetric_motion_doubles_its_period(families):
+    edges = locate_edges(follow(synchronized(families, "linearized", 0.26), (0.25, 0.28), STEPS))
+    edge = next(edge for edge in edges if edge.kind == EdgeKind.FLIP)
+    assert edge.a == pytest.approx(symmetric_flip_a(families["linearized"]), abs=1e-9)
+
+
+def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing(families):
+    found = stretch(settled(0.1), (0.01, 0.13), 4, STEPS)
+    assert found.low_end.kind == EdgeKind.PITCHFORK
+    assert found.low_end.a == pytest.approx(critical_a(families["linearized"]), abs=1e-10)
+    assert found.high_end.kind == EdgeKind.GRAZING
+    # The stick of one outer block vanishes, and with it the stability: a multiplier jumps over the unit circle.
+    assert found.high_end.after.orbit.signature in ((1, 1, 0), (0, 1, 1))
+    assert np.abs(found.high_end.before.multipliers.whole[0]) < 0.5
+    assert np.abs(found.high_end.after.multipliers.whole[0]) > 1.3
+
+
+def test_stable_and_unstable_orbits_meet_where_they_graze(six):
+    for edge in (six.low_end, six.high_end):
+        assert edge.kind == EdgeKind.GRAZING
+        assert edge.turns
+        assert edge.a_error < 1e-10
+        assert sorted(edge.after.orbit.signature) == [2, 6, 6]
+        assert edge.after.multipliers.unstable == 1
+    assert six.stable[0].orbit.a == pytest.approx(six.low_end.a, abs=1e-9)
+
+
+@pytest.mark.parametrize("end", ["low_end", "high_end"])
+def test_runs_leave_an_orbit_beyond_its_edge(six, end):
+    edge = getattr(six, end)
+    outward = -1e-6 if end == "low_end" else 1e-6
+    assert ends_on(edge.before.orbit, edge.a - outward) == edge.before.orbit.signature
+    assert ends_on(edge.before.orbit, edge.a + outward) != edge.before.orbit.signature
+
+
+@pytest.fixture(scope="module")
+def seven():
+    """The stretch of stable orbits on which the outer blocks stop seven and four times."""
+    for u in (-0.989, 0.3, -0.4, 0.7):
+        orbit = settled(0.15, (u, -0.993, -0.991))
+        if sorted(orbit.signature) == [4, 7, 7]:
+            return stretch(orbit, (0.13, 0.16), 4, STEPS)
+    raise AssertionError("no run reaches it")
+
+
+def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
+    edge = seven.high_end
+    assert edge.kind == EdgeKind.FOLD
+    assert edge.turns
+    assert edge.at.multipliers.whole[0] == pytest.approx(1.0, abs=1e-5)
+    here = edge.before.orbit
+    gap = edge.a - here.a
+    while gap > 1e-8:
+        gap *= 0.25
+        here = find_periodic_orbit(here.model.at(edge.a - gap), here.reference, here.return_time, here.symmetry)
+    with pytest.raises(OrbitError):
+        find_periodic_orbit(here.model.at(edge.a + 1e-8), here.reference, here.return_time, here.symmetry)
+
+
+def test_an_edge_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
+    again = stretch(seven.stable[-1].orbit, (0.13, 0.16), 4, Following(largest_step=3e-4))
+    for one, other in ((seven.low_end, again.low_end), (seven.high_end, again.high_end)):
+        assert one.a == pytest.approx(other.a, abs=1e-10)
+        assert (one.kind, one.turns) == (other.kind, other.turns)
+
+
+def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
+    doubled = settled(0.135)
+    assert sorted(doubled.signature) == [12, 26, 26]
+    found = stretch(doubled, (0.13, 0.15), 4, Following(largest_step=1e-4))
+    assert found.high_end.kind == EdgeKind.FLIP
+    flip = stretch(found.upward[-1].joined, (0.13, 0.15), 4, STEPS).low_end
+    assert flip.a == pytest.approx(found.high_end.a, abs=1e-10)
+    assert flip.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
+    # The square of what the doubled orbit misses after half its period falls to 0 there.
+    near = [point.orbit for point in found.stable if 0.0 < flip.a - point.orbit.a < 6e-4]
+    ends = [Runner(orbit.model).after(orbit.reference, 0.5 * orbit.period) for orbit in near]
+    missed = [np.abs(end.vector() - orbit.reference.vector()).max() for end, orbit in zip(ends, near, strict=True)]
+    slope, offset = np.polyfit([orbit.a for orbit in near], np.square(missed), 1)
+    assert len(near) > 2
+    assert -offset / slope == pytest.approx(flip.a, abs=5e-5)
+
+
+def test_a_torus_branches_off_where_perturbations_stop_decaying():
+    orbit = settled(0.12, (-0.787, -0.661, -0.869), velocity=(0.0, 0.101, 0.189))
+    assert (orbit.symmetry, orbit.signature) == (Symmetry.SYMMETRIC, (1, 0, 1))
+    edge = stretch(orbit, (0.1, 0.16), 4, STEPS).high_end
+    assert edge.kind == EdgeKind.NEIMARK_SACKER
+    assert abs(edge.at.multipliers.whole[0]) == pytest.approx(1.0, abs=1e-9)
+    assert abs(edge.at.multipliers.whole[0].imag) > 0.1
+    at = edge.at.orbit
+    for offset, grows in ((-1e-3, False), (1e-3, True)):
+        model = at.model.at(edge.a + offset)
+        beside = find_periodic_orbit(model, at.reference, at.return_time, at.symmetry)
+        moved = beside.reference.position + np.array([1e-6, 0.0, 0.0])
+        start = Instant(moved, beside.reference.velocity, beside.reference.stuck)
+        end = Runner(model).after(start, 3000.0 * beside.period)
+        left = np.abs(end.vector() - beside.reference.vector()).max()
+        assert (left > 1e-6) == grows
+
+
+def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
+    """There a block that stops for however short a time starts with a jump: no orbit goes on from the grazing one."""
+    orbit = settled(0.05, law="carlson_langer")
+    points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
+    assert 0.02 < points[-1].orbit.a < 0.05
+    assert not list(locate_edges(points))[:-1]

@@ -1,0 +1,13 @@
+"""Edges of the branches of attractors."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.study.model import models_of
+from burridge_knopoff.summaries.edges import summarize
+
+params = snakemake.params
+models = models_of(params.model, params.a, params.blocks)
+write_summary(summarize(models, open_summary(snakemake.input[0])), snakemake.output[0])
