@@ -15,7 +15,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.sampling import sampled_states
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, PhaseSettings, SearchSettings
 from burridge_knopoff.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
@@ -26,6 +26,7 @@ from burridge_knopoff.summaries import (
     lyapunov,
     mean_distance,
     orbits,
+    phases,
     solvers,
     stick_slip,
     two_blocks,
@@ -44,6 +45,7 @@ SMALL = {
     "batches": 2,
     "attractors": {"samples": 2, "transient": 100, "window": 100, "time_limit": 1000, "pushes": 4},
     "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
+    "phases": {"amplitude": [0.05, 0.5], "phase_difference": [30, 180], "samples": 2},
     "solvers": {"a": [0.2], "step": 0.05},
 }
 
@@ -146,7 +148,15 @@ class SmallStudy:
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
             "basins": self._basins(found["attractors"]),
+            **self._phases(found["attractors"]),
         }
+
+    def _phases(self, found: xarray.Dataset) -> dict[str, xarray.Dataset]:
+        section = dict(self.study.config["phases"])
+        grid = section.pop("a")
+        told = (grid, PhaseSettings(**section), self.search, self.motion)
+        parts = [phases.one_law(found, model, *told) for model in self.models if grid]
+        return {"phases": phases.merge(parts)} if grid else {}
 
     def _solvers(self) -> xarray.Dataset:
         study = self.study

@@ -96,6 +96,17 @@ def test_attractors_and_basins(results):
         assert set(basins["branch"].values[1].ravel().tolist()) <= branches | {-1}
 
 
+def test_phases_summary(results):
+    with xr.open_dataset(results / "summary" / "phases.nc") as phases:
+        assert dict(phases.sizes) == {"law": 2, "a": 2, "amplitude": 2, "phase_difference": 2, "state": 3}
+        assert phases["a"].values.tolist() == [0.05, 0.08]
+        small = phases["branch"].sel(amplitude=0.03)
+        assert (small.sel(phase_difference=20.0) == 0).all()
+        assert (small.sel(phase_difference=180.0) != 0).all()
+        with xr.open_dataset(results / "phases" / "nonlinear.nc") as one:
+            assert (phases["branch"].sel(law="nonlinear") == one["branch"]).all()
+
+
 def test_agreement_summary(results):
     with xr.open_dataset(results / "summary" / "agreement.nc") as agreement:
         pair = [simulate(law, 0.2, "plus", **OPTIONS) for law in ("linearized", "nonlinear")]
@@ -178,6 +189,7 @@ def test_solvers_summary(results):
         "basins",
         "basin_fractions",
         "orbits",
+        "phases",
         "stick_slip",
         "equilibrium",
         "solvers",

@@ -4,6 +4,7 @@
 rule claims:
     input:
         [f"{SUMMARY}/{name}.nc" for name in [*SUMMARIES, "attractors", "solvers"]],
+        f"{SUMMARY}/phases.nc" if STUDY.has_phases else [],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
     output:
         content=f"{SUMMARY}/claims.json",

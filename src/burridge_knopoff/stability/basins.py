@@ -65,7 +65,7 @@ def known_attractors(
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "
                 f"{steady.mean_distance:.5f} now and {one['mean_distance'].item():.5f} in the file: motion that does "
-                "not last has no basin; leave this a out of basins"
+                "not last has no basin; leave this a out of basins and phases"
             )
         slow = bool(one["slow"].item())
         if slow:

@@ -24,11 +24,12 @@ from burridge_knopoff.stability.settings import (
     TIME,
     BasinSettings,
     MotionSettings,
+    PhaseSettings,
     Sample,
     SearchSettings,
     Watch,
 )
-from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS
+from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
@@ -111,6 +112,15 @@ BASINS = {
     ),
     **_part(BasinSettings, "pixels"),
 }
+PHASES = {
+    "a": Field(
+        SOME_VALUES,
+        "values of the grid at which states are drawn by the phases of their end blocks; without it, in the paper's "
+        f"chain, those of {', '.join(map(str, PAPER_PHASES))} that are in the grid",
+        FOLLOWS,
+    ),
+    **_part(PhaseSettings),
+}
 TWO_BLOCKS = {
     "a": Field(
         VALUES, "friction parameters at which two blocks are compared", [{"from": 0.005, "to": 0.4, "step": 0.005}]
@@ -162,6 +172,7 @@ CONFIG = Keys(
         "figures": _section(FIGURES),
         "attractors": _section(_part(SearchSettings)),
         "basins": _section(BASINS),
+        "phases": _section(PHASES),
         "chains": _section(CHAINS),
     }
 )
