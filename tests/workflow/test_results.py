@@ -86,7 +86,8 @@ def test_attractors_and_basins(results):
         assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
         branches = set(there["branch"].values.tolist())
     with xr.open_dataset(results / "summary" / "basins.nc") as basins:
-        assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, "separation": 5}
+        steps = {"separation": 13, "separation_step": 12}
+        assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, **steps}
         laws = basins["law"].attrs["flag_meanings"].split()
         assert [(laws[law], a) for law, a in zip(basins["law"].values, basins["a"].values, strict=True)] == [
             ("linearized", 0.05),

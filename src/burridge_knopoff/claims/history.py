@@ -147,12 +147,14 @@ def phases_decide(
     cells = np.ix_(np.arange(len(laws)), inside, slips)
     shares = {law: float(one.all(axis=1).mean()) for law, one in zip(laws, right[cells], strict=True)}
     own, text = judge_shares(shares, loose_share)
-    least = [f"{100 * low[cells].min():.1f} % or more" for low in (together_low, against_low)]
+    told = [
+        f"{_span(found[cells])} of the states, Wilson intervals {100 * low[cells].min():.1f} % or more"
+        for found, low in ((together, together_low), (against, against_low))
+    ]
     reason = (
         f"End blocks that oscillate about uniform sliding without stopping (A = {_values(amplitude[slips])}) "
-        f"synchronize from phases within {close:g}° ({_span(together[cells])} of the states, Wilson intervals {least[0]})"
-        f", and from opposite ones end in antiphase ({_span(against[cells])}, {least[1]}), at {text} of the values of a "
-        f"with {a}."
+        f"synchronize from phases within {close:g}° ({told[0]}) and end in antiphase from opposite ones ({told[1]}), "
+        f"at {text} of the values of a with {a}."
     )
     verdict = LOOSELY if own == HOLDS and not right[:, inside].all() else own
     return Verdict(verdict, reason, measured, "; ".join(changes))

@@ -114,8 +114,8 @@ class BasinSettings:
     pairs: Annotated[
         int,
         Whole(0, 10_000_000),
-        "pairs of near states of the plane, at each of five separations, for the uncertainty exponent",
-    ] = 4000
+        "pairs of near states of the plane, at each of thirteen separations, for the uncertainty exponent",
+    ] = 1600
     tiles: Annotated[int, Whole(1, 16_384), "bands of rows of a map, each a job, at most as many as pixels"] = 2
     threads: Annotated[int, Whole(1, 1024), "threads of each of these jobs; they change no label"] = 1
 

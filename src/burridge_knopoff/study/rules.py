@@ -21,8 +21,8 @@ from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHA
 #: Numbers that a job holds of one kind, at most: 800 MB.
 MOST_NUMBERS = 100_000_000
 
-#: Separations at which pairs of near states are drawn, and two states of a pair: stability/uncertainty.py.
-_STATES_OF_A_PAIR = 6
+#: States that are labelled at once for each pair of near states: stability/splitting.py.
+_STATES_OF_A_PAIR = 2
 
 
 @contextmanager
