@@ -16,7 +16,13 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.sampling import sampled_states
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, Refine, SearchSettings
+from burridge_knopoff.stability.settings import (
+    BasinSettings,
+    MotionSettings,
+    PhaseSettings,
+    Refine,
+    SearchSettings,
+)
 from burridge_knopoff.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
@@ -28,6 +34,7 @@ from burridge_knopoff.summaries import (
     lyapunov,
     mean_distance,
     orbits,
+    phases,
     refined,
     solvers,
     stick_slip,
@@ -56,6 +63,7 @@ SMALL = {
         "pushes": 4,
     },
     "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
+    "phases": {"amplitude": [0.05, 0.5], "phase_difference": [30, 180], "samples": 2},
     "solvers": {"a": [0.2], "step": 0.05},
 }
 
@@ -165,7 +173,15 @@ class SmallStudy:
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
             "basins": self._basins(found["attractors"]),
             "edges": edges.summarize(self.models, found["attractors"]),
+            **self._phases(found["attractors"]),
         }
+
+    def _phases(self, found: xarray.Dataset) -> dict[str, xarray.Dataset]:
+        section = dict(self.study.config["phases"])
+        grid = section.pop("a")
+        told = (grid, PhaseSettings(**section), self.search, self.motion)
+        parts = [phases.one_law(found, model, *told) for model in self.models if grid]
+        return {"phases": phases.merge(parts)} if grid else {}
 
     def _solvers(self) -> xarray.Dataset:
         study = self.study

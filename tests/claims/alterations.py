@@ -52,6 +52,10 @@ def narrow_cloud(world: Summaries) -> None:
     bifurcation["crossing_velocity"].values[of_plus] = 0.3
 
 
+def fewer_states(world: Summaries) -> None:
+    world["phases"] = world["phases"].isel(state=slice(15))
+
+
 def faster_cloud(world: Summaries) -> None:
     bifurcation = world["bifurcation"]
     of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
@@ -137,6 +141,20 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("first_block_decides", HOLDS, reached(-1, initial="minus", **OTHER)),
     ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
     ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
+    ("phases_decide", FAILS, alter("phases", "branch", 2, phase_difference=30.0)),
+    ("phases_decide", FAILS, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0)),
+    # Neither close nor opposite.
+    ("phases_decide", HOLDS, alter("phases", "velocity_correlation", 1.0, phase_difference=150.0)),
+    # Where blocks stop in the course of an oscillation.
+    ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, amplitude=0.2)),
+    ("phases_decide", LOOSELY, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0, amplitude=0.2)),
+    ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, a=ONE_OF_MANY)),
+    # Two of eighty states are no exception to the rule, twenty are.
+    ("phases_decide", HOLDS, alter("phases", "branch", 2, phase_difference=[15.0, 30.0], state=1)),
+    ("phases_decide", FAILS, alter("phases", "branch", 2, phase_difference=[15.0, 30.0], state=np.arange(1, 11))),
+    ("phases_decide", HOLDS, alter("phases", "branch", 2, a=lambda a: a > 0.08)),
+    ("phases_decide", NOT_TESTABLE, lambda world: world["phases"].attrs.update(slipping_amplitude=0.001)),
+    ("phases_decide", NOT_TESTABLE, fewer_states),
     ("regular_below", FAILS, kinds(CHAOTIC)),
     ("regular_below", CONVENTION, alter("lyapunov", "kind", CHAOTIC)),
     ("regular_below", LOOSELY, alter("lyapunov", "kind", CHAOTIC, a=ONE_OF_MANY)),

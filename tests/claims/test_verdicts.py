@@ -17,12 +17,9 @@ from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
 from tests.claims.said import CLAIMS, FILE, altered, said
 from tests.claims.worlds import Summaries, evidence, paper_world
 
-# What no study can judge as yet.
-UNJUDGED = {"phases_decide": "the states of this study differ in positions, not in the phase of an oscillation about"}
-JUDGED = [name for name in CLAIMS if name not in UNJUDGED]
 SAID = json.loads(FILE.read_text(encoding="utf-8"))
 #: (claim, its number there, verdict, alteration): first no alteration, for each claim.
-TOLD = [(name, 0, HOLDS, lambda world: None) for name in JUDGED]
+TOLD = [(name, 0, HOLDS, lambda world: None) for name in CLAIMS]
 TOLD += [(case[0], [one[0] for one in CASES[: k + 1]].count(case[0]), *case[1:]) for k, case in enumerate(CASES)]
 
 
@@ -103,7 +100,7 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
 
 
 def test_every_claim_is_seen_to_fail() -> None:
-    assert {name for name, verdict, _ in CASES if verdict in (FAILS, CONVENTION)} == set(JUDGED)
+    assert {name for name, verdict, _ in CASES if verdict in (FAILS, CONVENTION)} == set(CLAIMS)
 
 
 def _under(laws: list[str]) -> Summaries:
@@ -139,9 +136,7 @@ SPRINGS = "the study's chain has other springs or static friction than the paper
 @pytest.mark.parametrize(
     ("names", "world", "config", "reason"),
     [
-        (list(UNJUDGED), paper_world, {}, UNJUDGED["phases_decide"] + " uniform sliding"),
-        (list(UNJUDGED), dict, {}, UNJUDGED["phases_decide"] + " uniform sliding"),
-        (JUDGED, dict, {}, "the study has no summary …"),
+        (CLAIMS, dict, {}, "the study has no summary …"),
         (CLAIMS, paper_world, {"v": 0.2}, "the paper's driver has v = 0.1, that of the study v = 0.2"),
         (CLAIMS, lambda: _under(["stribeck"]), {"laws": {"stribeck": {}}}, "the study has no linearized law"),
         (
@@ -200,7 +195,7 @@ def test_what_one_law_tells_is_judged_without_the_other(name: str) -> None:
         assert verdict.verdict == HOLDS, verdict.reason
 
 
-@pytest.mark.parametrize("name", JUDGED)
+@pytest.mark.parametrize("name", CLAIMS)
 def test_a_further_law_changes_no_verdict(name: str) -> None:
     """Its numbers would contradict every claim."""
     world = {}

@@ -57,6 +57,7 @@ def paper_world() -> Summaries:
         ).assign_attrs(synchronization_threshold=1e-6),
         "attractors": _attractors(),
         "edges": _edges(),
+        "phases": _phases(),
         "orbits": _dataset(
             {
                 "critical_a": (("law",), [0.0801, 0.0802]),
@@ -194,6 +195,21 @@ def _edges() -> xarray.Dataset:
         "grid_low": low,
     }
     return xarray.Dataset({name: ("edge", values) for name, values in flags.items()}, attrs={"laws": " ".join(LAWS)})
+
+
+def _phases() -> xarray.Dataset:
+    """Return states that synchronize from phases up to 90° apart and are in antiphase from phases beyond."""
+    states = ("law", "a", "amplitude", "phase_difference", "state")
+    opposite = np.array([False, False, True, True])[:, None]
+    return _dataset(
+        {
+            "branch": (states, np.where(opposite, 2, 0).astype("i2")),
+            "velocity_correlation": (states, np.where(opposite, -0.9, 1.0)),
+        },
+        amplitude=[0.01, 0.05, 0.2],
+        phase_difference=[15.0, 30.0, 150.0, 180.0],
+        state=np.arange(1, 41),
+    ).assign_attrs(slipping_amplitude=0.07)
 
 
 def _equilibrium() -> xarray.Dataset:

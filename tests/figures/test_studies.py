@@ -18,6 +18,7 @@ from burridge_knopoff.figures import (
     mean_distance,
     motion,
     orbits,
+    phases,
     solvers,
     stick_slip,
     two_blocks,
@@ -50,6 +51,8 @@ def figures_of(small):
     yield "basin_fractions", basin_fractions.draw(found["attractors"])
     yield "basins", basins.draw(found["basins"], found["attractors"], study.marked_states)
     yield "edges", edges.draw(found["attractors"], found["edges"])
+    if study.has_phases:
+        yield "phases", phases.draw(found["phases"])
     yield "orbits", orbits.draw(found["orbits"], found["mean_distance"])
     yield "stick_slip", stick_slip.draw(found["stick_slip"], law)
     yield "equilibrium", equilibrium.draw(found["equilibrium"])

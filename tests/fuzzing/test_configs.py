@@ -44,7 +44,8 @@ series rk4 one_sided symmetric tested moving window all none linearized nonlinea
 v contact start solver step transient batches sampling trajectory trajectory_sampling events event_window
 lyapunov_exponents lyapunov_alignment a_digits synchronization_threshold motion agreement solvers figures attractors
 basins chains two_blocks samples pixels tiles pairs blocks laws seed position velocity time_limit resolution pushes
-threads law chain coupling pulling threshold ends neighbours open ring formula sigma eta exponential stribeck
+threads phases amplitude phase_difference 180 180.5
+law chain coupling pulling threshold ends neighbours open ring formula sigma eta exponential stribeck
 carlson_langer own 100 100.5 1/(1+a*u) 1-a*u 1-b*u exp(-a*u) sqrt(1-a*u) 1-a*u**2 {formula: 1-a*u}
 {formula: 1-b*u, b: 0.5} {law: stribeck, sigma: 0.1} {sigma: 0.02} {linearized: {}}
 """
@@ -60,7 +61,8 @@ motion.longest_period 1 1000, agreement.relative_tolerance 0.0 1.0, agreement.st
 solvers.step 1e-9 10.0, attractors.samples 0 1000000, attractors.seed 0 4294967295, attractors.transient >0.0 1e9,
 attractors.window >0.0 1e9, attractors.time_limit >0.0 1e9, attractors.resolution 1e-6 0.1, attractors.pushes 4 10000,
 basins.pixels 1 16384, basins.pairs 0 10000000, basins.tiles 1 16384, basins.threads 1 1024, chains.samples 1 100000,
-chains.symmetric_samples 1 100000, chains.seed 0 4294967295, chains.time_limit 200.0 1e9,
+phases.samples 1 100000,
+phases.seed 0 4294967295, chains.symmetric_samples 1 100000, chains.seed 0 4294967295, chains.time_limit 200.0 1e9,
 chains.synchronization_distance 1e-14 1e-3, chains.two_blocks.samples 1 100000
 """
 RANGE_OF = {key: (low, float(high)) for key, low, high in (item.split() for item in RANGES.split(","))}
@@ -180,10 +182,12 @@ def check_study(study, written):
     assert re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", study.name)
     assert study.name == written["study"]
     grid = set(study.grid.values())
-    for some in (values["solvers.a"], *values["basins.a"].values()):
+    for some in (values["solvers.a"], values["phases.a"], *values["basins.a"].values()):
         assert set(some) <= grid
         assert len(set(some)) == len(some) <= 100
     assert values["basins.initial"] in study.initial
+    assert all(amplitude > 0.0 for amplitude in values["phases.amplitude"])
+    assert all(0.0 <= difference <= 180.0 for difference in values["phases.phase_difference"])
     assert study.shown_a == values.get("figures.a", study.shown_a)
     assert len(study.laws) * len(study.initial) * len(study.grid) <= 100_000
     assert all(2 <= blocks <= 64 for blocks in values["chains.blocks"])

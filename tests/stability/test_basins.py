@@ -1,4 +1,4 @@
-"""Basins: the same labels with any threads and tiles; uncertainty exponents of known boundaries."""
+"""Basins: the same labels with any threads and tiles, and those of whole runs."""
 
 from contextlib import nullcontext
 from dataclasses import replace
@@ -12,7 +12,6 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
 from burridge_knopoff.stability.settings import MOTION, BasinSettings
-from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
 from burridge_knopoff.summaries import attractors, basins
 from tests.stability.test_attractors import SETTINGS
 
@@ -103,13 +102,6 @@ def test_known_attractors_are_those_of_the_summary(known):
         assert np.abs(item.motion.returns[:, :3] - (state - MODEL.sliding_offset)).max(axis=1).min() < 2e-2
 
 
-def exponent_of(label, count):
-    """Return the exponent of a map whose labels are a function of a point, from pairs in the unit square."""
-    points, partners = sample_pairs((0.0, 1.0), (0.0, 1.0), count, 4)
-    known = label(partners.reshape(-1, 2)).reshape(len(SEPARATIONS), -1)
-    return uncertainty_exponent(*uncertain_counts(label(points), known))
-
-
 def test_without_attractors_nothing_is_determined(known):
     none = known.sel(a=[0.08]).assign_coords(a=[0.0])
     none["branch"].values[...] = -1
@@ -119,37 +111,3 @@ def test_without_attractors_nothing_is_determined(known):
     assert (merged["pair_count"] == 0).all()
     assert np.isnan(merged["decision_time"]).all()
     assert np.isnan(merged["uncertainty_exponent"].item())
-
-
-def test_exponent_of_a_straight_boundary():
-    """A smooth curve has α = 1."""
-    alpha, error = exponent_of(lambda x: (x[:, 0] > 0.4 * x[:, 1] + 0.23).astype(int), 400_000)
-    assert error < 0.05
-    assert alpha == pytest.approx(1.0, abs=3 * error)
-
-
-def test_exponent_of_a_cantor_boundary():
-    """Strips of the gaps of the middle-third Cantor set: D = 1 + log 2/log 3, α = 1 − log 2/log 3 = 0.369."""
-
-    def label(x):
-        level = np.zeros(len(x), dtype=int)
-        for k in range(1, 16):
-            middle = np.floor(x[:, 0] * 3.0**k).astype(int) % 3 == 1
-            level[(level == 0) & middle] = k
-        # Each gap has the parity of its level, and what no gap has taken a label of its own.
-        return np.where(level > 0, level % 2, 2)
-
-    alpha, error = exponent_of(label, 40_000)
-    assert error < 0.02
-    assert alpha == pytest.approx(1.0 - np.log(2) / np.log(3), abs=0.04)
-
-
-def test_no_exponent_where_there_is_none():
-    """One basin only; nothing but undetermined states; a boundary that no power of the separation describes."""
-    assert np.isnan(exponent_of(lambda x: np.zeros(len(x), dtype=int), 1000)).all()
-    assert np.isnan(exponent_of(lambda x: np.full(len(x), -1), 1000)).all()
-    known = np.full(len(SEPARATIONS), 10_000)
-    assert np.isnan(uncertainty_exponent(np.array([4000, 3900, 3000, 1000, 100]), known)).all()
-    different, count = uncertain_counts(np.array([0, 1, -1]), np.array([[0, 0, 0], [-1, 1, 1]]))
-    assert different.tolist() == [1, 0]
-    assert count.tolist() == [2, 1]

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-import xarray
 
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.basins import KnownAttractors
 from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings
-from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertainty_exponent
+from burridge_knopoff.stability.splitting import SEPARATIONS, follow_pairs
+from burridge_knopoff.stability.uncertainty import ExponentKind, uncertainty_exponent
 from burridge_knopoff.summaries import basins
 
 PLANE = BasinSettings(pixels=4, first_position=(-1.0, 3.0), last_position=(0.0, 2.0), pairs=50, tiles=2)
@@ -52,70 +52,50 @@ def test_a_tile_is_a_band_of_rows(ruled):
     assert np.isnan(tiles[1]["decision_time"].values[1]).all()
 
 
-def test_pairs_are_counted_at_each_separation(ruled):
+def test_pairs_are_those_of_the_plane(ruled):
     found = basins.pairs(None, MODELS[0], *FOUND)
-    points, partners = sample_pairs((-1.0, 3.0), (0.0, 2.0), 50, SEARCH.seed)
-    labels, others = (rule(np.insert(x, 1, 0.0, axis=-1).reshape(-1, 3)) for x in (points, partners))
-    others = others.reshape(5, 50)
-    for k, name in enumerate(("uncertain_count", "pair_count")):
-        expected = [
-            sum(i >= 0 and j >= 0 and (k == 1 or i != j) for i, j in zip(labels, row, strict=True)) for row in others
-        ]
-        assert found[name].values.tolist() == expected
-    assert found["pair_count"].values.max() < 50
+
+    def label(points):
+        return rule(np.insert(points, 1, 0.0, axis=1))
+
+    counts = follow_pairs(label, (-1.0, 3.0), (0.0, 2.0), 50, SEARCH.seed)
+    expected = uncertainty_exponent(counts)
+    assert found["uncertain_count"].values.tolist() == counts.different_count.tolist()
+    assert found["pair_count"].values.tolist() == counts.known_count.tolist()
+    for name, part in (
+        ("uncertain_fraction", expected.fraction),
+        ("local_exponent", expected.local),
+        ("uncertainty_exponent", expected.alpha),
+        ("exponent_change", expected.change),
+    ):
+        np.testing.assert_array_equal(found[name].values, part[0])
+        np.testing.assert_array_equal(found[f"{name}_error"].values, part[1])
+    assert found["exponent_kind"].item() == expected.kind
+    assert found["exponent_kind"].attrs["flag_meanings"] == "unknown varying single"
     # Parts of the width 4 of the first range.
-    assert found["separation"].values == pytest.approx([0.012, 0.004, 0.0012, 0.0004, 0.00012], rel=1e-12)
-
-
-def test_pairs_lie_apart_by_parts_of_the_width():
-    points, partners = sample_pairs((-1.0, 3.0), (0.0, 2.0), 2000, 3)
-    assert (points >= [-1.0, 0.0]).all()
-    assert (points <= [3.0, 2.0]).all()
-    assert points.mean(axis=0) == pytest.approx([1.0, 1.0], abs=0.1)
-    shift = partners - points
-    np.testing.assert_allclose(np.hypot(*shift.T).T, np.outer(SEPARATIONS, [4.0] * 2000), rtol=1e-9)
-    # In every direction, and in one for all separations.
-    direction = shift / (4.0 * np.array(SEPARATIONS)[:, None, None])
-    assert np.ptp(direction, axis=0).max() < 1e-9
-    assert np.abs(direction[0].mean(axis=0)).max() < 0.05
-    assert np.histogram(np.arctan2(*direction[0].T), 8, (-np.pi, np.pi))[0].min() > 190
-    assert [part.shape for part in sample_pairs((0.0, 1.0), (0.0, 1.0), 0, 3)] == [(0, 2), (5, 0, 2)]
-
-
-def test_the_exponent_is_that_of_a_weighted_line():
-    """f = c ε^0.4, but for the last digit of the counts; the error from the binomial weights of a line, by hand."""
-    known = np.array([10**7] * 5)
-    share = 3.0 * np.array(SEPARATIONS) ** 0.4
-    different = np.round(known * share).astype(int)
-    weight = different / (1.0 - different / known)
-    x = np.log(SEPARATIONS)
-    error = np.sqrt(1.0 / (weight * (x - np.average(x, weights=weight)) ** 2).sum())
-    assert uncertainty_exponent(different, known) == pytest.approx((0.4, error), abs=1e-6)
-    # Three separations with eight pairs that differ are enough, two are not.
-    counts = np.array([80, 40, 8, 7, 3])
-    alpha, _ = uncertainty_exponent(counts, np.full(5, 1000))
-    slope = np.polyfit(x[:3], np.log(counts[:3] / 1000), 1, w=np.sqrt(counts[:3] / (1 - counts[:3] / 1000)))[0]
-    assert alpha == pytest.approx(slope, abs=1e-9)
-    assert np.isnan(uncertainty_exponent(np.array([80, 40, 7, 7, 3]), np.full(5, 1000))).all()
-    # Where all pairs differ nothing is told of the separation.
-    assert np.isnan(uncertainty_exponent(np.array([1000, 40, 8, 7, 3]), np.full(5, 1000))).all()
+    assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
+    assert found["separation"].values[[0, -1]] == pytest.approx([0.4, 0.4 / 3**12])
 
 
 def test_maps_are_put_together_and_told(ruled):
+    near = [basins.pairs(None, model, *FOUND) for model in MODELS]
     maps = [
-        (MODELS[n], [basins.tile(None, MODELS[n], k, *FOUND) for k in (0, 1)], counted(*c))
-        for n, c in enumerate(COUNTS)
+        (model, [basins.tile(None, model, k, *FOUND) for k in (0, 1)], pairs)
+        for model, pairs in zip(MODELS, near, strict=True)
     ]
+    near[0]["uncertainty_exponent"][...], near[0]["uncertainty_exponent_error"][...] = 0.8125, 0.025
+    near[0]["exponent_kind"][...] = ExponentKind.SINGLE
+    near[1]["exponent_change"][...], near[1]["exponent_change_error"][...] = 0.4375, 0.0625
+    near[1]["exponent_kind"][...] = ExponentKind.VARYING
     found = basins.merge(maps, ["linearized", "nonlinear"], PLANE, 7.0, "moving")
     assert found["branch"].values.tolist() == [[[0, 0, 5, 5], [0, 5, 5, 5], [0, 5, 5, 5], [-1] * 4]] * 2
     assert found["last_position"].values.tolist() == [0.25, 0.75, 1.25, 1.75]
     assert found["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
     assert found["undetermined_count"].values.tolist() == [4, 4]
-    for k, (different, known) in enumerate(COUNTS):
-        assert found["uncertain_count"].values[k].tolist() == different
-        assert found["pair_count"].values[k].tolist() == known
-        told = [found[f"uncertainty_exponent{end}"].values[k] for end in ("", "_error")]
-        assert told == pytest.approx(uncertainty_exponent(np.array(different), np.array(known)), nan_ok=True)
+    for name in basins.PAIR_VARIABLES:
+        for k in (0, 1):
+            np.testing.assert_array_equal(found[name].values[k], near[k][name].values)
+    assert found["local_exponent"].dims == ("map", "separation_step")
     assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
     assert found["law"].values.tolist() == [1, 0]
     assert found["a"].values.tolist() == [0.1, 0.3]
@@ -124,17 +104,12 @@ def test_maps_are_put_together_and_told(ruled):
     assert found["decision_time"].values[0, 2].tolist() == [99.5, 100.5, 101.5, 102.5]
     expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "time_limit": 7.0}
     assert {key: found.attrs[key] for key in expected} == expected
-    alpha, error = (found[f"uncertainty_exponent{end}"].values[0] for end in ("", "_error"))
     shares = "undetermined 25.00 %, synchronized 25.00 %, branch 5 (-) 50.00 %"
     decided = f"decided at tau = {np.nanmean(found['decision_time'].values[0]):.0f} in the mean"
+    varying = "no single uncertainty exponent: it changes by 0.44 +- 0.06 over the separations"
     assert basins.digest(found) == (
-        f"nonlinear, a = 0.1: {shares}; uncertainty exponent {alpha:.3f} +- {error:.3f}; {decided}\n"
-        f"linearized, a = 0.3: {shares}; uncertainty exponent nan +- nan; {decided}\n"
+        f"nonlinear, a = 0.1: {shares}; uncertainty exponent 0.812 +- 0.025; {decided}\n"
+        f"linearized, a = 0.3: {shares}; {varying}; {decided}\n"
     )
-
-
-COUNTS = [([80, 40, 20, 10, 3], [1000, 1000, 1000, 1000, 999]), ([0, 0, 0, 0, 0], [50, 50, 50, 50, 49])]
-
-
-def counted(different, known):
-    return xarray.Dataset({"uncertain_count": ("separation", different), "pair_count": ("separation", known)})
+    found["exponent_kind"][...] = ExponentKind.UNKNOWN
+    assert basins.digest(found).count("; uncertainty exponent unknown: too few pairs differ; ") == 2

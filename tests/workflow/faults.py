@@ -18,7 +18,7 @@ import psutil
 from tests.workflow.conftest import Study
 
 #: Folders of results/<study> that are compared byte by byte.
-COMPARED = ("points", "summary", "figures", "attractors", "basins", "solvers")
+COMPARED = ("points", "summary", "figures", "attractors", "basins", "phases", "solvers")
 #: What is being made when a kill hits a stage.
 STAGES = ("points", "attractors", "basins", "solvers", "summary", "figures", "claims", "report")
 #: Touched when Snakemake is started.

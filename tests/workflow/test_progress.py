@@ -78,7 +78,7 @@ def test_without_a_terminal(finished):
         next(n for n, line in enumerate(lines) if words in line) for words in ("jobs: points 16", "study tiny: done")
     )
     total, stages = re.fullmatch(r"(\d+) jobs: (.*)", lines[begin]).groups()
-    assert {"points 16", "attractors 3", "basins 10", "claims 1", "report 1"} <= set(stages.split(", "))
+    assert {"points 16", "attractors 3", "basins 10", "phases 3", "claims 1", "report 1"} <= set(stages.split(", "))
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
     progress = [line for line in lines if re.search(rf"all \d+ of {total} \(\d+ %\)", line)]
     # Snakemake's own last lines come before those of the study.
@@ -96,7 +96,7 @@ def test_last_lines_of_a_study(finished):
     results = finished.folder / "results" / "tiny"
     folders = {"points": 16} | {name: len(list((results / name).iterdir())) for name in ("summary", "figures")}
     assert counts == {f"{name} {count}" for name, count in folders.items()} | {
-        *("attractors 2", "basins 9", "solvers 6", "report.html")
+        *("attractors 2", "basins 9", "phases 2", "solvers 6", "report.html")
     }
     assert "points: all 16 completed" in lines
     with xr.open_dataset(finished.folder / "results" / "tiny" / "summary" / "lyapunov.nc") as lyapunov:

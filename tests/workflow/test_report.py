@@ -18,7 +18,17 @@ CATEGORIES = {
     "Model": ["equilibrium.png", "friction_laws.png"],
     "Runs": ["distance.png", "motion_minus.png", "motion_plus.png", "stick_slip.png"],
     "Synchronization": ["bifurcation.png", "lyapunov.png", "mean_distance.png", "orbits.png"],
-    "Attractors": ["attractors.txt", "basin_fractions.png", "basins.png", "basins.txt", "edges.png"],
+    "Attractors": [
+        *(
+            "attractors.txt",
+            "basin_fractions.png",
+            "basins.png",
+            "basins.txt",
+            "edges.png",
+            "phases.png",
+            "windows.png",
+        ),
+    ],
     "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],
 }
 

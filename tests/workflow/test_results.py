@@ -86,7 +86,8 @@ def test_attractors_and_basins(results):
         assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
         branches = set(there["branch"].values.tolist())
     with xr.open_dataset(results / "summary" / "basins.nc") as basins:
-        assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, "separation": 5}
+        steps = {"separation": 13, "separation_step": 12}
+        assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, **steps}
         laws = basins["law"].attrs["flag_meanings"].split()
         assert [(laws[law], a) for law, a in zip(basins["law"].values, basins["a"].values, strict=True)] == [
             ("linearized", 0.05),
@@ -94,6 +95,17 @@ def test_attractors_and_basins(results):
             ("nonlinear", 0.08),
         ]
         assert set(basins["branch"].values[1].ravel().tolist()) <= branches | {-1}
+
+
+def test_phases_summary(results):
+    with xr.open_dataset(results / "summary" / "phases.nc") as phases:
+        assert dict(phases.sizes) == {"law": 2, "a": 2, "amplitude": 2, "phase_difference": 2, "state": 3}
+        assert phases["a"].values.tolist() == [0.05, 0.08]
+        small = phases["branch"].sel(amplitude=0.03)
+        assert (small.sel(phase_difference=20.0) == 0).all()
+        assert (small.sel(phase_difference=180.0) != 0).all()
+        with xr.open_dataset(results / "phases" / "nonlinear.nc") as one:
+            assert (phases["branch"].sel(law="nonlinear") == one["branch"]).all()
 
 
 def test_agreement_summary(results):
@@ -179,6 +191,7 @@ def test_solvers_summary(results):
         "basin_fractions",
         "edges",
         "orbits",
+        "phases",
         "stick_slip",
         "equilibrium",
         "solvers",

@@ -16,12 +16,16 @@ from tests.workflow.test_runs import jobs
 POINTS = ("simulate", "simulate_solver")
 OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
 SUMMARIES = (*OF_POINTS, "solvers")
-STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "edges", "orbits", "equilibrium", "two_blocks")
+STABILITY = (
+    *("attractors_of_law", "basin_tile", "basin_pairs", "edges", "phases_of_law", "orbits", "equilibrium"),
+    "two_blocks",
+)
 FIGURES = tuple(
     f"figure_{name}"
     for name in (
         *("friction_laws", "mean_distance", "bifurcation", "distance", "lyapunov", "agreement", "basin_fractions"),
-        *("basins", "edges", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion"),
+        *("basins", "edges", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion", "phases"),
+        "windows",
     )
 )
 OF_SUMMARIES = tuple(name for name in FIGURES if name not in ("figure_distance", "figure_motion"))
@@ -99,7 +103,8 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
         ("running/runner.py", (*POINTS, *STABILITY, *SUMMARIES)),
         ("dataset/point.py", POINTS),
         ("stability/attractors.py", ("attractors_of_law",)),
-        ("stability/basins.py", ("basin_tile", "basin_pairs", "basins")),
+        ("stability/basins.py", ("basin_tile", "basin_pairs", "basins", "phases_of_law", "phases")),
+        ("stability/phases.py", ("phases_of_law", "phases")),
         ("stability/motion.py", ("attractors_of_law", "lyapunov", "agreement", "two_blocks")),
         ("summaries/mean_distance.py", ("mean_distance",)),
         ("summaries/orbits.py", ("orbits",)),
@@ -142,7 +147,7 @@ def uncompiled(studied, tmp_path_factory):
     ("name", "roots"),
     [
         ("kernel/state.pxd", (*POINTS, *STABILITY, *SUMMARIES)),
-        ("kernel/ensemble.py", ("attractors_of_law", "basin_tile", "basin_pairs", "basins")),
+        ("kernel/ensemble.py", ("attractors_of_law", "basin_tile", "basin_pairs", "basins", "phases_of_law")),
     ],
 )
 def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studied, uncompiled, name, roots):
@@ -183,6 +188,7 @@ KEYS = [
     ({"basins.pixels": 9}, ("basin_tile",)),
     ({"basins.pairs": 21}, ("basin_pairs",)),
     ({"basins.first_position": [-1.4, 1.5]}, ("basin_tile", "basin_pairs")),
+    ({"phases.samples": 4, "phases.seed": 2}, ("phases_of_law",)),
     ({"chains.seed": 2, "chains.two_blocks.samples": 3}, ("two_blocks",)),
 ]
 #: Keys whose rules get more or less input as well, so that counts are not those of running them again.

@@ -7,6 +7,7 @@ rule claims:
             f"{SUMMARY}/{name}.nc"
             for name in [*SUMMARIES, "attractors", "refined", "edges", "solvers"]
         ],
+        f"{SUMMARY}/phases.nc" if STUDY.has_phases else [],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
         PROOF,
     output:

@@ -38,6 +38,7 @@ rule summary:
         multiext(f"{SUMMARY}/agreement", ".csv", ".txt"),
         f"{SUMMARY}/attractors.txt",
         multiext(f"{SUMMARY}/basins", ".nc", ".txt") if STUDY.basin_maps else [],
+        f"{SUMMARY}/phases.nc" if STUDY.has_phases else [],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
         multiext(f"{SUMMARY}/proof", ".nc", ".txt") if STUDY.proved_laws else [],
         multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md"),

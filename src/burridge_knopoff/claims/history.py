@@ -21,6 +21,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     worst,
 )
+from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
@@ -160,8 +161,81 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
     return Verdict(best, reason, measured, " | ".join(texts))
 
 
-def phases_decide(evidence: Evidence) -> Verdict:
-    """Raise NotTestableError: no study distinguishes the phases of oscillations about uniform sliding."""
-    raise NotTestableError(
-        "the states of this study differ in positions, not in the phase of an oscillation about uniform sliding"
+def phases_decide(
+    evidence: Evidence, a: Range, close: float, opposite: float, correlation: float, share: float, loose_share: float
+) -> Verdict:
+    """Judge whether close phases of the end blocks lead to synchrony and opposite ones to antiphase, under both laws.
+
+    close, opposite : difference of phase in degrees up to which phases are close, and from which they are opposite
+    correlation : of the velocities of the end blocks, up to which these are in antiphase
+    share : of the states that have to end so, by the lower end of a Wilson interval
+
+    It holds if that is so at every amplitude, and loosely if it is at all those at which no block stops: only there
+    the states are oscillations about uniform sliding.
+    """
+    evidence.check_blocks()
+    phases = evidence.summary("phases")
+    evidence.choose(phases, a)
+    difference, amplitude = phases["phase_difference"].values, phases["amplitude"].values
+    slips = amplitude <= phases.attrs["slipping_amplitude"]
+    if not slips.any():
+        raise NotTestableError("at every amplitude of phases.nc some block stops")
+    together, together_low = _fractions(phases["branch"] == 0, difference <= close, share)
+    against, against_low = _fractions(phases["velocity_correlation"] <= correlation, difference >= opposite, share)
+    right = (together_low >= share) & (against_low >= share)
+    laws, inside = phases["law"].values.tolist(), a.choose(phases["a"].values)
+    measured, changes = [], []
+    for k, size in enumerate(amplitude):
+        for words, found in (("close phases that synchronize", together), ("opposite phases in antiphase", against)):
+            least = found[:, inside, k].min(axis=1).tolist()
+            measured += [
+                Measured(f"least share of {words}, A = {size:g}, {law}", value)
+                for law, value in zip(laws, least, strict=True)
+            ]
+        if not right[:, inside, k].all():
+            shown = _span(together[:, inside, k]), _span(against[:, inside, k])
+            changes.append(f"A = {size:g}: {shown[0]} of the close, {shown[1]} of the opposite phases")
+    for law, low in zip(laws, together_low, strict=True):
+        lost = ~inside & (low[:, slips] < share).any(axis=1)
+        if lost.any():
+            changes.append(f"close phases do not synchronize {at_values(phases['a'].values, lost)} ({law})")
+    cells = np.ix_(np.arange(len(laws)), inside, slips)
+    shares = {law: float(one.all(axis=1).mean()) for law, one in zip(laws, right[cells], strict=True)}
+    own, text = judge_shares(shares, loose_share)
+    told = [
+        f"{_span(found[cells])} of the states, Wilson intervals {100 * low[cells].min():.1f} % or more"
+        for found, low in ((together, together_low), (against, against_low))
+    ]
+    reason = (
+        f"End blocks that oscillate about uniform sliding without stopping (A = {_values(amplitude[slips])}) "
+        f"synchronize from phases within {close:g}° ({told[0]}) and end in antiphase from opposite ones ({told[1]}), "
+        f"at {text} of the values of a with {a}."
     )
+    verdict = LOOSELY if own == HOLDS and not right[:, inside].all() else own
+    return Verdict(verdict, reason, measured, "; ".join(changes))
+
+
+def _fractions(claimed: xarray.DataArray, chosen: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return which fraction of the states ends as claimed, and the lower ends of its Wilson interval.
+
+    claimed : over (law, a, amplitude, phase_difference, state); chosen : which differences of phase
+    share : what the interval of all states has to reach
+
+    Both have the shape (law, a, amplitude). Raises NotTestableError if there are too few states.
+    """
+    states = claimed.isel(phase_difference=chosen)
+    count = states.sizes["phase_difference"] * states.sizes["state"]
+    if not fraction_interval(count, count)[1] >= share:
+        raise NotTestableError(f"{count} states of the same phases are too few for a share of {share:g}")
+    hits = states.sum(("phase_difference", "state")).transpose("law", "a", "amplitude").values
+    found = np.reshape([fraction_interval(int(number), count)[:2] for number in hits.ravel()], (*hits.shape, 2))
+    return found[..., 0], found[..., 1]
+
+
+def _span(shares: np.ndarray) -> str:
+    low, high = (f"{100 * share:.1f}" for share in (shares.min(), shares.max()))
+    return f"{low} %" if low == high else f"{low} to {high} %"
+
+
+def _values(numbers: np.ndarray) -> str:
+    return f"{numbers.min():g} to {numbers.max():g}" if len(numbers) > 1 else f"{numbers[0]:g}"

@@ -63,7 +63,7 @@ def known_attractors(
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} has <J> "
                 f"{steady.mean_distance:.5f} now and {one['mean_distance'].item():.5f} in the file: motion that does "
-                "not last has no basin; leave this a out of basins"
+                "not last has no basin; leave this a out of basins and phases"
             )
         slow = bool(one["slow"].item())
         if slow:
@@ -83,10 +83,16 @@ def plane(
     The state given by `position` and `velocity`, but for U_1(0) from `first` and U_N(0) from `last`; `first` runs
     faster.
     """
-    states = np.tile(np.array(position, dtype=float), (len(first) * len(last), 1))
-    states[:, 0] = np.tile(first, len(last))
-    states[:, -1] = np.repeat(last, len(first))
-    return states, np.tile(np.array(velocity, dtype=float), (len(states), 1))
+    return states(position, np.tile(first, len(last)), np.repeat(last, len(first)), velocity)
+
+
+def states(
+    position: Sequence[float], first: np.ndarray, last: np.ndarray, velocity: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return initial states, U(0) and U'(0), each of shape (n, blocks): a given one but for U_1(0) and U_N(0), (n,)."""
+    positions = np.tile(np.array(position, dtype=float), (len(first), 1))
+    positions[:, 0], positions[:, -1] = first, last
+    return positions, np.tile(np.array(velocity, dtype=float), (len(first), 1))
 
 
 def pixel_centres(interval: Sequence[float], pixels: int) -> np.ndarray:

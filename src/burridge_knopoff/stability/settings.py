@@ -9,7 +9,7 @@ from typing import Annotated
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.initial import COORDINATE, PAPER_STATES, InitialState
 from burridge_knopoff.model.model import START, STARTS
-from burridge_knopoff.model.ranges import Interval, Number, OneOf, Whole
+from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, Whole
 from burridge_knopoff.running.settings import LONGEST
 
 #: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
@@ -145,8 +145,8 @@ class BasinSettings:
     pairs: Annotated[
         int,
         Whole(0, 10_000_000),
-        "pairs of near states of the plane, at each of five separations, for the uncertainty exponent",
-    ] = 4000
+        "pairs of near states of the plane, at each of thirteen separations, for the uncertainty exponent",
+    ] = 1600
     tiles: Annotated[int, Whole(1, 16_384), "bands of rows of a map, each a job, at most as many as pixels"] = 2
     threads: Annotated[int, Whole(1, 1024), "threads of each of these jobs; they change no label"] = 1
 
@@ -154,6 +154,30 @@ class BasinSettings:
         check_fields(self)
         if self.tiles > self.pixels:
             raise ValueError(f"tiles: {self.tiles} is not allowed: at most the {self.pixels} rows of a map")
+
+
+@dataclass(frozen=True)
+class PhaseSettings:
+    """End blocks that oscillate about uniform sliding: the config's section `phases`, without the values of a.
+
+    Raises ValueError, one line, for anything out of range.
+    """
+
+    amplitude: Annotated[
+        Sequence[float],
+        Several(Number(0.0, 1e6, above=True), 1, 100, distinct=True),
+        "amplitudes A of both end blocks, each with each phase difference",
+    ] = (0.01, 0.03, 0.07, 0.1, 0.15, 0.2, 0.3, 1.0)
+    phase_difference: Annotated[
+        Sequence[float],
+        Several(Number(0.0, 180.0), 1, 100, distinct=True),
+        "by how many degrees the last block is ahead of the first; exactly 0 is synchrony from the start",
+    ] = (15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0)
+    samples: Annotated[int, SAMPLES, "phases of the first block, drawn at random, for each of these at each a"] = 40
+    seed: Annotated[int, SEED, "seed of these phases; at each a they are others, under each law the same"] = 1
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 @dataclass(frozen=True)

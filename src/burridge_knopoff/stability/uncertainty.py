@@ -8,63 +8,95 @@ Reference: S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (198
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
-from scipy.stats import chi2
 
-#: Separations ε of the pairs, as parts of the width of the map; where f saturates it has no exponent yet.
-SEPARATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
+from burridge_knopoff.stability.splitting import BATCHES, SEPARATIONS, PairCounts
 
-# Pairs that must differ at a separation for it to count.
-FEWEST = 8
+#: α is fitted from the separation of this number on, over a factor of 6561; at larger ones f saturates.
+FITTED_FROM = 4
 
-# Probability of a scatter about the line below which there is no single exponent.
-SIGNIFICANCE = 1e-3
+# Pairs that must differ at a separation for it to count, and separations that must count.
+_FEWEST_PAIRS = 8
+_FEWEST_SEPARATIONS = 4
+
+_RESAMPLES = 1000
+_SEED = 1
+
+# There is no single exponent where its change over the fitted separations is larger than this, and than so many
+# standard errors. A fractal repeats itself at a ratio of separations: around its exponent the local one swings by less.
+_CHANGE = 0.2
+_STANDARD_ERRORS = 3.0
 
 
-def sample_pairs(first: Sequence[float], last: Sequence[float], count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points of a plane, shape (count, 2), and their partners, shape (separations, count, 2).
+class ExponentKind(IntEnum):
+    """Whether a boundary has an exponent: unknown, with too few pairs that differ; varying with ε; or a single one."""
 
-    first, last : ranges (low, high) of both coordinates
-    The partners of a point lie in one direction, drawn at random, at each of SEPARATIONS times the width of the first
-    range.
+    UNKNOWN = -1
+    VARYING = 0
+    SINGLE = 1
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """f and its exponents; all but the kind as (value, standard error), from a bootstrap over the batches of pairs.
+
+    fraction : f, shape (separations,)
+    local : slope of log f against log ε between neighbouring separations, shape (separations − 1,)
+    alpha : slope of a straight line through the fitted separations; NaN unless the kind is SINGLE
+    change : of that slope from the largest to the smallest fitted separation, from a parabola
     """
-    generator = np.random.default_rng(seed)
-    low, high = np.array([first, last], dtype=float).T
-    points = low + (high - low) * generator.random((count, 2))
-    angle = 2.0 * np.pi * generator.random(count)
-    direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    return points, points + (first[1] - first[0]) * np.array(SEPARATIONS)[:, None, None] * direction
+
+    kind: ExponentKind
+    fraction: tuple[np.ndarray, np.ndarray]
+    local: tuple[np.ndarray, np.ndarray]
+    alpha: tuple[float, float]
+    change: tuple[float, float]
 
 
-def uncertain_counts(labels: np.ndarray, partners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many pairs differ, and how many pairs are known, at each separation.
+def uncertainty_exponent(pairs: PairCounts) -> Exponent:
+    """Return the exponents of a boundary from pairs at each of SEPARATIONS; NaN what too few pairs tell."""
+    picked = np.random.default_rng(_SEED).integers(BATCHES, size=(_RESAMPLES, BATCHES))
+    every = np.arange(BATCHES)[None]
+    x = np.log(SEPARATIONS)
+    # NaN where no pair is known, or none differs: the logarithm of 0 tells nothing.
+    share, shares = (_share(pairs, batches) for batches in (every, picked))
+    y, resampled = (np.log(np.where(values > 0.0, values, np.nan)) for values in (share, shares))
+    local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, resampled))
+    nothing = np.nan, np.nan
+    found = _with_error(share, shares), _with_error(local, locals_)
+    # Without gaps: a separation at which by chance many pairs differ tells nothing among others.
+    enough = pairs.different_count[FITTED_FROM:] >= _FEWEST_PAIRS
+    count = len(enough) if enough.all() else int(np.argmin(enough))
+    if count < _FEWEST_SEPARATIONS:
+        return Exponent(ExponentKind.UNKNOWN, *found, nothing, nothing)
+    fitted = slice(FITTED_FROM, FITTED_FROM + count)
+    whole = np.isfinite(resampled[:, fitted]).all(axis=1)
+    line, lines = (_fit(x[fitted], values[:, fitted], 1) for values in (y, resampled[whole]))
+    parabola, parabolas = (_fit(x[fitted], values[:, fitted], 2) for values in (y, resampled[whole]))
+    span = 2.0 * (x[fitted][-1] - x[fitted][0])
+    (alpha,), (alpha_error,) = _with_error(line, lines)
+    (change,), (change_error,) = _with_error(span * parabola, span * parabolas)
+    if abs(change) > max(_CHANGE, _STANDARD_ERRORS * change_error):
+        return Exponent(ExponentKind.VARYING, *found, nothing, (change, change_error))
+    return Exponent(ExponentKind.SINGLE, *found, (alpha, alpha_error), (change, change_error))
 
-    labels : of the points, shape (count,); partners : shape (separations, count); below 0 where undetermined
-    """
-    known = (labels >= 0) & (partners >= 0)
-    return ((labels != partners) & known).sum(axis=1), known.sum(axis=1)
+
+def _share(pairs: PairCounts, batches: np.ndarray) -> np.ndarray:
+    """Return f from some batches of pairs, shape (n, BATCHES), as (n, separations); NaN where no pair is known."""
+    different, known = (weights[batches].sum(axis=1) for weights in (pairs.different, pairs.known))
+    return np.divide(different, known, out=np.full(known.shape, np.nan), where=known > 0.0)
 
 
-def uncertainty_exponent(different: np.ndarray, known: np.ndarray) -> tuple[float, float]:
-    """Return α and its standard error, from a straight line through log f against log ε.
+def _fit(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
+    """Return the coefficient of x^degree in the polynomial nearest to each row of y, shape (n, 1)."""
+    return np.polyfit(x, y.T, degree)[0][:, None]
 
-    different, known : pairs that differ, and all, at each of SEPARATIONS
-    Weights and error follow from the binomial counts. NaN with fewer than three separations at which enough pairs
-    differ, or if no straight line goes through them.
-    """
-    enough = (different >= FEWEST) & (different < known)
-    if enough.sum() < 3:
-        return np.nan, np.nan
-    x = np.log(np.array(SEPARATIONS)[enough])
-    share = different[enough] / known[enough]
-    y = np.log(share)
-    weight = different[enough] / (1.0 - share)
-    # The pairs of all separations share their first points: the binomial weights neglect that.
-    (slope, intercept), covariance = np.polyfit(x, y, 1, w=np.sqrt(weight), cov="unscaled")
-    scatter = float(np.sum(weight * (y - slope * x - intercept) ** 2))
-    if chi2.sf(scatter, enough.sum() - 2) < SIGNIFICANCE:
-        return np.nan, np.nan
+
+def _with_error(value: np.ndarray, resampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the only row of a value, and the standard deviation of resampled rows; NaN with a NaN among them."""
+    error = resampled.std(axis=0, ddof=1) if len(resampled) > 1 else np.full(value.shape[1], np.nan)
     # LAPACK's last bits depend on where in memory its arguments lie.
-    return round(float(slope), 10), round(float(np.sqrt(covariance[0, 0])), 10)
+    return value[0].round(10), error.round(10)

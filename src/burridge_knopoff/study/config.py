@@ -24,12 +24,13 @@ from burridge_knopoff.stability.settings import (
     TIME,
     BasinSettings,
     MotionSettings,
+    PhaseSettings,
     Refine,
     Sample,
     SearchSettings,
     Watch,
 )
-from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS
+from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
@@ -112,6 +113,15 @@ BASINS = {
     ),
     **_part(BasinSettings, "pixels"),
 }
+PHASES = {
+    "a": Field(
+        SOME_VALUES,
+        "values of the grid at which states are drawn by the phases of their end blocks; without it, in the paper's "
+        f"chain, those of {', '.join(map(str, PAPER_PHASES))} that are in the grid",
+        FOLLOWS,
+    ),
+    **_part(PhaseSettings),
+}
 TWO_BLOCKS = {
     "a": Field(
         VALUES, "friction parameters at which two blocks are compared", [{"from": 0.005, "to": 0.4, "step": 0.005}]
@@ -164,6 +174,7 @@ CONFIG = Keys(
         "attractors": _section(_part(SearchSettings)),
         "refine": _section(_part(Refine)),
         "basins": _section(BASINS),
+        "phases": _section(PHASES),
         "chains": _section(CHAINS),
     }
 )

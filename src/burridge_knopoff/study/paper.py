@@ -17,3 +17,6 @@ PAPER_BASINS = {"linearized": (0.05, 0.08, 0.15), "nonlinear": (0.08,)}
 
 #: Where the solvers are compared if a study does not say: two synchronized values, the paper's figures, and chaos.
 PAPER_COMPARED = (0.02, 0.05, 0.08, 0.2)
+
+#: Where states are drawn by their phases if a study does not say: the paper's range of synchrony, and up to its loss.
+PAPER_PHASES = (0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.075, 0.08, 0.085, 0.09)

@@ -16,13 +16,13 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import OneOf, Several, joined, refusal
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
-from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED
+from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 
 #: Numbers that a job holds of one kind, at most: 800 MB.
 MOST_NUMBERS = 100_000_000
 
-#: Separations at which pairs of near states are drawn, and two states of a pair: stability/uncertainty.py.
-_STATES_OF_A_PAIR = 6
+#: States that are labelled at once for each pair of near states: stability/splitting.py.
+_STATES_OF_A_PAIR = 2
 
 
 @contextmanager
@@ -130,6 +130,16 @@ def fill_basins(config: Mapping[str, Any], grid: Iterable[float]) -> None:
     OneOf(tuple(states)).form(basins.setdefault("initial", next(iter(states))), "basins.initial")
 
 
+def fill_phases(config: Mapping[str, Any], grid: Iterable[float], blocks: int) -> None:
+    """Check where states are drawn by their phases against the grid, and fill it in."""
+    phases = config["phases"]
+    if "a" not in phases:
+        of_paper = Chain(blocks, **config["chain"]) == Chain(3)
+        phases["a"] = [a for a in PAPER_PHASES if a in grid and of_paper]
+    _check_grid("phases.a", phases["a"], grid)
+    phases["a"].sort()
+
+
 def fill_compared(config: Mapping[str, Any], grid: Iterable[float], else_a: float) -> None:
     """Check where the solvers are compared against the grid, and fill it in; `else_a` if no usual value is there."""
     solvers = config["solvers"]
@@ -165,7 +175,8 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
             f"a: {points} points are not allowed ({len(laws)} laws, {len(states)} initial states, "
             f"{values} values of a): at most {MAXIMUM_POINTS}"
         )
-    attractors, basins, chains = (config[section] for section in ("attractors", "basins", "chains"))
+    attractors, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
+    oscillating = len(phases["amplitude"]) * len(phases["phase_difference"]) * phases["samples"]
     maps = sum(map(len, basins["a"].values()))
     rows = -(-basins["pixels"] // basins["tiles"])
     two_blocks = chains["two_blocks"]
@@ -179,6 +190,7 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
         ("basins.pixels", basins["pixels"], maps * basins["pixels"] ** 2),
         ("basins.tiles", basins["tiles"], 2 * blocks * rows * basins["pixels"]),
         ("basins.pairs", basins["pairs"], 2 * blocks * _STATES_OF_A_PAIR * basins["pairs"]),
+        ("phases.samples", phases["samples"], max(2 * blocks, len(phases["a"])) * oscillating),
         ("chains.samples", chains["samples"], len(chains["a"]) * chains["samples"]),
         ("chains.samples", chains["samples"], 2 * max(chains["blocks"]) * chains["samples"]),
         ("chains.two_blocks.samples", two_blocks["samples"], len(two_blocks["a"]) * two_blocks["samples"]),

@@ -105,6 +105,11 @@ class Study:
         return [(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
 
     @property
+    def has_phases(self) -> bool:
+        """Whether states are drawn by the phases of their end blocks."""
+        return bool(self.config["phases"]["a"])
+
+    @property
     def has_other_lengths(self) -> bool:
         """Whether there are chains of other lengths, of two blocks among them."""
         return not self.single_length_key
@@ -215,6 +220,7 @@ def _study(config: Mapping[str, Any]) -> Study:
         _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
+    rules.fill_phases(filled, set(values), study.blocks)
     rules.fill_compared(filled, set(values), study.shown_a)
     rules.check_size(filled, len(grid), study.blocks)
     return study

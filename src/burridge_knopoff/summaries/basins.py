@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, pixel_centres, plane
+from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, pixel_centres, plane, states
 from burridge_knopoff.stability.labels import UNDETERMINED, label_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
-from burridge_knopoff.stability.uncertainty import SEPARATIONS, sample_pairs, uncertain_counts, uncertainty_exponent
+from burridge_knopoff.stability.splitting import SEPARATIONS, follow_pairs
+from burridge_knopoff.stability.uncertainty import ExponentKind, uncertainty_exponent
 
 _PLANE = ("last_position", "first_position")
 _V = Variable
@@ -23,16 +25,40 @@ TILE_VARIABLES = {
     "side": _V(_PLANE, "i1", "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image"),
     "decision_time": _V(_PLANE, "f4", "time tau at which the attractor was certain"),
 }
+PAIR_VARIABLES = {
+    "uncertain_count": _V(("separation",), "i4", "pairs of states that were found to reach different attractors"),
+    "pair_count": _V(("separation",), "i4", "pairs of states that were found to reach an attractor both"),
+    "uncertain_fraction": _V(
+        ("separation",),
+        "f8",
+        "fraction f of all pairs of states of the plane that reach different attractors",
+        {"ancillary_variables": "uncertain_fraction_error"},
+    ),
+    "uncertain_fraction_error": _V(("separation",), "f8", "standard error of f, from a bootstrap"),
+    "local_exponent": _V(
+        ("separation_step",),
+        "f8",
+        "slope of log f against log separation, from each separation to the next",
+        {"ancillary_variables": "local_exponent_error"},
+    ),
+    "local_exponent_error": _V(("separation_step",), "f8", "standard error of the slope, from a bootstrap"),
+    "uncertainty_exponent": _V(
+        (),
+        "f8",
+        "uncertainty exponent alpha of the basin boundary, NaN unless it is known and a single one",
+        {"ancillary_variables": "uncertainty_exponent_error"},
+    ),
+    "uncertainty_exponent_error": _V((), "f8", "standard error of alpha, from a bootstrap"),
+    "exponent_change": _V(
+        (), "f8", "by how much the local exponent changes over the fitted separations, by a parabola"
+    ),
+    "exponent_change_error": _V((), "f8", "standard error of that change, from a bootstrap"),
+    "exponent_kind": _V((), "i1", "whether the boundary has a single exponent", flag("i1", ExponentKind)),
+}
 MAP_VARIABLES = {
     **{name: _V(("map", *_PLANE), item.dtype, item.long_name) for name, item in TILE_VARIABLES.items()},
     "undetermined_count": _V(("map",), "i4", "states that reach no attractor by the time limit"),
-    "uncertain_count": _V(("map", "separation"), "i4", "pairs of states that reach different attractors"),
-    "pair_count": _V(("map", "separation"), "i4", "pairs of states that both reach an attractor"),
-    "uncertainty_exponent": _V(("map",), "f8", "uncertainty exponent alpha of the basin boundary, NaN if it has none"),
-    "uncertainty_exponent_error": _V(("map",), "f8", "standard error of alpha, from the numbers of pairs"),
-}
-PAIR_VARIABLES = {
-    name: _V(("separation",), "i4", MAP_VARIABLES[name].long_name) for name in ("uncertain_count", "pair_count")
+    **{name: replace(item, dimensions=("map", *item.dimensions)) for name, item in PAIR_VARIABLES.items()},
 }
 COORDINATES = {
     "first_position": "initial position U_1(0) of the first block",
@@ -80,14 +106,23 @@ def pairs(
 ) -> xarray.Dataset:
     """Label pairs of near states of the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
     known = known_attractors(attractors, model, settings, motion)
-    points, partners = sample_pairs(basins.first_position, basins.last_position, basins.pairs, settings.seed)
-    ends = np.concatenate([points, partners.reshape(-1, 2)])
-    position = np.tile(np.array(basins.initial.position), (len(ends), 1))
-    position[:, 0], position[:, -1] = ends.T
-    velocity = np.tile(np.array(basins.initial.velocity), (len(ends), 1))
-    labels, _ = _labels(known, position, velocity, basins, settings, start)
-    counts = uncertain_counts(labels[: len(points)], labels[len(points) :].reshape(len(SEPARATIONS), -1))
-    values = dict(zip(PAIR_VARIABLES, counts, strict=True))
+
+    def label(points: np.ndarray) -> np.ndarray:
+        first, last = points.T
+        position, velocity = states(basins.initial.position, first, last, basins.initial.velocity)
+        return _labels(known, position, velocity, basins, settings, start)[0]
+
+    found = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, settings.seed)
+    exponent = uncertainty_exponent(found)
+    values: dict[str, Any] = {"uncertain_count": found.different_count, "pair_count": found.known_count}
+    for name, pair in (
+        ("uncertain_fraction", exponent.fraction),
+        ("local_exponent", exponent.local),
+        ("uncertainty_exponent", exponent.alpha),
+        ("exponent_change", exponent.change),
+    ):
+        values[name], values[f"{name}_error"] = pair
+    values["exponent_kind"] = exponent.kind
     attributes = {"law": model.law.name, "a": model.a, "history": "snakemake, from attractors.nc"}
     coordinates = {"separation": _separation(basins)}
     return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
@@ -125,17 +160,14 @@ def merge(
     time_limit: float,
     start: str,
 ) -> xarray.Dataset:
-    """Put the maps together, each (model, its tiles in order, its pairs), with the exponents of their boundaries.
+    """Put the maps together, each (model, its tiles in order, its pairs).
 
     laws : names of the laws of the study, in order; basins, time_limit, start : what the maps were made with
     """
     wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
     values["undetermined_count"] = [np.count_nonzero(whole["branch"] == UNDETERMINED) for whole in wholes]
-    for name in PAIR_VARIABLES:
-        values[name] = np.stack([near[name].values for _, _, near in maps])
-    exponents = [uncertainty_exponent(near["uncertain_count"].values, near["pair_count"].values) for *_, near in maps]
-    values["uncertainty_exponent"], values["uncertainty_exponent_error"] = np.array(exponents).T
+    values |= {name: np.stack([near[name].values for *_, near in maps]) for name in PAIR_VARIABLES}
     coordinates = _coordinates(wholes[0]["first_position"].values, wholes[0]["last_position"].values)
     coordinates["separation"] = _separation(basins)
     models = [model for model, *_ in maps]
@@ -175,14 +207,24 @@ def digest(dataset: xarray.Dataset) -> str:
             name = {-1: "undetermined", 0: "synchronized"}.get(int(branch), f"branch {branch}")
             name += {1: " (+)", -1: " (-)", 0: ""}[int(side)]
             shares.append(f"{name} {100.0 * count / one['branch'].size:.2f} %")
-        alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
         times = one["decision_time"].values
         decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
         lines.append(
-            f"{laws[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; "
-            f"uncertainty exponent {alpha:.3f} +- {error:.3f}{decided}"
+            f"{laws[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; {_exponent_text(one)}{decided}"
         )
     return "\n".join(lines) + "\n"
+
+
+def _exponent_text(one: xarray.Dataset) -> str:
+    """Return what is known of the exponent of one map's boundary."""
+    kind = ExponentKind(one["exponent_kind"].item())
+    if kind == ExponentKind.UNKNOWN:
+        return "uncertainty exponent unknown: too few pairs differ"
+    if kind == ExponentKind.VARYING:
+        change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
+        return f"no single uncertainty exponent: it changes by {change:.2f} +- {error:.2f} over the separations"
+    alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
+    return f"uncertainty exponent {alpha:.3f} +- {error:.3f}"
 
 
 def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:

@@ -1,0 +1,52 @@
+# Phases: states by the phases of their end blocks, labelled for each law by the attractors that are known.
+
+PHASES = STUDY.config["phases"]
+
+
+rule phases_of_law:
+    input:
+        f"{SUMMARY}/attractors.nc",
+    output:
+        f"{RESULTS}/phases/{{law}}.nc",
+    log:
+        f"{RESULTS}/logs/phases/{{law}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/phases/{{law}}.tsv"
+    resources:
+        mem_mb=400,
+        runtime=60,
+    params:
+        **keys("attractors"),
+        blocks=STUDY.blocks,
+        grid=PHASES["a"],
+        phases={key: value for key, value in PHASES.items() if key != "a"},
+        model=lambda wildcards: model_config([wildcards.law]),
+        motion=motion_config(),
+        sources=sources("phases_of_law"),
+    message:
+        "phases of the end blocks, {wildcards.law} law"
+    script:
+        "../scripts/phases_of_law.py"
+
+
+rule phases:
+    input:
+        expand(rules.phases_of_law.output, law=STUDY.laws),
+    output:
+        f"{SUMMARY}/phases.nc",
+    log:
+        f"{RESULTS}/logs/phases.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/phases.tsv"
+    group:
+        group("summaries")
+    resources:
+        mem_mb=400,
+        runtime=10,
+    params:
+        summary="phases",
+        sources=sources("merge", "summaries.phases"),
+    message:
+        "phases of the end blocks, all laws"
+    script:
+        "../scripts/merge.py"

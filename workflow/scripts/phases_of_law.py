@@ -1,0 +1,17 @@
+"""Phases of the end blocks under one law."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.stability.settings import MotionSettings, PhaseSettings, SearchSettings
+from burridge_knopoff.study.model import model_of
+from burridge_knopoff.summaries.phases import one_law
+
+params = snakemake.params
+attractors = open_summary(snakemake.input[0])
+model = model_of(params.model, snakemake.wildcards.law, params.grid[0], params.blocks)
+settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
+dataset = one_law(attractors, model, params.grid, PhaseSettings(**params.phases), settings, motion)
+write_summary(dataset, snakemake.output[0])
