@@ -121,7 +121,7 @@ def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
             continue
         middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]
         stops = ", ".join(str(count) for count in edges["orbit_stops"].values[middle])
-        panel.annotate(stops, (a[middle], mean[middle]), (-4, 3), textcoords="offset points", ha="right", fontsize=7.5)
+        panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
 def _legend(figure: Figure) -> None:

@@ -100,6 +100,7 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                     found = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                if found.orbit.signature != orbit.signature:
+                # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0.
+                if found.orbit.signature != orbit.signature and any(found.orbit.signature):
                     return found
     return None
