@@ -41,7 +41,7 @@ UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
 
 # Stretches of stable orbits at least this long in a have their stops beside them there.
-NAMED = 0.004
+NAMED = 0.006
 
 
 @styled
@@ -121,7 +121,7 @@ def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
             continue
         middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]
         stops = ", ".join(str(count) for count in edges["orbit_stops"].values[middle])
-        panel.annotate(stops, (a[middle], mean[middle]), (0, 6), textcoords="offset points", ha="center", fontsize=7.5)
+        panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
 def _legend(figure: Figure) -> None:

@@ -24,8 +24,8 @@ from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along,
 
 # A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
 REACHED = 1e-10
-STEPS = 24
-FAILURES = 8
+STEPS = 32
+FAILURES = 14
 
 # First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
 # length that is predicted, changed by these factors after a step that was made and one that was not.
@@ -100,6 +100,7 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                     found = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                if found.orbit.signature != orbit.signature:
+                # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0.
+                if found.orbit.signature != orbit.signature and any(found.orbit.signature):
                     return found
     return None

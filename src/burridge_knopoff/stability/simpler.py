@@ -15,6 +15,10 @@ from burridge_knopoff.stability.return_map import ReturnMap
 PARTS = (2, 3, 5)
 
 
+# Share of the time within which the simpler orbit has to return; else Newton's method has come to another one.
+SAME_TIME = 0.05
+
+
 def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
     """Return the orbit of the most symmetry and the shortest return that an orbit is; itself if there is none.
 
@@ -32,6 +36,8 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
         try:
             found = find_periodic_orbit(orbit.model, orbit.reference, time, symmetry)
         except OrbitError:
+            continue
+        if abs(found.return_time - time) > SAME_TIME * time:
             continue
         turns = round(orbit.period / found.period)
         # A state at rest relative to the driver returns after any time, however short.

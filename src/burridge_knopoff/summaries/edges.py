@@ -32,8 +32,8 @@ from burridge_knopoff.summaries.branch_changes import BranchChange, Change, bran
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
 BEYOND = 4
 
-#: Smallest a down to which orbits are followed: at a = 0 no periodic orbit is isolated.
-LEAST_A = 1e-3
+#: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
+LEAST_A = 0.0
 
 # Orbits closer than this along a branch are not kept apart in the file.
 CLOSE = 1e-5
