@@ -11,7 +11,7 @@ from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, N
 from burridge_knopoff.stability.motion import MotionKind
 from tests.claims.worlds import Summaries
 
-UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC = MotionKind
+UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC, TRANSIENT = MotionKind
 ONE_OF_MANY = 0.03
 Alteration = Callable[[Summaries], None]
 

@@ -12,7 +12,7 @@ from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
 from tests.grids import PAPER_MODELS
 from tests.sections import MOTION
 
-_, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC = MotionKind
+_, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC, _ = MotionKind
 
 # Fine where the paper's edges of synchrony are.
 A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in range(1, 61))]))
@@ -52,10 +52,16 @@ def paper_world() -> Summaries:
         "lyapunov": _lyapunov(),
         "bifurcation": _bifurcation(),
         "agreement": _dataset(
-            {"agrees": (PAIR, np.int8(1)), "difference": (PAIR, 1e-5), "parting_a": (PAIR[:2], np.nan)},
+            {
+                "agrees": (PAIR, np.int8(1)),
+                "difference": (PAIR, 1e-5),
+                "parting_a": (PAIR[:2], np.nan),
+                "settled": (POINT, np.int8(1)),
+            },
             other_law=["nonlinear"],
         ).assign_attrs(synchronization_threshold=1e-6),
         "attractors": _attractors(),
+        "refined": _refined(),
         "edges": _edges(),
         "phases": _phases(),
         "orbits": _dataset(
@@ -130,6 +136,7 @@ def _lyapunov() -> xarray.Dataset:
             "section_period": (POINT, np.stack([A < 0.1, np.zeros(len(A))]).astype("i2")),
             "lyapunov_exponent": ((*POINT, "exponent"), exponent),
             "lyapunov_error": ((*POINT, "exponent"), 1e-4),
+            "lyapunov_infinite_count": (POINT, np.int16(0)),
             "status": (POINT, np.int8(0)),
         }
     )
@@ -179,6 +186,23 @@ def _attractors() -> xarray.Dataset:
         start=["moving", "tested"],
         block=BLOCKS,
     )
+
+
+def _refined() -> xarray.Dataset:
+    """Return the second of the attractors at the values of the grid and, for the second law, at one put in between."""
+    rows = [A, np.sort(np.append(A, 0.1001))]
+    a = np.full((2, len(A) + 1), np.nan)
+    for law, row in enumerate(rows):
+        a[law, : len(row)] = row
+    slots = ("law", "value", "attractor")
+    there = np.isfinite(a)[..., None]
+    data = {
+        "a": (slots[:2], a),
+        "in_grid": (slots[:2], np.isin(a, A).astype("i1")),
+        "branch": (slots, np.where(there, 1, -1).astype("i2")),
+        "kind": (slots, np.where(there, np.where(a > 0.1, CHAOTIC, QUASIPERIODIC)[..., None], -1).astype("i1")),
+    }
+    return xarray.Dataset(data, {"law": list(LAWS)})
 
 
 def _edges() -> xarray.Dataset:

@@ -157,8 +157,8 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
 def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed: int, a: Range) -> Verdict:
     """Judge the dimension of the map from event to event: it holds loosely if some of its directions vanish.
 
-    Positions relative to the driver and velocities are two numbers a block. At an event a velocity or a force is at its
-    threshold, and each Lyapunov exponent of −∞ is a direction that sticks have removed for good.
+    Positions relative to the driver and velocities are two numbers a block. Each Lyapunov exponent of −∞ is a direction
+    that sticks have removed for good.
     """
     evidence.check_blocks()
     lost = np.concatenate(
@@ -170,17 +170,16 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
     if not len(lost):
         raise NotTestableError(f"no Lyapunov exponents are known with {a}")
     numbers = 2 * len(evidence.summary("equilibrium")["block"])
-    left = numbers - 1 - lost
+    left = numbers - lost
     measured = [
         Measured("numbers in a state", float(numbers)),
         Measured("exponents of −∞, least", float(lost.min())),
         Measured("exponents of −∞, most", float(lost.max())),
     ]
-    verdict = FAILS if numbers != claimed else HOLDS if left.max() == claimed else LOOSELY
+    verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
     reason = (
-        f"A state has {numbers} numbers; an event fixes one of them, and sticks remove {lost.min():.0f} to "
-        f"{lost.max():.0f} directions more ({law}): on its attractors the map acts in {left.min():.0f} to "
-        f"{left.max():.0f} dimensions."
+        f"A state has {numbers} numbers; sticks remove {lost.min():.0f} to "
+        f"{lost.max():.0f} directions for good ({law}), so that the map acts in {left.min():.0f} to {left.max():.0f}."
     )
     return Verdict(verdict, reason, measured)
 
