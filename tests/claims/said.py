@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.ledger import Claim, judge, read_claims
 from burridge_knopoff.claims.verdict import Verdict
 from tests.claims.alterations import CASES, Alteration
@@ -22,7 +24,13 @@ def altered(name: str, alteration: Alteration) -> Verdict:
     """Return the verdict on a claim in the world in which the paper is right, but for an alteration."""
     world = paper_world()
     alteration(world)
-    return judge(CLAIMS[name], evidence(world))
+    return judged(name, evidence(world))
+
+
+def judged(name: str, known: Evidence) -> Verdict:
+    """Return the verdict on a claim, which a claim on other claims takes from theirs."""
+    verdicts = {other: judge(CLAIMS[other], known) for other in CLAIMS[name].parameters.get("claims", ())}
+    return judge(CLAIMS[name], replace(known, verdicts=verdicts))
 
 
 def said(verdict: Verdict) -> str:

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.claims.conventions import judge_shares, reached, under_conventions
+from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, Measured, Verdict
+from burridge_knopoff.summaries.slots import reached
 from tests.claims import alterations
 from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
-from tests.claims.said import CLAIMS, FILE, altered, said
+from tests.claims.said import CLAIMS, FILE, altered, judged, said
 from tests.claims.worlds import Summaries, evidence, paper_world
 
 SAID = json.loads(FILE.read_text(encoding="utf-8"))
@@ -168,7 +169,7 @@ def test_nothing_is_judged_by_what_is_not_the_papers(
     start, _, end = f"Not testable here: {reason}.".partition("…")
     summaries = world()
     for name in names:
-        verdict = judge(CLAIMS[name], evidence(summaries, **config))
+        verdict = judged(name, evidence(summaries, **config))
         assert verdict.verdict == NOT_TESTABLE, name
         assert verdict.reason.startswith(start)
         assert verdict.reason.endswith(end)
@@ -178,7 +179,7 @@ def test_what_says_the_same_is_judged() -> None:
     same = {"coupling": [1.0, 1.0], "pulling": [1.0, 2.0, 1.0], "threshold": [1.0, 1.0, 1.0]}
     told = [("equilibrium", {"chain": same}), ("equilibrium", {"window": 200})]
     for name, config in [*told, *((name, {"window": 20_000}) for name in OF_RUNS)]:
-        assert judge(CLAIMS[name], evidence(paper_world(), **config)).verdict == HOLDS
+        assert judged(name, evidence(paper_world(), **config)).verdict == HOLDS
     # Ten values of a are enough.
     few = _at(lambda a: np.isin(a, a[(a >= 0.005) & (a <= 0.08)][:10]))
     assert judge(CLAIMS["minus_synchronizes"], evidence(few)).verdict == HOLDS
@@ -187,7 +188,7 @@ def test_what_says_the_same_is_judged() -> None:
 @pytest.mark.parametrize("name", CLAIMS)
 def test_what_one_law_tells_is_judged_without_the_other(name: str) -> None:
     """No claim fails for want of a law: it is judged by the law that it is about, or not testable."""
-    verdict = judge(CLAIMS[name], evidence(_under(["linearized"]), laws={"linearized": {}}))
+    verdict = judged(name, evidence(_under(["linearized"]), laws={"linearized": {}}))
     needed = CLAIMS[name].parameters.get("laws", [CLAIMS[name].parameters.get("law", "nonlinear")])
     if "nonlinear" in needed:
         assert (verdict.verdict, verdict.reason) == (NOT_TESTABLE, "Not testable here: the study has no nonlinear law.")
@@ -204,9 +205,9 @@ def test_a_further_law_changes_no_verdict(name: str) -> None:
         names = {dimension: [*item[dimension].values, "stribeck"] for dimension in dimensions}
         world[key] = item.reindex(names, fill_value=-1)
     laws = {"linearized": {}, "nonlinear": {}, "stribeck": {}}
-    own = judge(CLAIMS[name], evidence(world, laws=laws))
+    own = judged(name, evidence(world, laws=laws))
     assert (own.verdict, said(own)) == (HOLDS, SAID[name][0])
-    first = judge(CLAIMS[name], evidence(world, laws={"stribeck": {}, **laws}))
+    first = judged(name, evidence(world, laws={"stribeck": {}, **laws}))
     compared = name in ("laws_agree", "two_blocks_agree")
     assert first.verdict == (NOT_TESTABLE if compared else HOLDS)
     if compared:

@@ -123,10 +123,10 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
     claims : by name; each has to be judged before this one. It holds loosely if some hold loosely under it; a
     convention under which a claim is not judged is none.
     """
-    known = {name: evidence.verdicts[name] for name in claims if name in evidence.verdicts}
-    missing = [name for name in claims if name not in known or known[name].verdict == NOT_TESTABLE]
-    if missing:
-        raise NotTestableError(f"{', '.join(missing)} is not judged" if len(missing) == 1 else "some are not judged")
+    known = {name: evidence.verdicts[name] for name in claims}
+    for verdict in known.values():
+        if verdict.verdict == NOT_TESTABLE:
+            raise NotTestableError(verdict.reason.removeprefix("Not testable here: ").removesuffix("."))
     conventions = sorted({convention for verdict in known.values() for convention in verdict.conventions})
     if not conventions:
         raise NotTestableError("the claims are judged under one convention only")

@@ -130,7 +130,9 @@ def onset_of_chaos(
             raise NotTestableError(f"attractors are known at fewer than {LEAST_VALUES} values of a under the {law} law")
         chaotic = (there & (found["kind"].values == MotionKind.CHAOTIC)).any(axis=1)
         first = int(np.argmax(chaotic)) if chaotic.any() else len(grid)
-        low, high = (grid[first - 1], grid[first]) if chaotic.any() and first else (0.0, np.inf)
+        low, high = float(np.nanmax(grid)), np.inf
+        if chaotic.any():
+            low, high = grid[first - 1] if first else 0.0, grid[first]
         verdicts.append(by_interval(low, high, claimed, tolerance, loose))
         if np.isfinite(high):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
