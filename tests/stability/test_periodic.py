@@ -122,6 +122,13 @@ def test_an_orbit_gone_round_twice_is_told(orbits):
     assert simplest(half, 1e-9) is half
 
 
+def test_blocks_that_move_as_one_twice_in_a_period(families):
+    known = families["linearized"].at(0.05)
+    twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, Symmetry.SYNCHRONIZED)
+    assert twice.signature == (2, 2, 2)
+    assert simplest(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
+
+
 def test_what_is_no_orbit_is_refused(orbits):
     orbit = orbits["asymmetric"]
     with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found near the guess"):

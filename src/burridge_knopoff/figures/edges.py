@@ -41,7 +41,7 @@ UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
 
 # Stretches of stable orbits at least this long in a have their stops beside them there.
-NAMED = 0.006
+NAMED = 0.01
 
 
 @styled

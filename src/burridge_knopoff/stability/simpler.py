@@ -28,9 +28,10 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
         symmetry, or of twice the period, begins at such orbits
     """
     for time, symmetry in _simpler(orbit):
-        end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time) if time > 0.0 else orbit.reference
-        if symmetry == Symmetry.SYNCHRONIZED:
-            end, time = end.mirrored(), orbit.period
+        if time > 0.0:
+            end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time)
+        else:
+            end, time = orbit.reference.mirrored(), orbit.period
         if np.abs(end.vector() - orbit.reference.vector()).max() > tolerance * orbit.model.scale:
             continue
         try:
