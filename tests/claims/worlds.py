@@ -245,6 +245,7 @@ def _equilibrium() -> xarray.Dataset:
             "equilibrium_drift": (("law", "a"), 1e-15),
             "eigenvalue": (("law", "a", "mode", "part"), pairs),
             "growth_rate": (("law", "a"), A),
+            "strengthening_growth_rate": (("law", "a"), -A),
         },
         block=BLOCKS,
         part=["real", "imaginary"],

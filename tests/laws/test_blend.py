@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.laws import LAWS, law_of
-from burridge_knopoff.laws.blend import blend
+from burridge_knopoff.laws.blend import blend, mirrored
 
 SPEEDS = np.linspace(0.0, 1.5, 7)
 
@@ -25,6 +25,19 @@ def test_a_blend_is_the_weighted_mean_of_two_laws(share):
 def test_numbers_of_one_name_are_those_of_their_own_law():
     one, other = (law_of("mine", 0.1, {"formula": "1 - k*a*u", "k": k}) for k in (1.0, 3.0))
     assert float(blend(one, other, 0.5)(1.0)) == pytest.approx(1.0 - 2.0 * 0.1)
+
+
+@pytest.mark.parametrize("name", ["linearized", "nonlinear", "exponential"])
+def test_the_mirror_image_of_a_law_grows_where_it_falls(name):
+    law = law_of(name, 0.3)
+    image = mirrored(law, 0.2)
+    assert float(image(0.2)) == pytest.approx(float(law(0.2)), rel=1e-15)
+    np.testing.assert_allclose(image.slope(SPEEDS), -law.slope(SPEEDS), rtol=1e-12)
+
+
+def test_a_mirror_image_that_is_no_friction_is_refused():
+    with pytest.raises(ValueError, match="at u = 0 it is 1.2"):
+        mirrored(law_of("mine", 0.5, {"formula": "0.8 + 0.4*a*u"}), 1.0)
 
 
 def test_laws_at_different_a_are_not_blended():

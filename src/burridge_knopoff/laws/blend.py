@@ -1,4 +1,4 @@
-"""A law between two others, on the straight line along which a motion under one is followed to the other."""
+"""Laws made of others: on the straight line between two of them, and the mirror image of one at a speed."""
 
 from __future__ import annotations
 
@@ -18,6 +18,14 @@ def blend(first: Law, second: Law, share: float) -> FormulaLaw:
         raise ValueError(f"a: {second.a!r} is not allowed: that of the first law, {first.a!r}")
     formula = f"{1.0 - share!r}*({_with_numbers(first)}) + {share!r}*({_with_numbers(second)})"
     return FormulaLaw(first.a, formula, name="blend")
+
+
+def mirrored(law: Law, speed: float) -> FormulaLaw:
+    """Return the law 2 Φ(speed) − Φ, which has the same friction at that speed and the slope reversed.
+
+    Raises ValueError where that is no friction law, see `Law`.
+    """
+    return FormulaLaw(law.a, f"{2.0 * float(law(speed))!r} - ({_with_numbers(law)})", name="mirrored")
 
 
 def _with_numbers(law: Law) -> str:

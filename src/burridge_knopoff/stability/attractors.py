@@ -64,7 +64,6 @@ class Search:
 
     motion_settings : how kinds of motion are told apart
     attractors : those found so far; vain : trajectories followed without finding one
-    drawn : attractors, and which of them the states reach that are drawn for the basin fractions
     """
 
     model: Model
@@ -73,7 +72,6 @@ class Search:
     tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
     vain: int = 0
-    drawn: tuple[list[Attractor], np.ndarray] | None = None
 
     @property
     def resolution(self) -> float:
@@ -167,11 +165,12 @@ class Search:
         labels, _ = label(self.model, self.attractors, starts, self.settings.time_limit)
         return labels
 
-    def drawn_labels(self, start: str, discover: bool = True) -> np.ndarray:
+    def drawn_labels(self, start: str) -> np.ndarray:
         """Return the index of the attractor that each state reaches which is drawn for the basin fractions.
 
-        They are others at each a, and not those from which attractors are looked for.
-        start : see `Model.begin`; discover : whether attractors are looked for from those that reach none
+        They are others at each a, and not those from which attractors are looked for; but where one reaches none that
+        is known, it is looked for from there as well.
+        start : see `Model.begin`
         """
         settings, model = self.settings, self.model
         seed = [settings.seed, int(np.float64(model.a).view(np.uint64))]
@@ -179,16 +178,14 @@ class Search:
         position, velocity = sample_states(model.blocks, settings.fraction_samples, *box, seed)
         stuck = model.starts_stuck(position, start)
         begun = position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
-        while self.drawn is None or self.drawn[0] != self.attractors:
-            known = list(self.attractors)
-            labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
-            if known and len(position):
-                labels, _ = label_together(model, known, *begun, settings.time_limit)
-            self.drawn = known, labels
-            if discover:
-                lost = np.flatnonzero(labels == UNDETERMINED)
-                self._discover([Instant(*(values[k] for values in begun)) for k in lost.tolist()])
-        return self.drawn[1]
+        labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
+        while len(position):
+            if self.attractors:
+                labels, _ = label_together(model, self.attractors, *begun, settings.time_limit)
+            lost = np.flatnonzero(labels == UNDETERMINED)
+            if not self._discover([Instant(*(values[k] for values in begun)) for k in lost.tolist()]):
+                break
+        return labels
 
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""

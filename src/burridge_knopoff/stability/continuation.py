@@ -78,11 +78,11 @@ def continue_attractors(
     for k, search in enumerate(searches):
         before = seeds(searches[k - 1]) if k else []
         search.labels([*before, *search.starts(starts, start)])
-        search.drawn_labels(start)
     for k in range(len(searches) - 2, -1, -1):
         searches[k].labels(seeds(searches[k + 1]), check=False)
     for k in range(1, len(searches)):
         searches[k].labels(seeds(searches[k - 1]), check=False)
+    samples = [search.drawn_labels(start) for search in searches]
 
     # The sets of attractors are complete now: what follows only reads them.
     inner = [refined(*pair, refine, generator) for pair in pairwise(searches)]
@@ -104,5 +104,5 @@ def continue_attractors(
         *branches([search.model.a for search in whole], attractors, reach, models[0].scale, tuning),
         upward,
         downward,
-        [search.drawn_labels(start, discover=False) for search in searches],
+        samples,
     )

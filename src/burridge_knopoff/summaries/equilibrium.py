@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray
@@ -17,6 +18,7 @@ from scipy.linalg import eigvalsh, eigvalsh_tridiagonal, solve, solveh_banded
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.laws.blend import mirrored
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
@@ -49,6 +51,12 @@ VARIABLES = {
     "growth_rate": Variable(
         _CURVE, "f8", "growth rate of the perturbation that grows most, from the tangent flow of the simulation"
     ),
+    "strengthening_growth_rate": Variable(
+        _CURVE,
+        "f8",
+        "the same where friction grows with velocity: under the mirror image of the law at the velocity of the driver",
+        {"comment": "2 Phi(v) - Phi(U'); NaN where that is no friction law"},
+    ),
 }
 _COORDINATES = {
     "block": Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True),
@@ -73,6 +81,11 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
             found = eigenvalues(model)
             values["eigenvalue"][i, k] = np.stack([found.real, found.imag], axis=-1)
             values["equilibrium_drift"][i, k], values["growth_rate"][i, k] = simulate_sliding(model, position)
+            try:
+                reverse = replace(model, law=mirrored(model.law, model.v))
+            except ValueError:
+                continue
+            values["strengthening_growth_rate"][i, k] = simulate_sliding(reverse, position)[1]
     shared = axes((), grid, [model.law.name for model in models])
     coordinates = {"law": shared["law"], "a": shared["a"]}
     labels = {"block": np.arange(1, blocks + 1), "mode": np.arange(1, 2 * blocks + 1), "part": PARTS}
