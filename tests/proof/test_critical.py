@@ -109,6 +109,15 @@ def test_pieces_that_do_not_join_are_refused(branch):
         critical._check_joined(moved, second, edge)
 
 
+def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
+    joined = []
+    check = critical._check_joined
+    monkeypatch.setattr(critical, "_check_joined", lambda *pair: (joined.append(pair), check(*pair)))
+    pieces = prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
+    assert [pair[:2] for pair in joined] == list(pairwise(pieces))
+    assert len(pieces) == len(branch) > 2
+
+
 def test_a_range_beyond_the_order_of_events_is_refused(family, monkeypatch):
     """At 0.0757 all three blocks start at once: the family goes on, but not with these arcs."""
     monkeypatch.setattr(critical, "DEEPEST", 3)

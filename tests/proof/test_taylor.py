@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import mpmath
 import pytest
-from flint import arb, arb_series
+from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.proof import taylor
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.closed import Linearized
@@ -153,6 +154,18 @@ def test_as_v_falls_to_0_the_law_is_the_linearized_one():
 def test_what_has_no_bound_is_refused(state, time, message):
     with pytest.raises(ProofError, match=message):
         law().path((True, True), state, arb(A))(time)
+
+
+def test_a_step_that_no_box_holds_is_refused(monkeypatch):
+    """Picard's operator over so long a time maps no box into itself."""
+    monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
+    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known|1 \+ aU' = .*: not allowed"):
+        law().path((True, True), state_of((True, True))[0], arb(A))(arb(1))
+    # Wide enough at the first try, and still not to be believed: what is mapped lies beyond it.
+    monkeypatch.setattr(taylor, "STEP", fmpq(3, 4))
+    monkeypatch.setattr(taylor, "WIDENINGS", 1)
+    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known to hold the motion"):
+        law().path((True, True), state_of((True, True))[0], arb(A))(arb("0.5"))
 
 
 @pytest.fixture(scope="module")
