@@ -65,7 +65,7 @@ def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> i
 
     W is a sum over all blocks and cannot tell a state from its mirror image: on an orbit that is its own mirror image
     after half its period W' repeats twice in a period. So the states at the first event after each section point have
-    to repeat as well. Where none are known, as in motion without events, W' alone is judged.
+    to repeat as well. Where too few are known to show that, as in motion without events, W' alone is judged.
     """
     upward = run["crossing_direction"] > 0
     velocity, time = (_second_half(run[name][upward]) for name in ("crossing_velocity", "crossing_time"))
@@ -76,6 +76,8 @@ def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> i
     following = np.searchsorted(event_time, time[time >= event_time[0]], side="right")
     following = following[following < len(event_time)]
     states = np.concatenate([run["event_position"][following], run["event_velocity"][following]], axis=1)
+    if len(states) < REPETITIONS * period:
+        return period
     for multiple in range(period, min(settings.longest_period, len(states) // REPETITIONS) + 1, period):
         if _repeats(states, multiple, settings.period_tolerance):
             return multiple
