@@ -11,11 +11,12 @@ from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
-from burridge_knopoff.stability.settings import MOTION, BasinSettings
+from burridge_knopoff.stability.continuation import continue_attractors
+from burridge_knopoff.stability.settings import MOTION, BasinSettings, Refine
 from burridge_knopoff.summaries import attractors, basins
 from tests.stability.test_attractors import SETTINGS
 
-SEARCH = replace(SETTINGS, samples=25)
+SEARCH = replace(SETTINGS, samples=25, fraction_samples=25)
 PLANE = BasinSettings(pixels=16, pairs=300, tiles=1)
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 FOUND = (SEARCH, MOTION, "moving")
@@ -23,7 +24,10 @@ FOUND = (SEARCH, MOTION, "moving")
 
 @pytest.fixture(scope="module")
 def known():
-    return attractors.merge([attractors.one_law(MODEL, [0.08, 0.1], list(PAPER_STATES.values()), *FOUND)])
+    states = list(PAPER_STATES.values())
+    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, Refine(1.0), starts=states)
+    parts = [attractors.one_law(found, states, *FOUND)]
+    return attractors.merge(parts, attractors.branch_numbers(parts, [MODEL], SEARCH))
 
 
 def whole(known, tiles, threads, model=MODEL):

@@ -48,7 +48,7 @@ VARIABLES = {
         _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a length T"
     ),
     "velocity_correlation": Variable(
-        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the events with states"
+        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the kept trajectory"
     ),
     "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
 }
@@ -83,7 +83,7 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
             frequency = leading_frequency(record[:, n], duration)
             values["velocity_frequency"][index][n] = frequency
             values["velocity_frequency_error"][index][n] = 0.5 / duration if math.isfinite(frequency) else np.nan
-        values["velocity_correlation"][index] = correlation(record[:, 0], record[:, -1])
+        values["velocity_correlation"][index] = correlation(velocity[:, 0], velocity[:, -1])
         values["least_velocity"][index] = velocity.min(axis=0)
     return summary(
         "Stick-slip cycles of each block, and how the velocities of the blocks go together",
@@ -103,8 +103,9 @@ def long_velocity(run: Mapping[str, np.ndarray], v: float) -> tuple[np.ndarray, 
 
     run : arrays of a point file; v : velocity of the driver
 
-    Between two events with states positions are the cubics that have the positions and velocities at both. Where the
-    kept trajectory lasts longer, its samples are returned.
+    Between two events with states positions are the cubics that have the positions and velocities at both: good enough
+    for frequencies, which hold for long, and not for single velocities. Where the kept trajectory lasts longer, its
+    samples are returned.
     """
     time, first = np.unique(run["event_time"], return_index=True)
     kept = np.ptp(run["trajectory_time"])
