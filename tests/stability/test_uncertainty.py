@@ -90,10 +90,10 @@ def test_exponent_of_counts():
 @pytest.mark.parametrize(
     ("bend", "noise", "kind"),
     [
-        (0.3, 0.01, ExponentKind.VARYING),
-        (-0.3, 0.01, ExponentKind.VARYING),
-        (0.1, 0.01, ExponentKind.SINGLE),
-        (0.3, 1.0, ExponentKind.SINGLE),
+        (0.4, 0.01, ExponentKind.VARYING),
+        (-0.4, 0.01, ExponentKind.VARYING),
+        (0.2, 0.01, ExponentKind.SINGLE),
+        (0.4, 1.0, ExponentKind.SINGLE),
     ],
 )
 def test_a_change_counts_if_it_is_large_and_beyond_its_error(bend, noise, kind):

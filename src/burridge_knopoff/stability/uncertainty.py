@@ -27,7 +27,7 @@ _SEED = 1
 
 # There is no single exponent where its change over the fitted separations is larger than this, and than so many
 # standard errors. A fractal repeats itself at a ratio of separations: around its exponent the local one swings by less.
-_CHANGE = 0.2
+_CHANGE = 0.3
 _STANDARD_ERRORS = 3.0
 
 
