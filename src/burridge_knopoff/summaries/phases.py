@@ -20,7 +20,7 @@ from burridge_knopoff.stability.labels import UNDETERMINED, label_states
 from burridge_knopoff.stability.phases import common_phases, oscillating_states, slipping_amplitude
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, PhaseSettings, SearchSettings
-from burridge_knopoff.summaries.stick_slip import correlation
+from burridge_knopoff.summaries.correlation import correlation
 
 #: Time for which each attractor is followed for the correlation of the velocities on it.
 FOLLOWED = 1000.0

@@ -13,15 +13,13 @@ from scipy.signal import find_peaks, periodogram
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.summaries.correlation import correlation, is_constant
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 STOP, START = 0, 1
 
 # The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
 PADDING = 8
-
-# A velocity that varies by no more than this share of its modulus is constant: the rest is rounding.
-ROUNDING = 1e-10
 
 # Time between two samples of the velocities that are interpolated between events.
 INTERVAL = 0.1
@@ -160,18 +158,3 @@ def leading_frequency(values: np.ndarray, duration: float) -> float:
     top = peaks[np.argmax(power[peaks])]
     left, middle, right = (math.log(power[k]) for k in (top - 1, top, top + 1))
     return float(frequency[top] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
-
-
-def correlation(one: np.ndarray, other: np.ndarray) -> float:
-    """Return the Pearson correlation of two series of equal length, NaN if one of them is constant."""
-    if is_constant(one) or is_constant(other):
-        return math.nan
-    one, other = one - one.mean(), other - other.mean()
-    # Sums, not products of matrices: the last bit of those depends on where in memory the values lie.
-    product = (one * other).sum() / math.sqrt((one * one).sum() * (other * other).sum())
-    return float(min(max(product, -1.0), 1.0))
-
-
-def is_constant(values: np.ndarray) -> bool:
-    """Return whether values differ by rounding only."""
-    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())

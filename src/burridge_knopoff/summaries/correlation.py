@@ -1,0 +1,25 @@
+"""How two velocities go together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+# A velocity that varies by no more than this share of its modulus is constant: the rest is rounding.
+ROUNDING = 1e-10
+
+
+def correlation(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the Pearson correlation of two series of equal length, NaN if one of them is constant."""
+    if is_constant(one) or is_constant(other):
+        return math.nan
+    one, other = one - one.mean(), other - other.mean()
+    # Sums, not products of matrices: the last bit of those depends on where in memory the values lie.
+    product = (one * other).sum() / math.sqrt((one * one).sum() * (other * other).sum())
+    return float(min(max(product, -1.0), 1.0))
+
+
+def is_constant(values: np.ndarray) -> bool:
+    """Return whether values differ by rounding only."""
+    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
