@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
+from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import cells, label_panels, new_figure, page_width, styled
 from burridge_knopoff.stability.motion import MotionKind
 
@@ -19,9 +20,6 @@ The largest Lyapunov exponents against a, with bars of three standard errors fro
 state. The strips above the panels show the kind of motion that follows from the exponents and the section points; white
 is undetermined.
 """
-
-#: A colour for each kind of motion.
-KIND_COLORS = {-1: "#FFFFFF", 0: "#0072B2", 1: "#56B4E9", 2: "#E69F00", 3: "#D55E00", 4: "#CC79A7"}
 
 
 @styled

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import branch_names
-from burridge_knopoff.figures.lyapunov import KIND_COLORS
+from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import label_panels, page_width, styled
 from burridge_knopoff.stability.motion import MotionKind
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
-from burridge_knopoff.figures.lyapunov import KIND_COLORS
+from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
