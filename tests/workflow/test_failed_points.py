@@ -22,7 +22,8 @@ transient: 30
 window: 60
 batches: 2
 lyapunov_alignment: 10
-attractors: {samples: 2, transient: 300, window: 300, time_limit: 1000, pushes: 4}
+attractors: {samples: 2, fraction_samples: 2, lifetime: 1000, transient: 300, window: 300, time_limit: 1000, pushes: 4}
+refine: {resolution: 1}
 basins: {a: {linearized: [], nonlinear: []}}
 solvers: {a: [0.2], step: 0.01}
 chains: {two_blocks: {a: [0.02], samples: 1}}
