@@ -6,17 +6,19 @@ import pytest
 
 YES_NO = {0: "no", 1: "yes"}
 STATUS = {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"}
-MOTION = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"}
+MOTION = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic", 4: "transient_chaos"}
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}
 AGREEMENT = {"kind": MOTION, "same_kind": VERDICT, "agrees": VERDICT}
+SLOT = {
+    "symmetry": {-1: "none", 0: "synchronized", 1: "symmetric", 2: "asymmetric"},
+    "kind": MOTION,
+    "slow": {-1: "none", **YES_NO},
+}
 EXPECTED = {
-    "agreement": AGREEMENT,
-    "attractors": {
-        "symmetry": {-1: "none", 0: "synchronized", 1: "symmetric", 2: "asymmetric"},
-        "kind": MOTION,
-        "slow": {-1: "none", **YES_NO},
-    },
+    "agreement": {**AGREEMENT, "settled": VERDICT},
+    "attractors": SLOT,
+    "refined": {**SLOT, "in_grid": YES_NO},
     "bifurcation": {"crossing_direction": DIRECTION},
     "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},
     "edges": {
@@ -35,7 +37,7 @@ EXPECTED = {
         "turns": VERDICT,
         "orbit_stable": VERDICT,
     },
-    "lyapunov": {"kind": MOTION, "status": STATUS},
+    "lyapunov": {"kind": MOTION, "unstable": YES_NO, "status": STATUS},
     "mean_distance": {"synchronized": YES_NO, "status": STATUS},
     "orbits": {
         "status": {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"},

@@ -81,10 +81,16 @@ def test_attractors_and_basins(results):
         assert there["branch"].values[0] == 0
         assert there["mean_distance"].values[0] < 1e-6
         counted = there["basin_count"].sum() + there["undetermined_count"]
-        assert counted == attractors.attrs["samples"] == 6
+        assert counted == attractors.attrs["fraction_samples"] == 6
         # Both runs are on an attractor that is known.
         assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
         branches = set(there["branch"].values.tolist())
+        known = set(attractors["branch_number"].values.tolist())
+    with xr.open_dataset(results / "summary" / "refined.nc") as refined:
+        # The study puts no values in between.
+        assert refined["a"].values.tolist() == [GRID, GRID]
+        assert (refined["in_grid"] == 1).all()
+        assert set(refined["branch"].values.ravel().tolist()) <= known | {-1}
     with xr.open_dataset(results / "summary" / "basins.nc") as basins:
         steps = {"separation": 13, "separation_step": 12}
         assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, **steps}
