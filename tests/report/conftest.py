@@ -27,7 +27,15 @@ POOR = {
     "transient": 100,
     "window": 100,
     "batches": 2,
-    "attractors": {"samples": 2, "fraction_samples": 2, "lifetime": 500, "transient": 100, "window": 100, "time_limit": 1000},
+    "attractors": {
+        "samples": 2,
+        "fraction_samples": 2,
+        "lifetime": 500,
+        "transient": 100,
+        "window": 100,
+        "time_limit": 1000,
+        "pushes": 4,
+    },
     "refine": {"resolution": 1},
     "basins": {"a": {"linearized": [], "nonlinear": []}},
 }
