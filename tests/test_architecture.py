@@ -57,6 +57,15 @@ def test_every_file_that_is_named_is_there(name):
     assert any((folder / name).exists() for folder in (ROOT, PACKAGE)), name
 
 
+def test_balls_do_not_leave_their_room():
+    """What is computed in double precision must not pass for proved: only the summary of the proofs holds balls."""
+    users = {
+        path for path in PACKAGE.rglob("*.py") if re.search(r"^\s*(from|import) flint", path.read_text(), re.MULTILINE)
+    }
+    assert {room_of(path) for path in users} == {"proof", "summaries"}
+    assert [path.name for path in users if room_of(path) == "summaries"] == ["proof.py"]
+
+
 def test_the_display_and_the_package():
     """The package knows nothing of Snakemake."""
     for path in PACKAGE.rglob("*.py"):

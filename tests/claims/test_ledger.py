@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 
 from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
 from burridge_knopoff.claims.verdict import (
@@ -150,12 +151,33 @@ def test_csv_has_a_line_for_each_figure(content: dict) -> None:
     assert len(rows) == sum(max(1, len(claim["measured"])) for claim in content["claims"])
     for claim in content["claims"]:
         own = [row for row in rows if row["claim"] == claim["name"]]
-        measured = claim["measured"] or [{"quantity": "", "value": None, "error": None}]
+        measured = claim["measured"] or [{"quantity": "", "value": None, "error": None, "proved": False}]
         for row, item in zip(own, measured, strict=True):
             assert {key: row[key] for key in row if key not in ("claim", *item)} == {
                 key: claim[key] for key in row if key not in ("claim", *item)
             }
-            assert [row[key] for key in item] == ["" if value is None else str(value) for value in item.values()]
+            shown = {**item, "proved": "proved" if item["proved"] else None}
+            assert [row[key] for key in item] == ["" if value is None else str(value) for value in shown.values()]
+
+
+def test_what_is_proved_is_told_beside_its_number() -> None:
+    proof = xarray.Dataset({"critical_a": (("law", "end"), [[0.0800999, 0.0801001]])}, {"law": ["linearized"]})
+    world = {**paper_world(), "proof": proof}
+    world["orbits"]["critical_a"].values[:] = 0.0801, 0.0802
+    claims = [claim for claim in read_claims(ROOT / "config/claims.yaml") if claim.name == "upper_edge"]
+    content = ledger("test", claims, evidence(world), [])
+    (claim,) = content["claims"]
+    proved = [item for item in claim["measured"] if item["proved"]]
+    assert [(item["quantity"].split(", ")[-1], item["value"]) for item in proved] == [("linearized", 0.0801)]
+    assert abs(proved[0]["error"] - 2e-7) < 1e-12
+    assert "(linearized, proved); at a_c = 0.0802, where the synchronized orbit loses stability (non" in claim["reason"]
+    rows = [row for row in csv.DictReader(io.StringIO(as_csv(content))) if row["proved"]]
+    assert [(row["value"], row["proved"]) for row in rows] == [("0.0801", "proved")]
+    world["orbits"]["critical_a"].values[0] += 1e-6
+    with pytest.raises(
+        ValueError, match=r"critical_a: 0\.080101.* is not allowed: proof\.nc has 0\.0800999 to 0\.0801001"
+    ):
+        ledger("test", claims, evidence(world), [])
 
 
 def test_markdown_has_a_row_for_each_claim(content: dict) -> None:

@@ -17,7 +17,7 @@ CATEGORIES = {
     "Claims": ["claims.csv"],
     "Model": ["equilibrium.png", "friction_laws.png"],
     "Runs": ["distance.png", "motion_minus.png", "motion_plus.png", "stick_slip.png"],
-    "Synchronization": ["bifurcation.png", "lyapunov.png", "mean_distance.png", "orbits.png"],
+    "Synchronization": ["bifurcation.png", "lyapunov.png", "mean_distance.png", "orbits.png", "proof.txt"],
     "Attractors": ["attractors.txt", "basin_fractions.png", "basins.png", "basins.txt"],
     "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],
 }

@@ -16,7 +16,7 @@ from tests.workflow.test_runs import jobs
 POINTS = ("simulate", "simulate_solver")
 OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
 SUMMARIES = (*OF_POINTS, "solvers")
-STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "orbits", "equilibrium", "two_blocks")
+STABILITY = ("attractors_of_law", "basin_tile", "basin_pairs", "orbits", "equilibrium", "two_blocks", "proof")
 FIGURES = tuple(
     f"figure_{name}"
     for name in (
@@ -166,9 +166,9 @@ KEYS = [
         POINTS,
     ),
     ({"transient": 120, "window": 180, "batches": 5, "lyapunov_alignment": 50}, (*POINTS, "two_blocks")),
-    ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
+    ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
     ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
-    ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
+    ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
     ({"start": "tested"}, (*POINTS, "attractors_of_law", "two_blocks")),
     ({"step": 0.002, "basins.threads": 2, "chains.blocks": [2, 3], "chains.time_limit": 900}, ()),
     (
@@ -277,7 +277,7 @@ def test_results_know_their_sources(finished):
     from burridge_knopoff.provenance.sources import source_fingerprint
 
     summaries = sorted((finished.folder / "results/tiny/summary").glob("*.nc"))
-    assert len(summaries) == 11
+    assert len(summaries) == 12
     for path in summaries:
         attributes = open_summary(path).attrs
         assert attributes["source_fingerprint"] == source_fingerprint(attributes["source_module"])

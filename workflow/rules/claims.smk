@@ -5,6 +5,7 @@ rule claims:
     input:
         [f"{SUMMARY}/{name}.nc" for name in [*SUMMARIES, "attractors", "solvers"]],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
+        PROOF,
     output:
         content=f"{SUMMARY}/claims.json",
         table=report(

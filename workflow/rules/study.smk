@@ -16,6 +16,7 @@ except KernelError as error:
     sys.exit(f"{error}")
 
 from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.provenance.files import (
     check_folder,
     display_path,
@@ -153,6 +154,16 @@ def other_length_config(laws=STUDY.laws):
             f"chain.{key}: {STUDY.config['chain'][key]} is not allowed for chains of another length: one number"
         )
     return model_config(laws)
+
+
+def proved_config():
+    """Return what decides the models of the proof; raises ConfigError if the proof covers no model of the study."""
+    if not STUDY.proved_laws:
+        raise ConfigError(
+            f"study {STUDY.name}: nothing to prove: the proof is of the paper's chain of 3 blocks and its two laws "
+            f"(linearized: any v, at most {LARGEST_V:g} under a symmetric contact; nonlinear: v = {NONLINEAR_V:g})"
+        )
+    return model_config(STUDY.proved_laws)
 
 
 def motion_config():

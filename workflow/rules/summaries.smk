@@ -36,6 +36,7 @@ rule summary:
         f"{SUMMARY}/attractors.txt",
         multiext(f"{SUMMARY}/basins", ".nc", ".txt") if STUDY.basin_maps else [],
         [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
+        multiext(f"{SUMMARY}/proof", ".nc", ".txt") if STUDY.proved_laws else [],
         multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md"),
 
 

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 # On fewer values of a than these a statement on a range of a is not judged.
 LEAST_VALUES = 10
 
+# A computed a_c is good to this: rounding of the multiplier over its slope.
+COMPUTED_WITHIN = 1e-13
+
 # At this a a law of a study is held against the paper's law of the same name.
 PAPER_A = 0.08
 
@@ -154,6 +157,21 @@ class Evidence:
             return np.nan, np.nan
         orbits = self.summary("orbits").sel(law=law)
         return orbits["critical_a"].item(), orbits["critical_a_error"].item()
+
+    def proved_critical_a(self, law: str) -> tuple[float, float] | None:
+        """Return a_c and how far it may be off at most, both proved; None if there is no proof for a law.
+
+        Raises ValueError, one line, if another a_c was computed: then one of the two is wrong.
+        """
+        if "proof" not in self.summaries or law not in self.summaries["proof"]["law"]:
+            return None
+        low, high = self.summaries["proof"]["critical_a"].sel(law=law).values.tolist()
+        middle = 0.5 * (low + high)
+        critical, error = self.critical_a(law)
+        if abs(critical - middle) > error + COMPUTED_WITHIN:
+            raise ValueError(f"orbits.nc: critical_a: {critical!r} is not allowed: proof.nc has {low!r} to {high!r}")
+        # Rounded or not, the middle lies between the two, as a_c does.
+        return middle, high - low
 
 
 def finite(values: Any) -> np.ndarray:

@@ -208,7 +208,12 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                 "own": verdict.own or verdict.verdict,
                 "reason": verdict.reason,
                 "measured": [
-                    {"quantity": item.quantity, "value": _number(item.value), "error": _number(item.error)}
+                    {
+                        "quantity": item.quantity,
+                        "value": _number(item.value),
+                        "error": _number(item.error),
+                        "proved": item.proved,
+                    }
                     for item in verdict.measured
                 ],
                 "changes": verdict.changes,
@@ -235,13 +240,13 @@ def as_csv(content: Mapping[str, Any]) -> str:
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     texts = ("name", "topic", "statement", "place", "verdict", "own")
-    writer.writerow(["claim", *texts[1:], "quantity", "value", "error", "reason", "changes", "figure"])
+    writer.writerow(["claim", *texts[1:], "quantity", "value", "error", "proved", "reason", "changes", "figure"])
     for claim in content["claims"]:
-        for item in claim["measured"] or [{"quantity": "", "value": None, "error": None}]:
+        for item in claim["measured"] or [{"quantity": "", "value": None, "error": None, "proved": False}]:
             writer.writerow(
                 [
                     *(claim[key] for key in texts),
-                    *(item["quantity"], _text(item["value"]), _text(item["error"])),
+                    *(item["quantity"], _text(item["value"]), _text(item["error"]), "proved" if item["proved"] else ""),
                     *(claim[key] for key in ("reason", "changes", "figure")),
                 ]
             )

@@ -85,11 +85,14 @@ def edge_of_synchrony(
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
         measured.append(Measured(f"{side} a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
-        critical, error = evidence.critical_a(law)
+        proved = evidence.proved_critical_a(law)
+        critical, error = proved or evidence.critical_a(law)
         if upper and low <= critical <= high:
+            name = f"a_c, at which the synchronized orbit loses stability, {law}"
             verdicts.append(by_value(critical, claimed, tolerance, loose))
-            measured.append(Measured(f"a_c, at which the synchronized orbit loses stability, {law}", critical, error))
-            texts[-1] = f"at a_c = {critical:.5g}, where the synchronized orbit loses stability ({law})"
+            measured.append(Measured(name, critical, error, proved=proved is not None))
+            certain = ", proved" if proved else ""
+            texts[-1] = f"at a_c = {critical:.5g}, where the synchronized orbit loses stability ({law}{certain})"
         else:
             verdicts.append(by_interval(low, high, claimed, tolerance, loose))
     reason = f"The {side} a with synchrony from {initial} lies {'; '.join(texts)}; claimed is {claimed:g}."

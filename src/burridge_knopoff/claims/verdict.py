@@ -39,11 +39,15 @@ class NotTestableError(Exception):
 
 @dataclass(frozen=True)
 class Measured:
-    """A number that a verdict rests on, with its error where it has one."""
+    """A number that a verdict rests on, with its error where it has one.
+
+    proved : whether it is proved that the true number is no farther from it than the error
+    """
 
     quantity: str
     value: float
     error: float | None = None
+    proved: bool = False
 
 
 @dataclass(frozen=True)

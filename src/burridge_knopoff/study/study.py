@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.stability.settings import BasinSettings, Sample
@@ -92,6 +93,11 @@ class Study:
     def has_synchronized_orbit(self) -> bool:
         """Whether the orbit of three blocks is looked for, the last of which is the mirror image of the first."""
         return self.blocks == 3 and self.is_mirror_symmetric
+
+    @property
+    def proved_laws(self) -> list[str]:
+        """The laws under which the synchronized orbit and its loss are proved."""
+        return [law for law in self.laws if is_covered(self.model(law, self.shown_a))]
 
     @property
     def basin_maps(self) -> list[tuple[str, float]]:

@@ -1,0 +1,93 @@
+"""Arcs: the mirror-symmetric motion of three blocks from event to event, and a small difference of the outer two.
+
+Blocks 1 and 3, the lateral ones, move as one; block 2 is the center. Positions are co-moving and, like velocities,
+divided by v. With x, y the positions of a lateral block and of the center, slipping blocks obey
+
+    x'' = −2x + y + w(x'),       y'' = −4y + 2x + w(y'),
+
+where w(p) = (Φ(v) − Φ(v + vp))/v is by how much friction has weakened, and a stuck block has the velocity −1, that of
+the ground. Its right-hand side is then (s − 1)/v, so that it starts when that rises to 0. Everything here takes balls
+and power series alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Protocol
+
+LATERAL, CENTER = 0, 1
+NAMES = ("blocks 1 and 3", "block 2")
+
+#: Strengths of all springs at each of the two, and of the springs from the one to the other.
+STIFFNESS, COUPLING = (2, 4), (1, 2)
+
+
+@dataclass(frozen=True)
+class State:
+    """A mirror-symmetric state: positions x, y and velocities x', y' relative to the driver, in units of v.
+
+    difference : of blocks 1 and 3, d and d', to first order: what has become of d = 1
+    """
+
+    position: tuple[Any, Any]
+    velocity: tuple[Any, Any]
+    difference: tuple[Any, Any] = (1, 0)
+
+    def stopped(self, block: int) -> State:
+        """Return the state with a block at rest on the ground."""
+        if block == LATERAL:
+            return replace(self, velocity=(-1, self.velocity[1]), difference=(self.difference[0], 0))
+        return replace(self, velocity=(self.velocity[0], -1))
+
+
+class Flow(Protocol):
+    """A friction law, as the arcs need it.
+
+    reaches : half-widths of the boxes in which it is worth looking for an orbit, the widest first
+    """
+
+    reaches: ClassVar[tuple[float, ...]]
+
+    def weakening(self, rate: Any, a: Any) -> Any:
+        """Return w, by how much friction is below that at the velocity of the driver, in units of v."""
+
+    def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
+        """Return the motion from a state as a function of time, as long as no event comes."""
+
+
+@dataclass(frozen=True)
+class Arc:
+    """The motion up to an event.
+
+    slips : whether the lateral blocks, and the center, slip
+    ends : LATERAL or CENTER: which of them starts, if it sticks, or stops, if it slips, at the end of the arc
+    flow : the friction law
+    """
+
+    slips: tuple[bool, bool]
+    ends: int
+    flow: Flow
+
+    @property
+    def name(self) -> str:
+        """The arc in words: what ends it."""
+        return f"the arc until {NAMES[self.ends]} {'stop' if self.slips[self.ends] else 'start'}"
+
+    def after(self, state: State, a: Any, time: Any) -> State:
+        """Return the state a time later, if no event comes before; a : friction parameter."""
+        return self.flow.path(self.slips, state, a)(time)
+
+    def margin(self, block: int, state: State, a: Any) -> Any:
+        """Return what is positive while a block goes on as it does, in units of v.
+
+        The speed U' of a block that slips; 1 − s, static friction less spring force, of a block that sticks.
+        """
+        if self.slips[block]:
+            return state.velocity[block] + 1
+        x, other = state.position[block], state.position[1 - block]
+        return STIFFNESS[block] * x - COUPLING[block] * other - self.flow.weakening(-1, a)
+
+    def last(self, state: State) -> State:
+        """Return the state just after the event, given the one just before: a stop takes the velocity away."""
+        return state.stopped(self.ends) if self.slips[self.ends] else state

@@ -1,0 +1,83 @@
+"""Bounds over whole arcs: that a function of time stays positive between two events, not at samples but throughout.
+
+A ball of times goes through the closed form of the motion and comes out as a ball that holds all values of the function
+meanwhile; one with a derivative beside it bounds that as well. Where this does not decide, the time is halved. At the
+ends of an arc a function may have a root that is known exactly: a block that starts has no speed and no acceleration,
+so that the sign of its second derivative decides what it does next; where an arc ends one function passes through 0,
+and the sign of its first derivative decides what it did before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from flint import arb, arb_series, fmpq
+
+from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
+
+#: A function of time, in power series.
+Function = Callable[[Any], Any]
+
+# An arc is halved this often at most: to pieces of a millionth of it.
+DEEPEST = 20
+
+# Into so many pieces an arc is cut to bound what is far from any limit.
+PIECES = 64
+
+
+def jet(function: Function, time: arb) -> tuple[arb, arb, arb]:
+    """Return balls that hold a function and its first two derivatives at all times of a ball."""
+    with arithmetic(3):
+        value = arb_series(function(arb_series([time, 1])))
+        return value[0], value[1], 2 * value[2]
+
+
+def check_positive(function: Function, length: arb, starts: bool = False, ends: bool = False) -> None:
+    """Prove that a function is positive at all times from 0 to the length of an arc, its known roots excepted.
+
+    length : a ball; the proof is for every length in it
+    starts : whether function and first derivative are exactly 0 at time 0
+    ends : whether the function is exactly 0 at the end, for whatever length in the ball is the true one
+    Raises ProofError with the time at which that could not be proved, and if a root cannot be where it is said to be.
+    """
+    with arithmetic(3):
+        known = [*(jet(function, arb(0))[:2] if starts else ()), *(jet(function, length)[:1] if ends else ())]
+        if not all(value.contains(0) for value in known):
+            raise ProofError(f"there is no root at its {'start' if starts else 'end'} that could be left out")
+        last = length.upper()
+        pieces = [(0, 0)]
+        while pieces:
+            depth, number = pieces.pop()
+            low, high = (last * fmpq(number + side, 2**depth) for side in (0, 1))
+            first, final = number == 0, number + 1 == 2**depth
+            if not _is_positive(function, low, high, starts and first, ends and final):
+                if depth == DEEPEST:
+                    raise ProofError(f"at the time {float(low.mid())!r} of an arc: it may come to 0 there")
+                pieces += [(depth + 1, 2 * number), (depth + 1, 2 * number + 1)]
+
+
+def _is_positive(function: Function, low: arb, high: arb, starts: bool, ends: bool) -> bool:
+    """Tell whether a function is known to be positive at all times from low to high, but a root at one end."""
+    time = around(low, high)
+    value, slope, curvature = jet(function, time)
+    # The mean value theorem, and the value itself: whichever decides.
+    middle = jet(function, time.mid())[0]
+    if value > 0 or middle + slope * (time - time.mid()) > 0:
+        return True
+    # By Taylor's formula f(t) = t² f''(ξ)/2 after a double root at 0; f(t) = (t − T) f'(ξ) before a root at T.
+    return bool((starts and curvature > 0) or (ends and slope < 0))
+
+
+def bounds(function: Function, length: arb) -> arb:
+    """Return a ball that holds all values of a function from time 0 to the length of an arc."""
+    found = [jet(function, piece)[0] for piece in _pieces(length)]
+    with arithmetic():
+        return around(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
+
+
+def _pieces(length: arb) -> Iterator[arb]:
+    with arithmetic():
+        last = length.upper()
+        for number in range(PIECES):
+            yield around(last * fmpq(number, PIECES), last * fmpq(number + 1, PIECES))

@@ -1,0 +1,79 @@
+"""The linearized law: w(p) = a p, so that v is only a scale and every arc has a closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from flint import arb, fmpq
+
+from burridge_knopoff.proof.arcs import LATERAL, STIFFNESS, State
+
+
+@dataclass(frozen=True)
+class Linearized:
+    """Arcs under the linearized law, for any v."""
+
+    reaches: ClassVar[tuple[float, ...]] = tuple(2.0**-k for k in range(8, 30))
+
+    def weakening(self, rate: Any, a: Any) -> Any:
+        """Return w, by how much friction is below that at the velocity of the driver, in units of v."""
+        return a * rate
+
+    def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
+        """Return the motion from a state as a function of time, as long as no event comes."""
+        return lambda time: _after(slips, state, a, time)
+
+
+def _after(slips: tuple[bool, bool], state: State, a: Any, time: Any) -> State:
+    if slips[LATERAL]:
+        state = replace(state, difference=oscillation(STIFFNESS[LATERAL], a, time, *state.difference))
+    if all(slips):
+        return _sliding(state, a, time)
+    if any(slips):
+        return _pulled(state, a, time, slips.index(True))
+    x, y = state.position
+    return replace(state, position=(x - time, y - time))
+
+
+def oscillation(stiffness: Any, a: Any, time: Any, position: Any, velocity: Any) -> tuple[Any, Any]:
+    """Return position and velocity after a time, z'' = −stiffness z + a z', for a < 2 √stiffness."""
+    growth = a / 2
+    frequency = (stiffness - growth * growth).sqrt()
+    factor, angle = (growth * time).exp(), frequency * time
+    cosine, sine = angle.cos(), angle.sin() / frequency
+    return (
+        factor * (position * (cosine - growth * sine) + velocity * sine),
+        factor * (velocity * (cosine + growth * sine) - stiffness * position * sine),
+    )
+
+
+def _sliding(state: State, a: Any, time: Any) -> State:
+    """Return the state after all blocks have slipped: two normal modes x + w y, of stiffness 3 ∓ √3."""
+    root = arb(3).sqrt()
+    x, y = state.position
+    p, q = state.velocity
+    weights = (root - 1) / 2, -(root + 1) / 2
+    modes = [
+        oscillation(stiffness, a, time, x + weight * y, p + weight * q)
+        for stiffness, weight in zip((3 - root, 3 + root), weights, strict=True)
+    ]
+    center = tuple((one - other) / root for one, other in zip(*modes, strict=True))
+    lateral = tuple(one - weights[0] * value for one, value in zip(modes[0], center, strict=True))
+    return replace(state, position=(lateral[0], center[0]), velocity=(lateral[1], center[1]))
+
+
+def _pulled(state: State, a: Any, time: Any, slipping: int) -> State:
+    """Return the state after one has slipped and the other has stuck.
+
+    The one that sticks moves at the constant rate of the ground; the other oscillates about a point that follows it
+    half as fast, since COUPLING is half of STIFFNESS.
+    """
+    half = fmpq(1, 2)
+    x, other = state.position[slipping], state.position[1 - slipping]
+    center = other / 2 - a / (2 * STIFFNESS[slipping])
+    moved, rate = oscillation(STIFFNESS[slipping], a, time, x - center, state.velocity[slipping] + half)
+    here, there = (moved + center - half * time, rate - half), (other - time, -1)
+    (x, p), (y, q) = (here, there) if slipping == LATERAL else (there, here)
+    return replace(state, position=(x, y), velocity=(p, q))

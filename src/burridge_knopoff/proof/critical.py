@@ -1,0 +1,168 @@
+"""Where synchrony is lost, proved: the a at which the transverse multiplier is 1, and that there is no other nearby.
+
+Near a_c the equations of the orbit and of the multiplier are solved together, for the orbit and a. Elsewhere the range
+of a is covered by balls; for all a of one ball there is an orbit, the orbits of neighbouring balls are the same where
+they touch, and the multiplier rises with a throughout: it is 1 once only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, fmpq
+
+from burridge_knopoff.proof.arcs import Arc
+from burridge_knopoff.proof.balls import ProofError, arithmetic, around
+from burridge_knopoff.proof.krawczyk import (
+    Enclosure,
+    derivatives,
+    enclose,
+    inflated,
+    part,
+    polished,
+    solved,
+    widest,
+)
+from burridge_knopoff.proof.orbit import ProvedOrbit, arcs_of, equations
+from burridge_knopoff.stability.orbit import Orbit
+
+# A range of a is halved into pieces of this width at most, and so often at most.
+WIDEST = fmpq(1, 400)
+DEEPEST = 16
+# Half the width of the box around the orbit of a single a.
+CLOSE = 2.0**-40
+
+
+@dataclass(frozen=True, eq=False)
+class Critical:
+    """The loss of synchrony, proved.
+
+    orbit : the synchronized orbit at a_c, with a_c as its a; all blocks do on it what its arcs say
+    unique : a ball of a in which there is no other such orbit with the multiplier 1 near this one
+    """
+
+    orbit: ProvedOrbit
+    unique: arb
+
+    @property
+    def a(self) -> arb:
+        """The friction parameter a_c, a ball."""
+        return self.orbit.a
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """The synchronized orbits for all a of a ball, proved.
+
+    orbit : for all of them at once
+    middle, direction : the unknowns of the orbit in the middle of the ball, and how fast they change with a
+    around : the box around that tangent in which, at each a, the orbit is the only one
+    """
+
+    orbit: ProvedOrbit
+    middle: Sequence[arb]
+    direction: Sequence[arb]
+    around: Sequence[arb]
+
+    def check_holds(self, other: Enclosure, a: arb) -> None:
+        """Prove that an orbit which was found at an a of the ball is that of the piece; raises ProofError if not."""
+        with arithmetic():
+            way = a - self.orbit.a.mid()
+            box = _on_line(self.middle, self.direction, way, self.around)
+            if not self.orbit.a.contains(a) or not all(map(arb.contains, box, other.inner)):
+                raise ProofError(f"a = {a}: not proved to be an orbit of the family")
+
+
+def prove_critical(orbit: Orbit) -> Critical:
+    """Return the proof that the multiplier of the synchronized orbit passes 1, at an a near that of an orbit.
+
+    orbit : in double precision, near a_c
+    Raises ProofError, one line, where there is no proof of it.
+    """
+    arcs, guess = arcs_of(orbit)
+    system = equations(arcs, critical=True)
+    found = widest(system, polished(system, [*guess, orbit.model.a]), arcs[0].flow.reaches)
+    proved = ProvedOrbit(arcs, found.inner[-1], Enclosure(found.inner[:-1], found.outer[:-1]))
+    proved.check_arcs()
+    if not abs(proved.slope) > 0:
+        raise ProofError(f"a = {proved.a}: not proved that the multiplier passes 1: its slope is {proved.slope}")
+    return Critical(proved, found.outer[-1])
+
+
+def prove_branch(orbit: Orbit, low: fmpq, high: fmpq) -> list[Piece]:
+    """Return the proofs that the synchronized orbit exists and that its multiplier rises, for all a from low to high.
+
+    There is one orbit in the box of each piece, and neighbouring pieces have the same one where they touch.
+
+    orbit : in double precision, at an a near the low end; the order of its events is that of all
+    Raises ProofError, one line, where there is no proof of it.
+    """
+    arcs, guess = arcs_of(orbit)
+    pieces: list[Piece] = []
+    waiting = [(low, high, 0)]
+    while waiting:
+        first, last, depth = waiting.pop()
+        half = (first + last) / 2
+        try:
+            # Newton's method goes on from the piece before; a piece that is much wider is not tried.
+            if last - first > WIDEST:
+                raise ProofError("a piece too wide")
+            piece = _piece(arcs, pieces[-1].middle if pieces else [arb(value) for value in guess], first, last)
+        except ProofError as error:
+            if depth > DEEPEST:
+                raise ProofError(f"a = {arb(half).str(8, radius=False)}: not proved: {error}") from None
+            waiting += [(half, last, depth + 1), (first, half, depth + 1)]
+            continue
+        if pieces:
+            _check_joined(pieces[-1], piece, first)
+        pieces.append(piece)
+    return pieces
+
+
+def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -> Piece:
+    """Return the proof for all a from first to last."""
+    system = equations(arcs)
+    with arithmetic():
+        a = around(arb(first), arb(last))
+        center = a.mid()
+    middle = polished(system, guess, [center])
+    matrix, count = derivatives(system, [*middle, center]), range(len(middle))
+    with arithmetic():
+        moved = solved(part(matrix, count, count), part(matrix, count, [len(middle)]))
+        direction = [-moved[k, 0].mid() for k in count]
+
+    def beside(unknown: Sequence[Any]) -> Sequence[Any]:
+        """Return the equations in the distance from the tangent to the family, which is far smaller than the way."""
+        *distance, at = unknown
+        return system([*_on_line(middle, direction, at - center, distance), at])
+
+    nothing = [arb(0)] * len(middle)
+    found = enclose(beside, nothing, inflated(beside, nothing, [a]), [a])
+    with arithmetic():
+        inner, outer = (
+            tuple(_on_line(middle, direction, a - center, distance)) for distance in (found.inner, found.outer)
+        )
+    proved = ProvedOrbit(tuple(arcs), a, Enclosure(inner, outer))
+    proved.check_arcs()
+    if not proved.slope > 0:
+        raise ProofError(f"the multiplier is not known to rise: its slope is {proved.slope}")
+    if not abs(proved.symmetric_multiplier) < 1:
+        raise ProofError(f"symmetric perturbations are not known to fade: {proved.symmetric_multiplier}")
+    return Piece(proved, middle, direction, found.outer)
+
+
+def _on_line(middle: Sequence[arb], direction: Sequence[arb], way: Any, distance: Sequence[Any]) -> list[Any]:
+    return [value + rate * way + beside for value, rate, beside in zip(middle, direction, distance, strict=True)]
+
+
+def _check_joined(left: Piece, right: Piece, a: fmpq) -> None:
+    """Prove that two pieces have the same orbit at the a at which they touch; raises ProofError if that fails."""
+    system = equations(right.orbit.arcs)
+    with arithmetic():
+        point = arb(a)
+    middle = polished(system, right.middle, [point.mid()])
+    shared = enclose(system, middle, [CLOSE] * len(middle), [point])
+    for piece in (left, right):
+        piece.check_holds(shared, point)

@@ -1,0 +1,28 @@
+"""The flow of the arcs of a model: by its friction law."""
+
+from __future__ import annotations
+
+from flint import arb
+
+from burridge_knopoff.laws.linearized import Linearized as LinearizedLaw
+from burridge_knopoff.laws.nonlinear import Nonlinear as NonlinearLaw
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.proof.arcs import Flow
+from burridge_knopoff.proof.balls import ProofError, arithmetic
+from burridge_knopoff.proof.closed import Linearized
+from burridge_knopoff.proof.taylor import Nonlinear
+
+
+def flow_of(model: Model) -> Flow:
+    """Return the flow under the law of a model; raises ProofError if it is not one of the paper's laws.
+
+    The velocity of the driver is taken for the decimal that it is written as: 0.1, not the double beside it.
+    """
+    if model.law.formula == LinearizedLaw.formula:
+        return Linearized()
+    if model.law.formula == NonlinearLaw.formula:
+        with arithmetic():
+            return Nonlinear(arb(repr(model.v)))
+    raise ProofError(
+        f"law {model.law.name}: {model.law.formula!r} is not allowed: {LinearizedLaw.formula} | {NonlinearLaw.formula}"
+    )

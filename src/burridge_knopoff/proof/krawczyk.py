@@ -1,0 +1,164 @@
+"""Krawczyk's operator: a box of numbers in which a system of equations has exactly one solution.
+
+For equations F, a box X with the midpoint m, and any matrix C, the operator is K = m − C F(m) + (1 − C F'(X)) (X − m).
+If K lies in the interior of X, F has one zero in X, and it lies in K (R. Krawczyk 1969; W. Tucker, Validated Numerics,
+2011). C is the inverse of F'(m), up to rounding. F' comes from Arb's power series: a number with the coefficient 1
+beside it carries a derivative through the same code that computes the value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat, arb_series
+
+from burridge_knopoff.proof.balls import ProofError, arithmetic
+
+#: Equations: as many numbers as there are unknowns, in balls or in power series.
+Equations = Callable[[Sequence[Any]], Sequence[Any]]
+
+# Newton's method doubles the digits of a guess this often: those of a double to more than there are.
+POLISHING = 6
+# A step this small has more than doubled its digits: to more than the remainders of any arc leave.
+POLISHED = 2.0**-60
+# A box shrinks to the square of its size, down to the rounding of the arithmetic; it is done when it no longer halves.
+SHRINKING = 12
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """A solution that is proved to exist.
+
+    inner : balls that hold it, one for each unknown
+    outer : balls in which it is the only one
+    """
+
+    inner: tuple[arb, ...]
+    outer: tuple[arb, ...]
+
+
+def derivatives(function: Equations, at: Sequence[arb], chosen: Sequence[int] | None = None) -> arb_mat:
+    """Return the enclosure of the derivatives of each value (rows) with respect to each unknown (columns).
+
+    chosen : numbers of the unknowns if not all are wanted
+    """
+    columns = []
+    with arithmetic(2):
+        for column in range(len(at)) if chosen is None else chosen:
+            # What does not depend on that unknown is computed without series, which takes a third of the time.
+            point = [arb_series([value, 1]) if k == column else value for k, value in enumerate(at)]
+            columns.append([arb_series(value)[1] for value in function(point)])
+    return arb_mat(columns).transpose()
+
+
+def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[arb] = ()) -> list[arb]:
+    """Return a guess improved by Newton's method, as exact numbers; nothing is proved.
+
+    parameters : what the equations take after the unknowns, exact numbers
+    Raises ProofError where the derivatives cannot be inverted.
+    """
+    count = range(len(guess))
+    with arithmetic():
+        point = [arb(value).mid() for value in guess]
+        for _ in range(POLISHING):
+            at = [*point, *parameters]
+            step = solved(part(derivatives(equations, at, count), count, count), _column(equations(at)))
+            point = [(value - step[k, 0]).mid() for k, value in enumerate(point)]
+            if all(abs(step[k, 0].mid()) < POLISHED for k in count):
+                break
+    return point
+
+
+def enclose(
+    equations: Equations, middle: Sequence[arb], radii: Sequence[Any], parameters: Sequence[arb] = ()
+) -> Enclosure:
+    """Return the proof that equations have exactly one solution in a box, and where it lies.
+
+    middle : of the box, exact numbers; radii : of the box, one for each unknown
+    parameters : what the equations take after the unknowns, balls; the proof is for all values in them
+    Raises ProofError if Krawczyk's operator does not map the box into its interior.
+    """
+    with arithmetic():
+        outer = [value + arb(0, radius) for value, radius in zip(middle, radii, strict=True)]
+        inverse = _inverse(equations, middle, parameters)
+        inner = _krawczyk(equations, outer, parameters, inverse)
+        for k, (box, mapped) in enumerate(zip(outer, inner, strict=True)):
+            if not box.contains_interior(mapped):
+                raise ProofError(f"unknown {k + 1}: {mapped} is not allowed: in the interior of {box}")
+        # The box is so much smaller by now that derivatives in its middle are better than those that it began with.
+        inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
+        for _ in range(SHRINKING):
+            before, image = inner, _krawczyk(equations, inner, parameters, inverse)
+            # Both hold the solution, and so does what they have in common.
+            inner = [box.intersection(smaller) for box, smaller in zip(before, image, strict=True)]
+            if all(2 * smaller.rad() > box.rad() for box, smaller in zip(before, inner, strict=True)):
+                break
+    return Enclosure(tuple(inner), tuple(outer))
+
+
+def widest(
+    equations: Equations, middle: Sequence[arb], radii: Sequence[float], parameters: Sequence[arb] = ()
+) -> Enclosure:
+    """Return the proof of `enclose` for the widest cube around a point that has one.
+
+    radii : half-widths of the cubes, the widest first
+    Raises ProofError if even the last one has none.
+    """
+    for radius in radii[:-1]:
+        try:
+            return enclose(equations, middle, [radius] * len(middle), parameters)
+        except ProofError:
+            continue
+    return enclose(equations, middle, [radii[-1]] * len(middle), parameters)
+
+
+def inflated(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:
+    """Return half-widths of a box that Krawczyk's operator may map into itself: twice what it makes of its midpoint."""
+    with arithmetic():
+        image = _krawczyk(equations, middle, parameters, _inverse(equations, middle, parameters))
+        return [2 * abs(value - center).upper() for value, center in zip(image, middle, strict=True)]
+
+
+def _krawczyk(equations: Equations, box: Sequence[arb], parameters: Sequence[arb], inverse: arb_mat) -> list[arb]:
+    """Return Krawczyk's operator of a box, by the mean value theorem in the parameters as well."""
+    whole = [*box, *parameters]
+    middle = [value.mid() for value in whole]
+    unit = arb_mat([[int(i == k) for k in range(len(whole))] for i in range(len(box))])
+    contraction = unit - inverse * derivatives(equations, whole)
+    offset = _column([value - center for value, center in zip(whole, middle, strict=True)])
+    step = contraction * offset - inverse * _column(equations(middle))
+    return [middle[k] + step[k, 0] for k in range(len(box))]
+
+
+def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> arb_mat:
+    """Return a matrix of exact numbers, the inverse of the derivatives up to their error."""
+    count = range(len(middle))
+    derivative = derivatives(equations, [*middle, *(value.mid() for value in parameters)], count)
+    exact = arb_mat([[derivative[i, k].mid() for k in count] for i in count])
+    try:
+        return arb_mat([[entry.mid() for entry in row] for row in exact.inv().tolist()])
+    except ZeroDivisionError:
+        raise ProofError("the derivatives of the equations cannot be inverted in the middle of the box") from None
+
+
+def solved(matrix: arb_mat, values: arb_mat) -> arb_mat:
+    """Return the enclosure of the solutions of linear equations, for all matrices and values in their balls.
+
+    Raises ProofError if a matrix among them may be singular.
+    """
+    with arithmetic():
+        try:
+            return matrix.solve(values, algorithm="precond")
+        except ZeroDivisionError:
+            raise ProofError("the derivatives of the equations cannot be inverted") from None
+
+
+def part(matrix: arb_mat, rows: Sequence[int], columns: Sequence[int]) -> arb_mat:
+    """Return some rows and columns of a matrix."""
+    return arb_mat([[matrix[i, k] for k in columns] for i in rows])
+
+
+def _column(values: Sequence[Any]) -> arb_mat:
+    return arb_mat([[value] for value in values])

@@ -1,0 +1,202 @@
+"""The synchronized orbit, proved: that it exists, its events, that no others come between them, its multipliers.
+
+The unknowns are the positions just after the first start of a period, when all blocks are at rest, and how long each
+arc takes. The equations are that each arc ends with its event, and that the positions return. Of the six multipliers
+one is that of the flow, three are 0 since three blocks stop, one is what a period makes of a small difference of
+blocks 1 and 3, and one what it makes of a shift of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from itertools import pairwise
+from typing import Any
+
+from flint import arb
+
+from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, Arc, State
+from burridge_knopoff.proof.balls import ProofError, arithmetic
+from burridge_knopoff.proof.bounds import Function, bounds, check_positive
+from burridge_knopoff.proof.flows import flow_of
+from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
+from burridge_knopoff.stability.orbit import Orbit, flow
+
+#: Unknowns of an orbit before the durations of its arcs: the two positions.
+PLACES = 2
+
+
+def followed(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
+    """Return the states at the beginning of each arc and at the end of the period, and what is 0 as each arc ends.
+
+    unknown : positions x and y of blocks at rest, the duration of each arc, and a
+    """
+    *orbit, a = unknown
+    states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
+    for arc, time in zip(arcs, orbit[PLACES:], strict=True):
+        # Only of the state before the event may be asked whether it is one: a stop makes the speed 0 anyway.
+        before = arc.after(states[-1], a, time)
+        found.append(arc.margin(arc.ends, before, a))
+        states.append(arc.last(before))
+    return states, found
+
+
+def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
+    """Return the equations of a periodic orbit, in the unknowns of `followed`: events, and that positions return.
+
+    critical : whether the transverse multiplier is to be 1 as well
+    """
+
+    def values(unknown: Sequence[Any]) -> list[Any]:
+        states, found = followed(arcs, unknown)
+        returned = [states[-1].position[k] - unknown[k] for k in range(PLACES)]
+        return [*found, *returned, *([states[-1].difference[0] - 1] if critical else [])]
+
+    return values
+
+
+def arcs_of(orbit: Orbit) -> tuple[tuple[Arc, ...], list[float]]:
+    """Return the arcs of a synchronized orbit in double precision, and its unknowns: only a guess.
+
+    Raises ProofError unless all blocks stick at once, and each starts and stops once a period.
+    """
+    events = [(time, block) for time, block, _ in orbit.events if block in (LATERAL, CENTER)]
+    slips = [not stuck for stuck in orbit.reference.stuck[:2]]
+    before = []
+    for _, block in events:
+        before.append((slips[LATERAL], slips[CENTER]))
+        slips[block] = not slips[block]
+    if sorted(block for _, block in events) != [0, 0, 1, 1] or (False, False) not in before:
+        raise ProofError(f"a = {orbit.model.a!r}: not covered: all blocks stick at once, and each stops once a period")
+    first = before.index((False, False))
+    # A period from the first start on, to the next.
+    cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]
+    slipping = before[first + 1 :] + before[: first + 1]
+    flow_of_law = flow_of(orbit.model)
+    arcs = [Arc(state, block, flow_of_law) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
+    start = flow(orbit.model, orbit.reference, cycle[0][0])[0].instant()
+    position = [float(x) / orbit.model.v for x in start.position[:PLACES]]
+    return tuple(arcs), position + [late - early for (early, _), (late, _) in pairwise(cycle)]
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedOrbit:
+    """A synchronized orbit that is proved to exist, for every a of a ball, and to be the only one in a box.
+
+    arcs : from the first start of a period on
+    a : friction parameter, a ball
+    enclosure : of the unknowns; its inner part may have been narrowed to hold a solution of more equations
+    """
+
+    arcs: tuple[Arc, ...]
+    a: arb
+    enclosure: Enclosure
+
+    @property
+    def times(self) -> tuple[arb, ...]:
+        """Durations of the arcs."""
+        return self.enclosure.inner[PLACES:]
+
+    @property
+    def period(self) -> arb:
+        """The period T."""
+        with arithmetic():
+            return sum(self.times, arb(0))
+
+    @property
+    def event_times(self) -> list[arb]:
+        """Times of the events that end each arc, since the first start of the period; the last is the period."""
+        with arithmetic():
+            return [sum(self.times[: k + 1], arb(0)) for k in range(len(self.times))]
+
+    @property
+    def _unknown(self) -> list[arb]:
+        return [*self.enclosure.inner, self.a]
+
+    @cached_property
+    def multiplier(self) -> arb:
+        """The transverse Floquet multiplier μ: what a period makes of a small difference of blocks 1 and 3."""
+        with arithmetic():
+            return followed(self.arcs, self._unknown)[0][-1].difference[0]
+
+    @cached_property
+    def symmetric_multiplier(self) -> arb:
+        """The multiplier of mirror-symmetric perturbations, all others of which are 0 or that of the flow.
+
+        When all blocks stick, a shift of all of them alike is one along the flow. What a period makes of x − y is the
+        multiplier: a start changes no perturbation, a stop takes the velocity away (docs/synchronization.md).
+        """
+
+        def apart(unknown: Sequence[Any]) -> list[Any]:
+            x, y = followed(self.arcs, unknown)[0][-1].position
+            return [x - y]
+
+        return derivatives(apart, self._unknown, [0])[0, 0]
+
+    @cached_property
+    def slope(self) -> arb:
+        """The derivative dμ/da along the family of orbits, for all a of the ball."""
+        matrix = derivatives(equations(self.arcs, critical=True), self._unknown)
+        count = len(self.enclosure.inner)
+        orbit, last = range(count), [count]
+        with arithmetic():
+            moved = solved(part(matrix, orbit, orbit), part(matrix, orbit, last))
+            change = part(matrix, last, last) - part(matrix, last, orbit) * moved
+            return change[0, 0]
+
+    def check_arcs(self) -> None:
+        """Prove that no block stops or starts inside an arc, and that every event passes through 0 at a rate.
+
+        Raises ProofError, one line: which block, on which arc, when.
+        """
+        for k, (arc, state, time) in enumerate(self._each_arc()):
+            started = self.arcs[k - 1].ends if arc.slips[self.arcs[k - 1].ends] else None
+            for block in (LATERAL, CENTER):
+                margin = self._margin(arc, state, block)
+                try:
+                    check_positive(margin, time, starts=block == started, ends=block == arc.ends)
+                except ProofError as error:
+                    raise ProofError(f"{NAMES[block]}, {arc.name}: not proved to go on as they do: {error}") from None
+
+    def fastest(self) -> arb:
+        """Return a ball that holds all speeds U'/v of slipping blocks."""
+        return self._hull(True)
+
+    def tightest(self) -> arb:
+        """Return a ball that holds (1 − s)/v, s the spring force, of all blocks that stick."""
+        return self._hull(False)
+
+    def _hull(self, slipping: bool) -> arb:
+        found = [
+            bounds(self._margin(arc, state, block), time)
+            for arc, state, time in self._each_arc()
+            for block in (LATERAL, CENTER)
+            if arc.slips[block] == slipping
+        ]
+        with arithmetic():
+            return reduce(arb.union, found)
+
+    def _margin(self, arc: Arc, state: State, block: int) -> Function:
+        """Return the margin of a block as a function of the time since the state at the beginning of an arc."""
+        path = arc.flow.path(arc.slips, state, self.a)
+        return lambda time: arc.margin(block, path(time), self.a)
+
+    def _each_arc(self) -> list[tuple[Arc, State, arb]]:
+        """Return each arc, the state at its beginning and its duration."""
+        with arithmetic():
+            states, _ = followed(self.arcs, self._unknown)
+        return list(zip(self.arcs, states, self.times, strict=False))
+
+
+def prove_orbit(orbit: Orbit, a: arb) -> ProvedOrbit:
+    """Return the proof that there is a synchronized orbit near one in double precision.
+
+    a : friction parameter, a narrow ball around that of the orbit
+    Raises ProofError, one line, where there is no proof of it.
+    """
+    arcs, guess = arcs_of(orbit)
+    middle = polished(equations(arcs), guess, [a.mid()])
+    proved = ProvedOrbit(arcs, a, widest(equations(arcs), middle, arcs[0].flow.reaches, [a]))
+    proved.check_arcs()
+    return proved

@@ -1,0 +1,35 @@
+"""What the proofs are about: the paper's chain under its two laws."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from burridge_knopoff.laws.linearized import Linearized
+from burridge_knopoff.laws.nonlinear import Nonlinear
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+
+#: The v of the proofs under the nonlinear law: the paper's.
+NONLINEAR_V = 0.1
+#: Under the linearized law v is only a scale, but for symmetric contact: the largest v for which stuck blocks hold,
+#: which `summaries/proof.py` shows. On these orbits their spring force differs from the static friction by about v.
+LARGEST_V = 1.0
+
+
+def is_linearized(model: Model) -> bool:
+    """Tell whether the law of a model is the paper's linearized one."""
+    return model.law.formula == Linearized.formula
+
+
+def is_covered(model: Model) -> bool:
+    """Tell whether the proofs are about a model: its chain, law, v and contact; a does not matter."""
+    chain, paper = model.chain, Chain(3)
+    springs = (
+        chain.blocks == 3
+        and np.array_equal(chain.stiffness, paper.stiffness)
+        and np.array_equal(chain.driving, paper.driving)
+        and np.array_equal(chain.thresholds, paper.thresholds)
+    )
+    if is_linearized(model):
+        return bool(springs and (model.contact == "one_sided" or model.v <= LARGEST_V))
+    return bool(springs and model.law.formula == Nonlinear.formula and model.v == NONLINEAR_V)

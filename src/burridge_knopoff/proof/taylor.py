@@ -1,0 +1,195 @@
+"""The nonlinear law: arcs by Taylor series with a rigorous remainder, stepped in time.
+
+With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). A step needs a box that holds the solution all
+the while: if Picard's integral operator maps a box into itself, the solution is in it. The last coefficient of the
+series over that box, times the last power of time, holds what the series leaves out (W. Tucker, Validated Numerics,
+2011). Numbers may be power series in another quantity: then the derivative by that is enclosed as well, which obeys
+the derivative of the same equations.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from flint import arb, arb_series, fmpq
+
+from burridge_knopoff.proof.arcs import COUPLING, LATERAL, STIFFNESS, State
+from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
+
+#: Length of a step, and terms of the series in it: what they leave out is about 1e-22 on these orbits.
+STEP = fmpq(1, 4)
+ORDER = 24
+
+# No arc lasts longer.
+LONGEST = 100
+
+# The box of a step is looked for by so many widenings, each by this share and at least by the other number.
+WIDENINGS = 60
+SHARE = 0.25
+LEAST = 2.0**-120
+
+
+@dataclass(frozen=True)
+class Nonlinear:
+    """Arcs under the nonlinear law, drawn at a velocity v, a ball."""
+
+    # Boxes widen a million times on their way through a period in steps, and must stay small all the while.
+    reaches: ClassVar[tuple[float, ...]] = (2.0**-26, 2.0**-32)
+
+    v: arb
+
+    def weakening(self, rate: Any, a: Any) -> Any:
+        """Return w, by how much friction is below that at the velocity of the driver, in units of v."""
+        b = a * self.v
+        return a * rate / ((1 + b) * (1 + b + b * rate))
+
+    def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
+        """Return the motion from a state as a function of time, as long as no event comes."""
+        numbers = [*state.position, *state.velocity, *state.difference, a]
+        terms = 2 if any(isinstance(value, arb_series) for value in numbers) else 1
+        with arithmetic(terms):
+            kind = arb_series if terms == 2 else arb
+            return _Path(self, slips, [kind(value) for value in numbers], terms)
+
+    def series(self, slips: tuple[bool, bool], start: Sequence[Any], a: Any, count: int) -> list[list[Any]]:
+        """Return the coefficients 0 … count of x, y, x', y', d, d' in powers of time."""
+        x, y, p, q, d, e = ([value] for value in start)
+        b = a * self.v
+        strength = a / (1 + b)
+        one = 1 + b
+        # p/(1 + b + b p) of both, and 1/(1 + b + b p) of the lateral blocks, whose square the difference needs.
+        ratios: list[list[Any]] = [[], []]
+        inverse: list[Any] = []
+        square: list[Any] = []
+        zero = 0 * start[0]
+        for k in range(count):
+            rates = []
+            for block, (place, other, rate) in enumerate(((x, y, p), (y, x, q))):
+                if not slips[block]:
+                    rates.append(zero)
+                    continue
+                ratio = ratios[block]
+                rest = sum((ratio[j] * rate[k - j] for j in range(k)), zero)
+                ratio.append((rate[k] - b * rest) / _positive(one + b * rate[0]))
+                rates.append((COUPLING[block] * other[k] - STIFFNESS[block] * place[k] + strength * ratio[k]) / (k + 1))
+            bend = zero
+            if slips[LATERAL]:
+                rest = sum((inverse[j] * p[k - j] for j in range(k)), zero)
+                inverse.append(((1 if k == 0 else 0) - b * rest) / _positive(one + b * p[0]))
+                square.append(sum((inverse[i] * inverse[k - i] for i in range(k + 1)), zero))
+                slope = sum((square[j] * e[k - j] for j in range(k + 1)), zero)
+                bend = (a * slope - STIFFNESS[LATERAL] * d[k]) / (k + 1)
+            for values, new in zip((x, y, d), (p[k], q[k], e[k]), strict=True):
+                values.append(new / (k + 1))
+            for values, new in zip((p, q, e), (*rates, bend), strict=True):
+                values.append(new)
+        return [x, y, p, q, d, e]
+
+
+@dataclass
+class _Path:
+    """A motion, stepped as far as it has been asked for.
+
+    numbers : x, y, x', y', d, d' at the beginning, and a; pieces : coefficients of each step, the last its remainder
+    """
+
+    law: Nonlinear
+    slips: tuple[bool, bool]
+    numbers: list[Any]
+    terms: int
+    pieces: list[list[list[Any]]] = field(default_factory=list)
+
+    def __call__(self, time: Any) -> State:
+        whole = time[0] if isinstance(time, arb_series) else arb(time)
+        if not 0 <= whole.upper() < LONGEST:
+            raise ProofError(f"time {whole}: not allowed: from 0 to {LONGEST}")
+        first, last = (math.floor(end) for end in limits(whole / STEP))
+        found = None
+        for number in range(max(first, 0), last + 1):
+            values = self._within(number, whole)
+            found = values if found is None else [_union(one, other) for one, other in zip(found, values, strict=True)]
+        assert found is not None
+        a = self.numbers[-1]
+        if isinstance(time, arb_series):
+            # The first terms of the series around that time: all that a power series of time asks for.
+            rest = time - whole
+            coefficients = self.law.series(self.slips, found, a, 2)
+            found = [one[0] + one[1] * rest + one[2] * rest * rest for one in coefficients]
+        x, y, p, q, d, e = found
+        rates = p if self.slips[0] else -1, q if self.slips[1] else -1
+        return State((x, y), rates, (d, e if self.slips[LATERAL] else 0))
+
+    def _within(self, number: int, time: arb) -> list[Any]:
+        """Return the state at those times of a ball that lie in a step."""
+        while len(self.pieces) <= number:
+            with arithmetic(self.terms):
+                self._step()
+        low, high = STEP * number, STEP * (number + 1)
+        with arithmetic(self.terms):
+            begin = time.lower() if time.lower() > low else arb(low)
+            end = time.upper() if time.upper() < high else arb(high)
+            # A ball around both ends may reach beyond the step by its rounding, which the margin of the box allows.
+            since = around(begin, end) - low
+            return [_value(coefficients, since) for coefficients in self.pieces[number]]
+
+    def _step(self) -> None:
+        """Make one step more; raises ProofError if there is no box that holds it."""
+        *start, a = self.numbers if not self.pieces else [*self._last(), self.numbers[-1]]
+        # A little longer than the step: rounding of times must not lead out of it.
+        span = around(0, arb(STEP) * fmpq(1001, 1000))
+        box = [_value(one, span) for one in self.law.series(self.slips, start, a, 3)]
+        for _ in range(WIDENINGS):
+            box = [_widened(value) for value in box]
+            rates = [one[1] for one in self.law.series(self.slips, box, a, 1)]
+            image = [value + span * rate for value, rate in zip(start, rates, strict=True)]
+            if all(_contains(value, mapped) for value, mapped in zip(box, image, strict=True)):
+                break
+            box = image
+        else:
+            raise ProofError(f"step {len(self.pieces) + 1} of an arc: no box is known to hold the motion")
+        remainders = self.law.series(self.slips, image, a, ORDER)
+        series = self.law.series(self.slips, start, a, ORDER - 1)
+        self.pieces.append([[*one, rest[ORDER]] for one, rest in zip(series, remainders, strict=True)])
+
+    def _last(self) -> list[Any]:
+        return [_value(coefficients, arb(STEP)) for coefficients in self.pieces[-1]]
+
+
+def _positive(value: Any) -> Any:
+    """Return 1 + aU'; raises ProofError where it may come to 0, at which friction is not defined."""
+    if not _parts(value)[0] > 0:
+        raise ProofError(f"1 + aU' = {_parts(value)[0]}: not allowed: above 0")
+    return value
+
+
+def _value(coefficients: Sequence[Any], time: arb) -> Any:
+    """Return a polynomial at a time, by Horner's rule."""
+    value = coefficients[-1]
+    for coefficient in reversed(coefficients[:-1]):
+        value = value * time + coefficient
+    return value
+
+
+def _parts(value: Any) -> list[arb]:
+    """Return a number and, if it is a power series, its derivative."""
+    return [value[0], value[1]] if isinstance(value, arb_series) else [value]
+
+
+def _of(parts: Sequence[arb]) -> Any:
+    return arb_series(list(parts)) if len(parts) > 1 else parts[0]
+
+
+def _widened(value: Any) -> Any:
+    return _of([part + arb(0, part.rad() * SHARE + LEAST) for part in _parts(value)])
+
+
+def _contains(box: Any, image: Any) -> bool:
+    return all(one.contains(other) for one, other in zip(_parts(box), _parts(image), strict=True))
+
+
+def _union(one: Any, other: Any) -> Any:
+    pairs = zip(_parts(one), _parts(other), strict=True)
+    return _of([first.union(second) for first, second in pairs])

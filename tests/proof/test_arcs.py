@@ -1,0 +1,81 @@
+"""The closed forms of the arcs against matrix exponentials of all three blocks at 50 digits."""
+
+from __future__ import annotations
+
+import mpmath
+import pytest
+from flint import arb, arb_series
+from mpmath import mp, mpf
+
+from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
+from burridge_knopoff.proof.balls import arithmetic
+from burridge_knopoff.proof.closed import Linearized, oscillation
+from tests.proof.conftest import holds
+from tests.proof.exact import force, matrix
+
+SLIPS = [(False, False), (False, True), (True, False), (True, True)]
+
+
+def state_of(slips):
+    """Return a state with these blocks slipping, in balls, and the same as x, x', 1 of three blocks."""
+    x, y, p, q = "0.3", "-0.7", "0.4", "1.1"
+    rates = [p if slips[0] else -1, q if slips[1] else -1]
+    difference = (arb("0.9"), arb("0.2") if slips[0] else 0)
+    state = State((arb(x), arb(y)), (arb(rates[0]), arb(rates[1])), difference)
+    return state, mp.matrix([x, y, x, rates[0], rates[1], rates[0], 1])
+
+
+@pytest.mark.parametrize("slips", SLIPS)
+@pytest.mark.parametrize(("a", "time"), [("0.08", "0.4"), ("0.3", "5.1")])
+def test_an_arc_is_the_matrix_exponential(slips, a, time):
+    with mpmath.workdps(55), arithmetic():
+        state, exact = state_of(slips)
+        arc = Arc(slips, LATERAL, Linearized())
+        end = arc.after(state, arb(a), arb(time))
+        three = (slips[0], slips[1], slips[0])
+        exact = mp.expm(matrix(three, mpf(a)) * mpf(time), method="taylor") * exact
+        for k in (LATERAL, CENTER):
+            assert holds(end.position[k], exact[k])
+            assert holds(arb(end.velocity[k]), exact[3 + k])
+            margin = exact[3 + k] + 1 if slips[k] else -force(exact, k, mpf(a))
+            assert holds(arc.margin(k, end, arb(a)), margin)
+            assert arb(end.position[k]).rad() < 1e-50
+
+
+@pytest.mark.parametrize("slips", SLIPS)
+def test_a_small_difference_goes_as_that_of_two_motions(slips):
+    """The equations are linear: any difference of blocks 1 and 3 obeys the same matrix."""
+    with mpmath.workdps(55), arithmetic():
+        state, exact = state_of(slips)
+        end = Arc(slips, LATERAL, Linearized()).after(state, arb("0.1"), arb("1.7"))
+        apart = exact.copy()
+        apart[0], apart[2] = exact[0] + mpf("0.45"), exact[2] - mpf("0.45")
+        if slips[0]:
+            apart[3], apart[5] = exact[3] + mpf("0.1"), exact[5] - mpf("0.1")
+        found = mp.expm(matrix((slips[0], slips[1], slips[0]), mpf("0.1")) * mpf("1.7"), method="taylor") * apart
+        assert holds(arb(end.difference[0]), found[0] - found[2])
+        assert holds(arb(end.difference[1]), found[3] - found[5])
+
+
+def test_an_event_takes_the_velocity_away_only_where_a_block_stops():
+    state, _ = state_of((True, True))
+    stopped = Arc((True, True), CENTER, Linearized()).last(state)
+    assert stopped == State(state.position, (state.velocity[0], -1), state.difference)
+    stopped = Arc((True, True), LATERAL, Linearized()).last(state)
+    assert stopped == State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
+    assert Arc((True, False), CENTER, Linearized()).last(state) is state
+
+
+def test_arcs_are_named_by_what_ends_them():
+    assert Arc((False, True), LATERAL, Linearized()).name == "the arc until blocks 1 and 3 start"
+    assert Arc((True, True), CENTER, Linearized()).name == "the arc until block 2 stop"
+
+
+def test_an_oscillation_obeys_its_equation_at_all_times_of_a_ball():
+    with arithmetic(3):
+        a, stiffness = arb("0.2"), arb("1.3")
+        time = arb_series([arb(2, 0.01), 1])
+        position, velocity = oscillation(stiffness, a, time, arb(1), arb("0.5"))
+        assert position[1].overlaps(velocity[0])
+        assert (2 * position[2] + stiffness * position[0] - a * velocity[0]).contains(0)
+        assert abs(velocity[0] - position[1]) < 0.2

@@ -1,0 +1,125 @@
+"""The loss of synchrony, proved: a_c against the double code and 50 digits, and the family of orbits on both sides."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from flint import arb, fmpq
+
+from burridge_knopoff.proof import critical
+from burridge_knopoff.proof.balls import ProofError, arithmetic, width
+from burridge_knopoff.proof.critical import prove_branch, prove_critical
+from burridge_knopoff.proof.krawczyk import enclose
+from burridge_knopoff.proof.orbit import arcs_of, equations, prove_orbit
+from burridge_knopoff.stability.orbit import multipliers
+from burridge_knopoff.stability.transition import critical_a
+from tests.proof.conftest import holds
+from tests.proof.exact import exact_orbit
+
+
+@pytest.fixture(scope="module")
+def found(family):
+    """The proof at a_c."""
+    return prove_critical(family.at(critical_a(family)))
+
+
+@pytest.fixture(scope="module")
+def branch(family):
+    """The proof for a from 0.086 to 0.088."""
+    return prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
+
+
+def test_the_interval_holds_a_c_of_50_digits_and_of_the_double_code(found, family):
+    guess = [float(value) for value in (*found.orbit.enclosure.inner, found.a)]
+    exact = exact_orbit(guess, None)
+    assert holds(found.a, exact.a)
+    for ball, number in zip(found.orbit.enclosure.inner, exact.unknown, strict=True):
+        assert holds(ball, number)
+    assert holds(found.orbit.symmetric_multiplier, exact.symmetric)
+    assert width(found.a) < 1e-50
+    assert abs(critical_a(family) - float(found.a)) < 2e-15
+
+
+def test_the_multiplier_is_1_there_and_passes_it(found, family):
+    assert found.orbit.multiplier.contains(1)
+    assert width(found.orbit.multiplier) < 1e-45
+    for side, below in ((-1e-12, True), (1e-12, False)):
+        with arithmetic():
+            a = found.a.mid() + arb(side)
+            multiplier = prove_orbit(family.at(float(found.a) + side), a).multiplier
+            assert bool(multiplier < 1) == below
+            assert bool(multiplier > 1) != below
+            assert abs((multiplier - 1) / arb(side) - found.orbit.slope) < 1e-9
+    assert found.unique.contains(found.a)
+    assert width(found.unique) > 2e-4
+
+
+def test_a_guess_far_from_a_c_is_refused(family):
+    """Newton's method may go anywhere from there; Krawczyk's operator does not follow."""
+    arcs, guess = arcs_of(family.at(0.2))
+    with pytest.raises(ProofError, match="is not allowed: in the interior of"):
+        enclose(equations(arcs, critical=True), [*map(arb, guess), arb(0.2)], [1e-3] * 7)
+
+
+def test_a_range_is_covered_without_gaps(branch):
+    with arithmetic():
+        assert branch[0].orbit.a.contains(arb(86) / 1000)
+        assert branch[-1].orbit.a.contains(arb(88) / 1000)
+        for left, right in pairwise(branch):
+            assert left.orbit.a.overlaps(right.orbit.a)
+            assert left.orbit.a.mid() < right.orbit.a.mid()
+
+
+def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
+    for a in (0.08605, 0.0869, 0.08751, 0.08799):
+        orbit = family.at(a)
+        (piece,) = [piece for piece in branch if piece.orbit.a.contains(arb(a))]
+        assert piece.orbit.period.contains(arb(orbit.period))
+        found = multipliers(orbit).real
+        assert piece.orbit.multiplier.contains(arb(float(found[0])))
+        assert piece.orbit.symmetric_multiplier.contains(arb(float(found[2])))
+        with arithmetic():
+            piece.check_holds(prove_orbit(orbit, arb(a)).enclosure, arb(a))
+        assert piece.orbit.slope > 0
+
+
+def test_an_orbit_of_another_a_is_none_of_the_family(branch, family):
+    other = prove_orbit(family.at(0.09), arb(0.09)).enclosure
+    with pytest.raises(ProofError, match="not proved to be an orbit of the family"):
+        branch[0].check_holds(other, branch[0].orbit.a.mid())
+    own = prove_orbit(family.at(0.0861), arb(0.0861)).enclosure
+    with pytest.raises(ProofError, match="not proved to be an orbit of the family"):
+        branch[-1].check_holds(own, arb(0.0861))
+
+
+def test_pieces_that_do_not_join_are_refused(branch):
+    """The box of one piece is moved away from the orbit: what touches it is no longer known to be the same."""
+    first, second = branch[:2]
+    moved = replace(first, middle=[first.middle[0] + arb(0.01), *first.middle[1:]])
+    with arithmetic():
+        touch = fmpq(1, 1)
+        low, high = first.orbit.a, second.orbit.a
+        assert low.overlaps(high)
+    edge = fmpq(86, 1000) + (fmpq(88, 1000) - fmpq(86, 1000)) / len(branch)
+    assert touch > edge
+    critical._check_joined(first, second, edge)
+    with pytest.raises(ProofError):
+        critical._check_joined(moved, second, edge)
+
+
+def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
+    joined = []
+    check = critical._check_joined
+    monkeypatch.setattr(critical, "_check_joined", lambda *pair: (joined.append(pair), check(*pair)))
+    pieces = prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
+    assert [pair[:2] for pair in joined] == list(pairwise(pieces))
+    assert len(pieces) == len(branch) > 2
+
+
+def test_a_range_beyond_the_order_of_events_is_refused(family, monkeypatch):
+    """At 0.0757 all three blocks start at once: the family goes on, but not with these arcs."""
+    monkeypatch.setattr(critical, "DEEPEST", 3)
+    with pytest.raises(ProofError, match=r"a = 0\.075\d*: not proved: block 2|blocks 1 and 3|unknown"):
+        prove_branch(family.at(0.0765), fmpq(75, 1000), fmpq(76, 1000))

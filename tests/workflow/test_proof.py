@@ -1,0 +1,60 @@
+"""The stage that proves: its target, its files, and studies in which there is nothing to prove."""
+
+import re
+
+import pytest
+import xarray as xr
+
+from tests.workflow.conftest import TINY, Study
+
+
+def test_the_target_makes_its_files_and_nothing_else(study):
+    study.ok("proof")
+    assert set(study.files("points", "summary", "figures")) == {"summary/proof.nc", "summary/proof.txt"}
+    results = study.folder / "results" / "tiny"
+    with xr.open_dataset(results / "summary" / "proof.nc") as proof:
+        assert proof["law"].values.tolist() == ["linearized", "nonlinear"]
+        low, high = proof["critical_a"].sel(law="linearized").values
+        assert 0.08697290466607 < low < high < 0.08697290466608
+        low, high = proof["critical_a"].sel(law="nonlinear").values
+        assert 0.08871722297117 < low < high < 0.08871722297118
+        for digits in proof["critical_a_digits"].values:
+            assert f"a_c = {digits}" in (results / "summary" / "proof.txt").read_text()
+    assert (results / "logs" / "proof.log").read_text() == ""
+    # It depends on the model, not on the grid or on the runs; other laws are none of its.
+    assert "Nothing to be done" in study.ok("proof", "-n")
+    study.config.write_text(TINY.replace("a: [0.05, 0.08,", "a: [0.06, 0.08,").replace("window: 200", "window: 300"))
+    assert "Nothing to be done" in study.ok("proof", "-n")
+    laws = "laws: {mine: {formula: 1/(1 + a*u)**2}, linearized: {}, nonlinear: {}}\n"
+    study.config.write_text(TINY + laws)
+    assert "Nothing to be done" in study.ok("proof", "-n")
+    study.config.write_text(TINY + "v: 0.2\n")
+    assert re.search(r"^proof +1$", study.ok("proof", "-n", "--quiet", "rules"), re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        "laws: {nonlinear: {}}\nv: 0.2\n",
+        "laws: {linearized: {law: exponential}}\n",
+        "chain: {coupling: 1.5}\n",
+        "contact: symmetric\nv: 2.0\n",
+    ],
+)
+def test_a_study_without_what_is_proved_is_told_so_and_goes_on(tmp_path, other):
+    study = Study(tmp_path / "other", TINY + other)
+    run = study.run("proof")
+    assert run.returncode != 0
+    assert (
+        "study tiny: nothing to prove: the proof is of the paper's chain of 3 blocks and its two laws"
+        in run.stdout + run.stderr
+    )
+    assert "Traceback" not in run.stdout + run.stderr
+    planned = study.ok("-n", "--quiet", "rules")
+    assert "claims" in planned
+    assert not re.search(r"^proof +1$", planned, re.MULTILINE)
+
+
+def test_claims_and_summaries_ask_for_it(study):
+    for target in ("summary", "results/tiny/summary/claims.json"):
+        assert re.search(r"^proof +1$", study.ok(target, "-n", "--quiet", "rules"), re.MULTILINE)

@@ -1,0 +1,32 @@
+# Proof: the synchronized orbit of the paper's chain, and where it is lost, in ball arithmetic.
+
+
+# For stages that take it where there is one.
+PROOF = [f"{SUMMARY}/proof.nc"] if STUDY.proved_laws else []
+
+
+rule proof:
+    output:
+        f"{SUMMARY}/proof.nc",
+        report(
+            f"{SUMMARY}/proof.txt",
+            caption="../report/proof_text.rst",
+            category="Synchronization",
+            labels={"result": "what is proved, and what is assumed", "paper": "none"},
+        ),
+    log:
+        f"{RESULTS}/logs/proof.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/proof.tsv"
+    group:
+        group("summaries")
+    resources:
+        mem_mb=400,
+        runtime=10,
+    params:
+        model=lambda wildcards: proved_config(),
+        sources=sources("proof"),
+    message:
+        "proof: the loss of synchrony in ball arithmetic"
+    script:
+        "../scripts/proof.py"
