@@ -178,7 +178,11 @@ def test_a_changed_config_and_points_of_no_grid(results, capsys):
     assert "1 point files belong to no point of the study" in said
 
 
-@pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}"])
+DEEP = b"[" * 100_000 + b"]" * 100_000
+WRONG = b'{"software": "", "git_commit": "", "arguments": "", "config_file": "", "given": {}, "config": 6, "grid": {}}'
+
+
+@pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}", DEEP, WRONG])
 def test_a_folder_that_is_no_study_is_refused_in_a_line(tmp_path, capsys, content):
     if content is not None:
         (tmp_path / "study.json").write_bytes(content)

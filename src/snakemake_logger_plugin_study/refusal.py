@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Sequence
+from pathlib import Path
 
+from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study import ConfigError, read_config
 
 SEVERAL_FILES = (
@@ -54,7 +56,10 @@ def check_command_line(arguments: Sequence[str]) -> None:
     if len(options.configfile) > 1:
         raise ConfigError(SEVERAL_FILES)
     for path in options.configfile:
-        read_config(path)
+        if "__use_yte__" in read_config(Path(path)):
+            raise ConfigError(
+                f"{display_path(path)}: __use_yte__: unknown key; a study is plain YAML, without templates"
+            )
     for entry in options.config:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):

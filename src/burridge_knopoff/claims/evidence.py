@@ -45,13 +45,7 @@ class Evidence:
         """Raise NotTestableError if the driver is not as fast as the paper's, or springs or thresholds are others."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
-        own, paper = Chain(self._blocks, **self.config["chain"]), Chain(self._blocks)
-        same = (
-            np.array_equal(own.stiffness, paper.stiffness),
-            np.array_equal(own.driving, paper.driving),
-            np.array_equal(own.thresholds, paper.thresholds),
-        )
-        if not all(same):
+        if not Chain(self._blocks, **self.config["chain"]).is_like(Chain(self._blocks)):
             raise NotTestableError("the study's chain has other springs or static friction than the paper's")
 
     def check_laws(self, laws: Iterable[str]) -> None:

@@ -58,6 +58,11 @@ class Chain:
             if isinstance(value, tuple) and len(value) != count:
                 raise ValueError(f"chain.{key}: {len(value)} numbers for {count} {of}: one number, or one each")
 
+    def is_like(self, other: Chain) -> bool:
+        """Tell whether springs and static friction are those of another chain, however they were given."""
+        names = ("stiffness", "driving", "thresholds")
+        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Static friction of each block, shape (blocks,)."""

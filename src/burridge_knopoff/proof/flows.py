@@ -10,6 +10,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.proof.arcs import Flow
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.closed import Linearized
+from burridge_knopoff.proof.scope import is_linearized
 from burridge_knopoff.proof.taylor import Nonlinear
 
 
@@ -18,7 +19,7 @@ def flow_of(model: Model) -> Flow:
 
     The velocity of the driver is taken for the decimal that it is written as: 0.1, not the double beside it.
     """
-    if model.law.formula == LinearizedLaw.formula:
+    if is_linearized(model):
         return Linearized()
     if model.law.formula == NonlinearLaw.formula:
         with arithmetic():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from burridge_knopoff.laws.linearized import Linearized
 from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.model.chain import Chain
@@ -23,13 +21,7 @@ def is_linearized(model: Model) -> bool:
 
 def is_covered(model: Model) -> bool:
     """Tell whether the proofs are about a model: its chain, law, v and contact; a does not matter."""
-    chain, paper = model.chain, Chain(3)
-    springs = (
-        chain.blocks == 3
-        and np.array_equal(chain.stiffness, paper.stiffness)
-        and np.array_equal(chain.driving, paper.driving)
-        and np.array_equal(chain.thresholds, paper.thresholds)
-    )
+    springs = model.chain.is_like(Chain(3))
     if is_linearized(model):
         return bool(springs and (model.contact == "one_sided" or model.v <= LARGEST_V))
     return bool(springs and model.law.formula == Nonlinear.formula and model.v == NONLINEAR_V)

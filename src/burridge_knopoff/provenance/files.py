@@ -90,7 +90,7 @@ def check_folder(path: str | Path, *, inside: bool = False) -> None:
 
     inside : look at all folders in it as well
     """
-    for folder in (nearest_folder(path), *(Path(folder) for folder, _, _ in os.walk(path) if inside)):
+    for folder in (nearest_folder(path), *(Path(folder) for folder, _, _ in (os.walk(path) if inside else ()))):
         if not os.access(folder, os.W_OK | os.X_OK):
             read_only = os.statvfs(folder).f_flag & os.ST_RDONLY
             reason = "its file system is read-only" if read_only else "its permissions do not allow it"

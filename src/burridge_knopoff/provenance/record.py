@@ -15,8 +15,11 @@ if TYPE_CHECKING:
 
 NAME = "study.json"
 
-#: What a record holds: of the last run, its config as it was given and with all defaults, {name in files: value of a}.
-KEYS = ("software", "git_commit", "arguments", "config_file", "given", "config", "grid")
+#: {key of a record: its type}
+_TYPES = {
+    **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
+    **dict.fromkeys(("given", "config", "grid"), dict),
+}
 
 
 def write_study_record(
@@ -30,21 +33,29 @@ def write_study_record(
     """
     path = Path(results, NAME)
     values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, study.config, study.grid)
-    text = json.dumps(dict(zip(KEYS, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
+    text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
 
 
 def read_study_record(results: str | Path) -> dict[str, Any]:
-    """Return the record of a folder of results, with all KEYS; raises ValueError, one line, if there is none."""
+    """Return the record of a folder of results.
+
+    software, git_commit : of the last run
+    arguments, config_file : as they were recorded
+    given, config : the config as it was given, and with all defaults
+    grid : {name in file names: value of a}
+
+    Raises ValueError, one line, if there is none.
+    """
     path = Path(results, NAME)
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not readable ({error}); run snakemake again, it writes it") from None
-    if not isinstance(record, dict) or record.keys() != set(KEYS):
+    if not isinstance(record, dict) or {key: type(value) for key, value in record.items()} != _TYPES:
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record
 
