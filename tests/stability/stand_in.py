@@ -13,7 +13,7 @@ from burridge_knopoff.stability.steady import SteadyMotion
 
 def stand_in(symmetry: int, mean_distance: float, partner: int, ahead: float = 1.0, **told: Any) -> Attractor:
     """Return an attractor whose last return has block 1 `ahead`; its further features may be told."""
-    of_attractor = {key: told.pop(key) for key in ("slow", "close_returns", "radius") if key in told}
+    of_attractor = {key: told.pop(key) for key in ("slow", "close_returns", "patience", "radius") if key in told}
     returns = np.array([[9.0, 9.0, 9.0, 0.0, 0.0, 0.0], [ahead, 0.0, 0.0, 0.0, 0.5, 0.25]])
     motion = {
         "returns": returns,

@@ -97,7 +97,7 @@ def test_known_attractors_are_those_of_the_summary(known):
     there = one["branch"].values >= 0
     assert found.branch.tolist() == one["branch"].values[there].tolist()
     assert found.side.tolist() == one["side"].values[there].tolist()
-    for name in ("symmetry", "radius", "slow", "close_returns"):
+    for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
         assert [getattr(item, name) for item in found.attractors] == one[name].values[there].tolist()
     for item, mean, state in zip(found.attractors, one["mean_distance"].values, one["position"].values, strict=False):
         assert item.motion.mean_distance == pytest.approx(mean, abs=1e-4)

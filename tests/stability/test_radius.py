@@ -51,11 +51,11 @@ def test_radii_are_bounded_by_the_way_to_others():
     """The scale is that of v = 0.2: twice that of the paper."""
     near = bounded(MODEL, [at(0.0), at(0.05), at(9.0), at(-9.0, radius=0.01)], 1e-6)
     assert [item.radius for item in near] == pytest.approx([0.4 * 0.05, 0.4 * 0.05, 0.04, 0.01])
-    assert {item.close_returns for item in near} == {8}
-    # Chaos with an orbit in its midst keeps its radius, and asks for patience; so does the orbit.
+    assert {item.patience for item in near} == {0.0}
+    # Chaos with an orbit in its midst keeps its radius, and asks for patience; the orbit keeps its radius too.
     chaos, orbit = bounded(MODEL, [at(0.0, kind=MotionKind.CHAOTIC, spacing=0.1), at(0.05, close_returns=20)], 1e-6)
-    assert (chaos.radius, chaos.close_returns) == (0.04, 2000)
-    assert (orbit.radius, orbit.close_returns) == (0.04, 20)
+    assert (chaos.radius, chaos.close_returns, chaos.patience) == (0.04, 8, 10_000.0)
+    assert (orbit.radius, orbit.close_returns, orbit.patience) == (0.04, 20, 0.0)
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def scripted(monkeypatch):
 
         def told(of_model, attractors, starts, time_limit, *_):
             assert time_limit == 900.0
-            asked.append((len(starts), [item.radius for item in attractors], attractors[index].close_returns))
+            asked.append((len(starts), [item.radius for item in attractors], attractors[index].patience))
             group = reached.pop(0)
             return np.array((group * 4)[: len(starts)]), None
 
@@ -86,7 +86,7 @@ def test_a_radius_is_captured_where_all_pushes_come_back(scripted):
     size, asked = scripted(found, 0, [[0], [0], [0]])
     assert size == 0.04
     # Ten pushes in groups of four, each to come back to a tenth of the way.
-    assert asked == [(count, [pytest.approx(0.004), 0.001], 8) for count in (4, 4, 2)]
+    assert asked == [(count, [pytest.approx(0.004), 0.001], 0.0) for count in (4, 4, 2)]
     assert scripted(found, 0, [[0], [0, 0, 0, -1], [0], [0], [0]])[0] == 0.02
     assert scripted(found, 0, [[1], [1]], least=0.01)[0] == 0.0
     # The least is that of the scale, 2.
@@ -95,10 +95,10 @@ def test_a_radius_is_captured_where_all_pushes_come_back(scripted):
 
 
 def test_what_comes_to_an_orbit_in_the_midst_has_come_back(scripted):
-    found = [at(0.0, kind=MotionKind.CHAOTIC, spacing=0.1, radius=0.04, close_returns=2000), at(0.05, radius=0.04)]
+    found = [at(0.0, kind=MotionKind.CHAOTIC, spacing=0.1, radius=0.04, patience=2000.0), at(0.05, radius=0.04)]
     size, asked = scripted(found, 0, [[0, 1], [1], [0]])
     assert size == 0.04
-    assert asked[0] == (4, [0.04, 0.04], 8)
+    assert asked[0] == (4, [0.04, 0.04], 0.0)
     assert scripted(found, 1, [[0]], least=0.015)[0] == 0.0
 
 

@@ -87,6 +87,7 @@ def test_features_are_sorted_by_branch_and_side(one_law):
         "section_period": [[1, 0], [1, 1], [0, 0]],
         "radius": [[0.02, 0.01], [0.01, 0.01], [nan, nan]],
         "close_returns": [[20, 8], [8, 8], none],
+        "patience": [[0.0, 0.0], [0.0, 0.0], [np.nan, np.nan]],
         "slow": [[0, 1], [0, 0], none],
         "upward_branch": [[-1, 1], none, none],
         "downward_branch": [none, [1, 1], none],

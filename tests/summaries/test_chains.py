@@ -114,8 +114,7 @@ def test_two_blocks_are_whole_runs(compared):
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
         runs = [simulate(model.at(a), state, SETTINGS) for model in models(2, LAWS)]
         for i, run in enumerate(runs):
-            section = run.crossing_velocity[run.crossing_direction > 0]
-            period = section_period(section, 1e-6, 60)
+            period = section_period(vars(run), MOTION)
             exponents = run.lyapunov_exponent, run.lyapunov_error
             expected = {
                 "mean_distance": run.mean_distance,
@@ -129,7 +128,7 @@ def test_two_blocks_are_whole_runs(compared):
             count, until = common_order(first, other)
             assert compared["event_order_count"].values[i, j, k] == count
             assert compared["event_order_time"].values[i, j, k] == min(until, 1900.0)
-    told = {"transient": 1500.0, "window": 400.0, "agreement_standard_errors": 3.0, "motion_longest_period": 60}
+    told = {"transient": 1500.0, "window": 400.0, "agreement_standard_errors": 3.0, "motion_longest_period": 120}
     assert {name: compared.attrs[name] for name in told} == told
     assert compared["state"].values.tolist() == [1, 2]
 

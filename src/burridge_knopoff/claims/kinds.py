@@ -254,7 +254,7 @@ def cloud_at_lower_velocities(
     completed = [evidence.of_state("lyapunov", name).sel(law=law)["kind"].notnull() for name in initial]
     bifurcation = evidence.summary("bifurcation")
     line, cloud = (section_points(bifurcation, law, name, 1) for name in initial)
-    grid = np.unique(np.concatenate([line[0], cloud[0]]))
+    grid = np.intersect1d(np.concatenate([line[0], cloud[0]]), completed[0]["a"])
     grid = np.array([one for one in grid[a.choose(grid)] if all(run.sel(a=one).item() for run in completed)])
     if not len(grid):
         raise NotTestableError(f"no run that completed crosses the section with {a}")

@@ -34,6 +34,8 @@ class Attractor:
     radius : distance from its returns within which trajectories are captured
     slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
     close_returns : successive returns within the radius after which a trajectory counts as captured
+    patience : time by which a captured trajectory may still come to a closed orbit in the midst of the attractor; 0
+        where there is no such orbit
     """
 
     motion: SteadyMotion
@@ -42,6 +44,7 @@ class Attractor:
     radius: float = np.inf
     slow: bool = False
     close_returns: int = TUNING.close_returns
+    patience: float = 0.0
 
 
 def close_returns(found: Returns, tolerance: float, tuning: Tuning = TUNING) -> int:

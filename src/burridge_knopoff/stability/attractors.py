@@ -179,6 +179,7 @@ class Search:
         stuck = model.starts_stuck(position, start)
         begun = position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
         labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
+        self._spare_patience(*(values[: settings.samples] for values in begun))
         while len(position):
             if self.attractors:
                 labels, _ = label_together(model, self.attractors, *begun, settings.time_limit)
@@ -186,6 +187,22 @@ class Search:
             if not self._discover([Instant(*(values[k] for values in begun)) for k in lost.tolist()]):
                 break
         return labels
+
+    def _spare_patience(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
+        """Lessen the patience with attractors whose inner orbits a sample of states reaches much earlier.
+
+        Where chaos is a transient before the orbits, the last of the sample come late and nothing is spared.
+        """
+        inner = [midst(self.attractors, index, self.tolerance, self.tuning) for index in range(len(self.attractors))]
+        if not any(inner) or not len(position):
+            return
+        labels, times = label_together(self.model, self.attractors, position, velocity, stuck, self.settings.time_limit)
+        for index, orbits in enumerate(inner):
+            came = times[np.isin(labels, orbits)]
+            if len(came):
+                attractor = self.attractors[index]
+                patience = min(self.tuning.patience_margin * came.max(), attractor.patience)
+                self.attractors[index] = replace(attractor, patience=patience)
 
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""

@@ -70,8 +70,8 @@ def known_attractors(
             steady = spread(model, steady, settings)
         elif one["symmetry"].item() == Symmetry.SYMMETRIC:
             steady = steady.symmetrized()
-        fixed = (Symmetry(one["symmetry"].item()), int(slot), one["radius"].item(), slow, one["close_returns"].item())
-        attractors.append(Attractor(steady, *fixed))
+        fixed = {name: one[name].item() for name in ("radius", "close_returns", "patience")}
+        attractors.append(Attractor(steady, Symmetry(one["symmetry"].item()), int(slot), slow=slow, **fixed))
     return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
 
 

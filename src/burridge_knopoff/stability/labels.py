@@ -46,15 +46,28 @@ def label_together(
     """Do the work of `label` for states x_i, U_i' and which blocks stick, each of shape (n, blocks).
 
     A state has reached an attractor when enough of its successive returns, at the stops of the first block, lie within
-    the attractor's radius of one of its returns.
+    the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these if it gets
+    there within the attractor's patience.
     """
-    clouds = Clouds(
-        [attractor.motion.returns for attractor in attractors],
-        2 * model.blocks,
-        [attractor.radius for attractor in attractors],
-    )
-    returns = [attractor.close_returns for attractor in attractors]
-    labels, times = new_ensemble(model).label(position, velocity, stuck.astype(np.intc), clouds, returns, time_limit)
+
+    def first(attractors: Sequence[Attractor], states: np.ndarray | slice, end: float) -> tuple[np.ndarray, np.ndarray]:
+        clouds = Clouds(
+            [attractor.motion.returns for attractor in attractors],
+            2 * model.blocks,
+            [attractor.radius for attractor in attractors],
+        )
+        returns = [attractor.close_returns for attractor in attractors]
+        begun = position[states], velocity[states], stuck[states].astype(np.intc)
+        return new_ensemble(model).label(*begun, clouds, returns, end)
+
+    labels, times = first(attractors, slice(None), time_limit)
+    prompt = [index for index, attractor in enumerate(attractors) if not attractor.patience]
+    for index in sorted(set(range(len(attractors))) - set(prompt)) if prompt else ():
+        near = np.flatnonzero(labels == index)
+        if len(near):
+            others, when = first([attractors[k] for k in prompt], near, min(attractors[index].patience, time_limit))
+            gone = others != UNDETERMINED
+            labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
     return labels, times
 
 

@@ -48,8 +48,8 @@ def bounded(
 ) -> list[Attractor]:
     """Return the attractors with all radii bounded by the distances between them.
 
-    Chaos with a closed orbit in its midst keeps its radius but takes more returns, so that a trajectory on its way to
-    the orbit is captured there first.
+    Chaos with a closed orbit in its midst keeps its radius but asks for patience, as a trajectory that comes near it
+    may be on its way to the orbit.
     """
     within = [midst(attractors, index, tolerance, tuning) for index in range(len(attractors))]
     result = []
@@ -59,8 +59,7 @@ def bounded(
             if k != index and k not in within[index] and index not in within[k]:
                 apart = least_distance(attractor.motion.returns, other.motion.returns, radius / tuning.shared)
                 radius = min(radius, tuning.shared * apart)
-        returns = tuning.patient_returns if within[index] else attractor.close_returns
-        result.append(replace(attractor, radius=radius, close_returns=returns))
+        result.append(replace(attractor, radius=radius, patience=tuning.patient_time if within[index] else 0.0))
     return result
 
 
@@ -85,7 +84,7 @@ def captured(
         close = recovered(motion, radius, tuning)
         narrow = [replace(item, radius=min(item.radius, close)) for item in attractors]
         if inner:
-            narrow[index] = replace(narrow[index], close_returns=tuning.close_returns)
+            narrow[index] = replace(narrow[index], patience=0.0)
         left = settings.pushes
         while left > 0:
             chosen = generator.integers(len(motion.returns), size=min(tuning.push_group, left))

@@ -103,8 +103,10 @@ class Tuning:
 
     #: Successive returns within the radius after which a trajectory is captured: none passes by so often by chance.
     close_returns: int = 8
-    #: The same near a set that a closed orbit lies in: long enough for most trajectories to come to the orbit first.
-    patient_returns: int = 2000
+    #: Time by which a trajectory that comes near a set has come to a closed orbit in its midst, if it does at all; or
+    #: this many times that of the last of a sample that does, if that is less.
+    patient_time: float = 10_000.0
+    patience_margin: float = 3.0
     #: Longest orbit, in returns, that a trajectory has to go round twice; it bounds the cost of a label.
     longest_orbit: int = 100
 

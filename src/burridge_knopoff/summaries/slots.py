@@ -44,6 +44,11 @@ def slot_variables(place: str) -> dict[str, Variable]:
         "lifetime_high": ("f8", "upper end of the 95 % confidence interval of the lifetime", {}),
         "radius": ("f8", "distance from its returns within which trajectories are captured", {}),
         "close_returns": ("i4", "successive returns within the radius after which a trajectory is captured", {}),
+        "patience": (
+            "f8",
+            "time by which a captured trajectory may still come to a closed orbit in the midst; 0 without one",
+            {},
+        ),
         "slow": (
             "i1",
             "whether motion on the attractor is too slow to settle",
@@ -115,7 +120,7 @@ def slot_values(found: Continuation, places: Sequence[int], lasting: float, dime
             attractor, lifetime = found.attractors[place][i], found.lifetimes[place][i]
             motion = attractor.motion
             values["branch"][at], values["side"][at] = found.branch[place][i], found.side[place][i]
-            for name in ("symmetry", "radius", "slow", "close_returns"):
+            for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
                 values[name][at] = getattr(attractor, name)
             for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "stop_rate"):
                 values[name][at] = getattr(motion, name)
