@@ -29,7 +29,7 @@ BATCHES = 20
 # So many pairs are kept of an age for one of the age below: the longer ago that pairs have differed, the farther
 # they are from the boundary that was seen, and the less often another one lies hidden between their points. Of 0.5,
 # 0.7, 0.85, and a quarter for those that differ with equal shares for the rest, 0.85 gave the smallest errors for
-# fractal boundaries.
+# Cantor strips.
 _KEPT_OF_OLDER = 0.85
 
 # Age of a pair whose points, and those of the pairs that it is a part of, have never differed.
