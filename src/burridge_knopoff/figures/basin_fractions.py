@@ -41,7 +41,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
     entries = {line.get_label(): line for panel in panels for line in panel.get_lines()}
     handles = [line for name, line in entries.items() if not str(name).startswith("_")]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)))
     titles = [f"{law} law: {what}" for what in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure

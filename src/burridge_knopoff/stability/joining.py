@@ -58,7 +58,8 @@ def joined(
     settings : how long a motion is followed
 
     Each branch of the first law is followed at a few of the values at which it exists; it is one with the branch of the
-    second law that it comes to most often. The synchronized branch, 0, is one under all laws.
+    second law that it comes to at most of them. Where several come to one, it is the one with the longest range. The
+    synchronized branch, 0, is one under all laws.
     """
     numbers = [sorted(n for n in states if n != 0) for states in (first, second)]
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
@@ -70,7 +71,7 @@ def joined(
             near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
             best = min(near, key=lambda n: near[n], default=None)
             if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
-                arrivals[row, numbers[1].index(best)] += 1
+                arrivals[row, numbers[1].index(best)] += len(places) / len(chosen)
     pairs = zip(*linear_sum_assignment(arrivals, maximize=True), strict=True)
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
