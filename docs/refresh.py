@@ -19,7 +19,7 @@ BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
 # Enough for a page on a screen, and a third of the bytes of the figures for print.
 WIDTH = 1400
-COLORS = 64
+COLORS = 96
 
 
 def page(text: str, content: dict) -> str:

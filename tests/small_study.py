@@ -172,7 +172,7 @@ class SmallStudy:
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
             "basins": self._basins(found["attractors"]),
-            "edges": edges.summarize(self.models, found["attractors"]),
+            "edges": edges.summarize(self.models, found["attractors"], found["refined"]),
             **self._phases(found["attractors"]),
         }
 

@@ -57,24 +57,96 @@ def attractors():
     )
 
 
+def at_all_values(found):
+    """Return attractors of the grid as those at all values of a, chaos with a lifetime, and one value missing."""
+    values = found.rename(a="value").drop_vars(["upward_branch", "downward_branch", "value"])
+    missing = xr.zeros_like(values.isel(value=[0]))
+    missing["branch"] -= 1
+    values = xr.concat([values, missing], "value")
+    values["a"] = ("law", "value"), [[*A, np.nan]]
+    values["in_grid"] = ("law", "value"), [[1] * len(A) + [-1]]
+    for name, low in (("lifetime_low", 1e5), ("lifetime_high", np.inf)):
+        values[name] = xr.where(values["kind"] == MotionKind.CHAOTIC, low, np.nan)
+    return values
+
+
 @pytest.fixture(scope="module")
-def found():
-    return summarize([Model(Chain(3), law_of("linearized", 0.1))], attractors())
+def grid():
+    return attractors()
 
 
-def test_what_branches_do():
-    changes = branch_changes(attractors().isel(law=0))
-    assert [(change.index, change.change, change.from_branch, change.to_branch) for change in changes] == [
-        (1, Change.END, 0, 1),
-        (1, Change.BEGINNING, 0, 1),
-        (3, Change.CHANGE, 1, 1),
+@pytest.fixture(scope="module")
+def found(grid):
+    return summarize([Model(Chain(3), law_of("linearized", 0.1))], grid, at_all_values(grid))
+
+
+def test_what_branches_do(grid):
+    changes = branch_changes(grid.isel(law=0), at_all_values(grid).isel(law=0))
+    assert [(change.low, change.high, change.change, change.from_branch, change.to_branch) for change in changes] == [
+        (1, 2, Change.END, 0, 1),
+        (1, 2, Change.BEGINNING, 0, 1),
+        (3, 4, Change.CHANGE, 1, 1),
     ]
 
 
-def test_every_change_has_an_entry(found):
-    for change in branch_changes(attractors().isel(law=0)):
+def told(rows, in_grid):
+    """Return the attractors at all values of a of one law, and at those of the grid: for each value {branch: kind}."""
+    kind = np.full((len(rows), 2), -1)
+    branch = np.full((len(rows), 2), -1)
+    for k, row in enumerate(rows):
+        for slot, number in enumerate(row):
+            branch[k, slot], kind[k, slot] = number, row[number]
+    zero = ("value", "attractor"), np.zeros_like(kind)
+    values = xr.Dataset(
+        {
+            "a": ("value", np.arange(float(len(rows)))),
+            "in_grid": ("value", np.array(in_grid)),
+            "branch": (zero[0], branch),
+            "kind": (zero[0], kind),
+            **dict.fromkeys(("side", "symmetry", "section_period"), zero),
+        }
+    )
+    count = sum(in_grid)
+    reached = [[10 * (k + 1), 10 * (k + 1) + 1] for k in range(count)]
+    there = xr.Dataset(dict.fromkeys(("upward_branch", "downward_branch"), (("a", "attractor"), reached)))
+    return there, values
+
+
+@pytest.mark.parametrize(
+    ("rows", "in_grid", "expected"),
+    [
+        # Between values of the grid what does not change is not looked for.
+        ([{1: 1}, {}, {1: 1}], [1, 0, 1], []),
+        ([{1: 1}, {}, {1: 1}], [1, 1, 1], [(0, 1, 1, 10, Change.END), (1, 2, 30, 1, Change.BEGINNING)]),
+        # A change between two that are near, however many values lie between.
+        ([{1: 1}, {1: 1}, {2: 3}, {1: 3}, {1: 3}], [1, 0, 0, 0, 1], [
+            (1, 2, -1, 2, Change.BEGINNING), (1, 3, 1, 1, Change.CHANGE), (2, 3, 2, -1, Change.END),
+        ]),
+        # What ends within a step is reached from the value of the grid below.
+        ([{2: 1, 1: 1}, {1: 1}, {2: 1}], [1, 0, 1], [(1, 2, 1, 11, Change.END)]),
+        ([{2: 1}, {1: 1}, {2: 1, 1: 1}], [1, 0, 1], [(0, 1, 21, 1, Change.BEGINNING)]),
+    ],
+)  # fmt: skip
+def test_what_branches_do_between_values_of_the_grid(rows, in_grid, expected):
+    changes = branch_changes(*told(rows, in_grid))
+    assert [
+        (change.low, change.high, change.from_branch, change.to_branch, change.change) for change in changes
+    ] == expected
+
+
+def test_every_change_has_an_entry(grid, found):
+    for change in branch_changes(grid.isel(law=0), at_all_values(grid).isel(law=0)):
         same = (found["change"] == change.change) & (found["from_branch"] == change.from_branch)
-        assert (same & (found["grid_low"] == A[change.index]) & (found["to_branch"] == change.to_branch)).any()
+        same &= (found["grid_low"] == A[change.low]) & (found["grid_high"] == A[change.high])
+        assert (same & (found["to_branch"] == change.to_branch)).any()
+
+
+def test_the_lifetime_of_chaos_is_told_beside_its_edges(found):
+    chaotic = (found["motion_before"] == MotionKind.CHAOTIC) | (found["motion_after"] == MotionKind.CHAOTIC)
+    assert 0 < int(chaotic.sum()) < found.sizes["edge"]
+    assert (found["lifetime_low"].values[chaotic] == 1e5).all()
+    assert (found["lifetime_high"].values[chaotic] == np.inf).all()
+    assert np.isnan(found["lifetime_low"].values[~chaotic]).all()
 
 
 def test_edges_are_those_of_the_orbits(found):

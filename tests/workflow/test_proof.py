@@ -23,7 +23,7 @@ def test_the_target_makes_its_files_and_nothing_else(study):
     assert (results / "logs" / "proof.log").read_text() == ""
     # It depends on the model, not on the grid or on the runs; other laws are none of its.
     assert "Nothing to be done" in study.ok("proof", "-n")
-    study.config.write_text(TINY.replace("a: [0.05, 0.08,", "a: [0.06, 0.08,").replace("window: 200", "window: 300"))
+    study.config.write_text(TINY.replace("a: [0.05, 0.08", "a: [0.06, 0.08").replace("window: 200", "window: 300"))
     assert "Nothing to be done" in study.ok("proof", "-n")
     laws = "laws: {mine: {formula: 1/(1 + a*u)**2}, linearized: {}, nonlinear: {}}\n"
     study.config.write_text(TINY + laws)

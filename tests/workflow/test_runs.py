@@ -38,7 +38,7 @@ def test_the_same_bytes_on_one_core_and_in_a_second_checkout(finished, tmp_path,
     study = Study(tmp_path / "study", repository=checkout)
     study.ok("points", "summary", *(f"results/tiny/figures/{name}.png" for name in ("distance", "basins")), cores=1)
     mine, other = (each.files("points", "summary", "figures") for each in (study, finished))
-    assert len(mine) == 16 + 20 + 4
+    assert len(mine) == 16 + 23 + 4
     assert [name for name in mine if mine[name] != other[name]] == []
 
 

@@ -284,7 +284,7 @@ def test_results_know_their_sources(finished):
     from burridge_knopoff.provenance.sources import source_fingerprint
 
     summaries = sorted((finished.folder / "results/tiny/summary").glob("*.nc"))
-    assert len(summaries) == 12
+    assert len(summaries) == 15
     for path in summaries:
         attributes = open_summary(path).attrs
         assert attributes["source_fingerprint"] == source_fingerprint(attributes["source_module"])

@@ -3,7 +3,8 @@
 
 rule edges:
     input:
-        f"{SUMMARY}/attractors.nc",
+        attractors=f"{SUMMARY}/attractors.nc",
+        refined=f"{SUMMARY}/refined.nc",
     output:
         f"{SUMMARY}/edges.nc",
     log:

@@ -10,4 +10,5 @@ from burridge_knopoff.summaries.edges import summarize
 
 params = snakemake.params
 models = models_of(params.model, params.a, params.blocks)
-write_summary(summarize(models, open_summary(snakemake.input[0])), snakemake.output[0])
+attractors, refined = (open_summary(path) for path in snakemake.input)
+write_summary(summarize(models, attractors, refined), snakemake.output[0])

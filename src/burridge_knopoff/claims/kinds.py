@@ -27,7 +27,7 @@ from burridge_knopoff.stability.motion import (
 )
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.slots import reached
+from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
     import xarray

@@ -24,7 +24,7 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.slots import reached
+from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
     import xarray

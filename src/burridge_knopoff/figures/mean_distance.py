@@ -125,4 +125,4 @@ def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names:
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
         for name, color in shown.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)))

@@ -16,7 +16,7 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
-from burridge_knopoff.summaries.slots import reached
+from burridge_knopoff.summaries.reached import reached
 
 # The last bit of a product of vectors depends on where in memory they lie.
 DIGITS = 12

@@ -1,7 +1,8 @@
-"""Between which values of a the branches of `attractors.nc` begin, end, or change, whatever the spacing of a is."""
+"""Between which values of a the branches of `refined.nc` begin, end, or change, whatever the spacing of a is."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
@@ -26,14 +27,16 @@ class Change(IntEnum):
 
 @dataclass(frozen=True)
 class BranchChange:
-    """A beginning, an end or a change of a branch between two neighbouring values of a.
+    """A beginning, an end or a change of a branch between two values of a.
 
-    index : number of the smaller value
-    before, after : slot of the attractor at the smaller and at the larger value, −1 where the branch has none
-    from_branch, to_branch : branches that are there, or are reached from it, at the smaller and at the larger value
+    low, high : numbers of these values in `refined.nc`; the branch is not known at any between them
+    before, after : slot of the attractor at them, −1 where the branch has none
+    from_branch, to_branch : the branch itself; where it begins or ends the one that is reached from it at the nearest
+        value of the grid on the other side, −1 where it has not come to the grid yet
     """
 
-    index: int
+    low: int
+    high: int
     before: int
     after: int
     from_branch: int
@@ -41,30 +44,52 @@ class BranchChange:
     change: Change
 
 
-def branch_changes(attractors: xarray.Dataset) -> list[BranchChange]:
-    """Return what the branches of one law do between neighbouring values of a.
+def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[BranchChange]:
+    """Return what the branches of one law do, sorted by a.
+
+    attractors, refined : those of one law at the values of the grid, and at all
 
     A change is one of the kind of motion, of mirror symmetry, or of the number of section points of periodic motion. Of
-    a mirror pair one is looked at. The first and the last value of a are no ends.
+    a mirror pair one is looked at. The first and the last value of a are no ends. Between values of the grid a branch
+    that does not change is not looked for; so it has ended only where it is absent from the grid.
     """
-    slots = _slots(attractors)
-    upward, downward = attractors["upward_branch"].values, attractors["downward_branch"].values
-    found = []
-    for k, (here, there) in enumerate(pairwise(slots)):
-        for branch in sorted(here.keys() | there.keys()):
-            before, after = here.get(branch, -1), there.get(branch, -1)
-            if after < 0:
-                found.append(BranchChange(k, before, -1, branch, int(upward[k, before]), Change.END))
-            elif before < 0:
-                found.append(BranchChange(k, -1, after, int(downward[k + 1, after]), branch, Change.BEGINNING))
-            elif _features(attractors, k, before) != _features(attractors, k + 1, after):
-                found.append(BranchChange(k, before, after, branch, branch, Change.CHANGE))
-    return found
+    slots = slots_of_branches(refined)
+    grid = np.flatnonzero(refined["in_grid"].values[: len(slots)] == 1)
+    upward, downward = (
+        dict(zip(grid.tolist(), attractors[name].values, strict=True)) for name in ("upward_branch", "downward_branch")
+    )
+
+    def of_branch(branch: int) -> Iterator[BranchChange]:
+        def end(k: int) -> BranchChange:
+            g = int(grid[grid <= k][-1])
+            reached = int(upward[g][slots[g][branch]]) if branch in slots[g] else -1
+            return BranchChange(k, k + 1, slots[k][branch], -1, branch, reached, Change.END)
+
+        def beginning(k: int) -> BranchChange:
+            g = int(grid[grid >= k][0])
+            reached = int(downward[g][slots[g][branch]]) if branch in slots[g] else -1
+            return BranchChange(k - 1, k, -1, slots[k][branch], reached, branch, Change.BEGINNING)
+
+        there = [k for k, row in enumerate(slots) if branch in row]
+        if there[0] > 0:
+            yield beginning(there[0])
+        for low, high in pairwise(there):
+            if ((grid > low) & (grid < high)).any():
+                yield end(low)
+                yield beginning(high)
+            elif _features(refined, low, slots[low][branch]) != _features(refined, high, slots[high][branch]):
+                yield BranchChange(low, high, slots[low][branch], slots[high][branch], branch, branch, Change.CHANGE)
+        if there[-1] < len(slots) - 1:
+            yield end(there[-1])
+
+    branches = sorted(set().union(*slots))
+    return sorted((item for branch in branches for item in of_branch(branch)), key=lambda item: (item.low, item.high))
 
 
-def _slots(attractors: xarray.Dataset) -> list[dict[int, int]]:
-    """Return for each a the slot of each branch, of a mirror pair that of one side."""
-    branch, side = attractors["branch"].values, attractors["side"].values
+def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
+    """Return for each a of one law the slot of each branch, of a mirror pair that of one side."""
+    count = int(np.isfinite(refined["a"].values).sum())
+    branch, side = refined["branch"].values[:count], refined["side"].values[:count]
     rows = []
     for own, sides in zip(branch, side, strict=True):
         order = [slot for slot in np.argsort(sides, kind="stable") if own[slot] >= 0]
@@ -72,7 +97,7 @@ def _slots(attractors: xarray.Dataset) -> list[dict[int, int]]:
     return rows
 
 
-def _features(attractors: xarray.Dataset, k: int, slot: int) -> tuple[int, ...]:
-    kind, symmetry = (int(attractors[name].values[k, slot]) for name in ("kind", "symmetry"))
-    period = int(attractors["section_period"].values[k, slot]) if kind == MotionKind.PERIODIC else 0
+def _features(refined: xarray.Dataset, k: int, slot: int) -> tuple[int, ...]:
+    kind, symmetry = (int(refined[name].values[k, slot]) for name in ("kind", "symmetry"))
+    period = int(refined["section_period"].values[k, slot]) if kind == MotionKind.PERIODIC else 0
     return kind, symmetry, period

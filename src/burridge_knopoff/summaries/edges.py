@@ -6,7 +6,7 @@ An attractor that is a closed orbit is followed in a to where it loses its stabi
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,7 +26,7 @@ from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.stability.stretch import Stretch, stretch
-from burridge_knopoff.summaries.branch_changes import BranchChange, Change, branch_changes
+from burridge_knopoff.summaries.branch_changes import BranchChange, Change, branch_changes, slots_of_branches
 
 #: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
@@ -56,8 +56,8 @@ VARIABLES = {
     "change": _V(_EDGE, "i1", "what the branch of attractors does there", flag("i1", Change)),
     "from_branch": _V(_EDGE, "i2", "branch below the edge, or reached from above it", {"comment": "-1 undetermined"}),
     "to_branch": _V(_EDGE, "i2", "branch above the edge, or reached from below it", {"comment": "-1 undetermined"}),
-    "grid_low": _V(_EDGE, "f8", "largest a of the attractors at which the branch is as before"),
-    "grid_high": _V(_EDGE, "f8", "smallest a of the attractors at which it is as after"),
+    "grid_low": _V(_EDGE, "f8", "largest a of refined.nc at which the branch is as before"),
+    "grid_high": _V(_EDGE, "f8", "smallest a of refined.nc at which it is as after"),
     "motion_before": _V(_EDGE, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
     "motion_after": _V(_EDGE, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
     "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the edge lie at a on one side of it", _YES),
@@ -68,6 +68,8 @@ VARIABLES = {
     "multiplier_beyond": _V(("edge", "part"), "f8", "the same of the orbits beyond the edge"),
     "mean_distance": _V(_EDGE, "f8", "<J> over a period of that orbit"),
     "stick_time": _V(_EDGE, "f8", "shortest stick at the edge, 0 where it shrinks to nothing"),
+    "lifetime_low": _V(_EDGE, "f8", "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"),
+    "lifetime_high": _V(_EDGE, "f8", "upper end of that interval; of the shorter life where both are chaotic"),
     "orbit_law": _V(_ORBIT, "i1", "friction law, by its number in the attribute laws"),
     "orbit_stretch": _V(_ORBIT, "i4", "number of the stretch of orbits that were followed together, in this order"),
     "orbit_branch": _V(_ORBIT, "i2", "branch of the attractors that they began from"),
@@ -81,7 +83,7 @@ VARIABLES = {
 }
 #: Significant digits of what is written: the last ones differ between machines.
 PLACES = 11
-DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5}
+DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
 
 
 @dataclass(frozen=True)
@@ -94,6 +96,7 @@ class Entry:
     low: float
     high: float
     motion: tuple[int, int]
+    lifetime: tuple[float, float]
     kind: EdgeKind
     edge: Edge | None
 
@@ -103,17 +106,19 @@ class Entry:
         return self.edge.a if self.edge else 0.5 * (self.low + self.high)
 
 
-def summarize(models: Sequence[Model], attractors: xarray.Dataset) -> xarray.Dataset:
+def summarize(models: Sequence[Model], attractors: xarray.Dataset, refined: xarray.Dataset) -> xarray.Dataset:
     """Return the Dataset of all edges.
 
     models : one for each law of the attractors, in their order, at any a
+    attractors, refined : those at the values of the grid, and at all
     """
     values: dict[str, list[Any]] = {name: [] for name in VARIABLES}
     blocks = models[0].blocks
     for number, model in enumerate(models):
-        one = attractors.isel(law=number)
-        stretches, of_slot = followed(model, one)
-        for entry in sorted(entries(one, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
+        one = refined.isel(law=number).load()
+        changes = branch_changes(attractors.isel(law=number), one)
+        stretches, of_slot = followed(model, one, changes)
+        for entry in sorted(entries(one, changes, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
             _append_edge(values, number, entry, blocks)
         branch = one["branch"].values
         branch_of = {index: int(branch[slot]) for slot, index in reversed(of_slot.items())}
@@ -147,21 +152,30 @@ def _numbered(item: Variable, names: Sequence[str]) -> Variable:
     return Variable(item.dimensions, item.dtype, "friction law", flag("i1", dict(enumerate(names))))
 
 
-def followed(model: Model, one: xarray.Dataset) -> tuple[list[Stretch], dict[tuple[int, int], int]]:
-    """Follow every attractor of one law that is a closed orbit; return the stretches, and the one of each (a, slot)."""
+def followed(
+    model: Model, one: xarray.Dataset, changes: Sequence[BranchChange]
+) -> tuple[list[Stretch], dict[tuple[int, int], int]]:
+    """Follow every attractor of one law that is a closed orbit; return the stretches, and the one of each (a, slot).
+
+    one : the attractors at all values of a; those between the grid are left out where the branch does not change
+    """
     a_values = one["a"].values
     branch, side, kind = (one[name].values for name in ("branch", "side", "kind"))
     closed = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)) & (branch >= 0) & (side >= 0)
+    wanted = np.repeat(one["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
+    for change in changes:
+        for k, slot in ((change.low, change.before), (change.high, change.after)):
+            wanted[k, slot] |= slot >= 0
     found: list[Stretch] = []
     of_slot: dict[tuple[int, int], int] = {}
-    for k, slot in np.argwhere(closed):
+    for k, slot in np.argwhere(closed & wanted):
         here = model.at(float(a_values[k]))
         position = one["position"].values[k, slot] - here.sliding_offset
         try:
             orbit = closed_motion(here, instant_of(np.concatenate([position, one["velocity"].values[k, slot]])))
             known = [index for index, other in enumerate(found) if other.holds(orbit, SAME_PERIOD)]
             if not known:
-                found.append(stretch(orbit, (LEAST_A, float(a_values[-1])), BEYOND, FOLLOWING))
+                found.append(stretch(orbit, (LEAST_A, float(np.nanmax(a_values))), BEYOND, FOLLOWING))
         except OrbitError as error:
             print(f"{model.law.name}: {error}")
             continue
@@ -169,17 +183,24 @@ def followed(model: Model, one: xarray.Dataset) -> tuple[list[Stretch], dict[tup
     return found, of_slot
 
 
-def entries(one: xarray.Dataset, stretches: Sequence[Stretch], of_slot: Mapping[tuple[int, int], int]) -> list[Entry]:
+def entries(
+    one: xarray.Dataset,
+    changes: Sequence[BranchChange],
+    stretches: Sequence[Stretch],
+    of_slot: Mapping[tuple[int, int], int],
+) -> list[Entry]:
     """Return an entry, or two, for each beginning, end and change, and one for each edge that stable orbits pass.
 
     A change from one orbit to another has one for the end of the first and one for the beginning of the second, unless
     they are the same edge.
     """
     a, branch, kind = (one[name].values for name in ("a", "branch", "kind"))
+    slots = slots_of_branches(one)
+    grid = np.flatnonzero(one["in_grid"].values[: len(slots)] == 1)
     found = []
-    for change in branch_changes(one):
+    for change in changes:
         ends: list[Edge] = []
-        numbers = of_slot.get((change.index, change.before)), of_slot.get((change.index + 1, change.after))
+        numbers = of_slot.get((change.low, change.before)), of_slot.get((change.high, change.after))
         if numbers[0] is not None and numbers[0] == numbers[1]:
             # One orbit on both sides; only its section points were counted differently.
             continue
@@ -187,31 +208,46 @@ def entries(one: xarray.Dataset, stretches: Sequence[Stretch], of_slot: Mapping[
             edge = getattr(stretches[number], name) if number is not None else None
             if edge is not None and all(abs(edge.a - other.a) > LEAST_ERROR for other in ends):
                 ends.append(edge)
-        k = change.index
-        motion = _motion(one, k, change.from_branch), _motion(one, k + 1, change.to_branch)
-        own = change.change, change.from_branch, change.to_branch, float(a[k]), float(a[k + 1]), motion
+        low, high = change.low, change.high
+        below = range(low, int(grid[grid <= low][-1]) - 1, -1)
+        above = range(high, int(grid[grid >= high][0]) + 1)
+        motion = (
+            _motion(kind, slots, below, change.from_branch),
+            _motion(kind, slots, above, change.to_branch),
+        )
+        lifetime = _lifetime(one, change)
+        own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
         found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
     for number, one_stretch in enumerate(stretches):
         n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
         for edge in one_stretch.low_edges + one_stretch.high_edges:
             if not edge.loses_stability and not edge.turns:
-                k = int(np.clip(np.searchsorted(a, edge.a) - 1, 0, len(a) - 2))
-                motion = _motion(one, k, n), _motion(one, k + 1, n)
-                found.append(Entry(Change.PASSED, n, n, float(a[k]), float(a[k + 1]), motion, edge.kind, edge))
+                k = int(np.clip(np.searchsorted(a[grid], edge.a) - 1, 0, len(grid) - 2))
+                low, high = int(grid[k]), int(grid[k + 1])
+                motion = _motion(kind, slots, [low], n), _motion(kind, slots, [high], n)
+                own = Change.PASSED, n, n, float(a[low]), float(a[high]), motion, (np.nan, np.nan)
+                found.append(Entry(*own, edge.kind, edge))
     return found
 
 
-def _motion(one: xarray.Dataset, k: int, branch: int) -> int:
-    """Return the kind of motion on a branch at one a; undetermined where it does not exist."""
-    slots = np.flatnonzero((one["branch"].values[k] == branch) & (branch >= 0))
-    return int(one["kind"].values[k, slots[0]]) if len(slots) else int(MotionKind.UNDETERMINED)
+def _motion(kind: np.ndarray, slots: Sequence[Mapping[int, int]], places: Iterable[int], branch: int) -> int:
+    """Return the kind of motion on a branch at the first of some values of a at which it is known."""
+    return next((int(kind[k, slots[k][branch]]) for k in places if branch in slots[k]), int(MotionKind.UNDETERMINED))
+
+
+def _lifetime(one: xarray.Dataset, change: BranchChange) -> tuple[float, float]:
+    """Return the interval of the lifetime of chaos next to an edge, the shorter where there is chaos on both sides."""
+    sides = [(change.low, change.before), (change.high, change.after)]
+    known = [(one["lifetime_low"].values[side], one["lifetime_high"].values[side]) for side in sides if side[1] >= 0]
+    return min((interval for interval in known if np.isfinite(interval[0])), default=(np.nan, np.nan))
 
 
 def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
-    """Return the kind of an edge next to which there is no closed orbit: a crisis if a chaotic set ends or begins."""
-    ends = [kind[change.index, change.before]] if change.before >= 0 else []
-    ends += [kind[change.index + 1, change.after]] if change.after >= 0 else []
-    return EdgeKind.CRISIS if MotionKind.CHAOTIC in ends and len(ends) == 1 else EdgeKind.UNDETERMINED
+    """Return the kind of an edge next to which there is no closed orbit: a crisis if chaos ends, begins or dies out."""
+    sides = (change.low, change.before), (change.high, change.after)
+    ends = [kind[k, slot] for k, slot in sides if slot >= 0]
+    chaotic = np.isin(ends, (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS))
+    return EdgeKind.CRISIS if chaotic.all() else EdgeKind.UNDETERMINED
 
 
 def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: int) -> None:
@@ -229,6 +265,8 @@ def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: i
     values["period"].append(edge.before.orbit.period if edge else np.nan)
     values["mean_distance"].append(_mean_distance(edge.before.orbit) if edge else np.nan)
     values["stick_time"].append(edge.stick_time if edge else np.nan)
+    values["lifetime_low"].append(entry.lifetime[0])
+    values["lifetime_high"].append(entry.lifetime[1])
     values["stops"] += edge.before.orbit.signature if edge else [-1] * blocks
     values["stops_beyond"] += after.orbit.signature if after else [-1] * blocks
     for name, point in (("multiplier", edge.at if edge else None), ("multiplier_beyond", after)):

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.stability.attractor import Symmetry
@@ -18,6 +17,14 @@ NOTHING = {"comment": "-1 where there is none or it is undetermined"}
 
 # What is 0, not −1, in an empty slot.
 _COUNTS = ("side", "initial_side", "section_period", "basin_count", "undetermined_count", "in_grid")
+
+#: What a branch is called, over all numbers of branches of a file.
+NAMES = {
+    "branch_number": Variable(("number",), "i2", "numbers of the branches"),
+    "branch_name": Variable(
+        ("number",), "O", "what the branch of that number is called, by its symmetry and its sticks"
+    ),
+}
 
 
 def slot_variables(place: str) -> dict[str, Variable]:
@@ -134,30 +141,6 @@ def slot_values(found: Continuation, places: Sequence[int], lasting: float, dime
             values["position"][at] = state.position + found.models[place].sliding_offset
             values["velocity"][at] = state.velocity
     return values
-
-
-def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return (known, values) of a variable on the attractors that an initial state reaches.
-
-    attractors : with a, under one convention
-    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
-    values : shape (a, …)
-    """
-    found = attractors.sel(law=law)
-    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
-        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
-    )
-    slots &= found["branch"].values >= 0
-    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]
-
-
-#: What a branch is called, over all numbers of branches of a file.
-NAMES = {
-    "branch_number": Variable(("number",), "i2", "numbers of the branches"),
-    "branch_name": Variable(
-        ("number",), "O", "what the branch of that number is called, by its symmetry and its sticks"
-    ),
-}
 
 
 def branch_names(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:
