@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
-from burridge_knopoff.figures.style import PAGE, label_panels, styled
+from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
 
 TITLE = "Basins of attraction"
 CATEGORY = "Attractors"
@@ -78,6 +78,6 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
         if number % columns == 0:
             panel.set_ylabel("$U_N(0)$")
     handles = [shown[key] for key in sorted(shown)]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(5, len(handles)))
+    legend_below(figure, handles)
     label_panels(list(panels.flat)[:count], titles)
     return figure

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
-from burridge_knopoff.figures.style import label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, styled
 from burridge_knopoff.stability.edge_kind import EdgeKind
 
 TITLE = "Edges of the attractors"
@@ -139,4 +139,4 @@ def _legend(figure: Figure) -> None:
             for line, name in UNLOCATED.values()
         ),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=5)
+    legend_below(figure, handles)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
-from burridge_knopoff.figures.style import cells, label_panels, page_width, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, styled
 
 TITLE = "⟨J⟩ against a"
 CATEGORY = "Synchronization"
@@ -125,4 +125,4 @@ def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names:
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
         for name, color in shown.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)))
+    legend_below(figure, handles)

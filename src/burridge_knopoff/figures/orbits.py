@@ -11,7 +11,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, say_nothing, styled
+from burridge_knopoff.figures.style import (
+    PAGE,
+    color,
+    label_panels,
+    legend_below,
+    marker,
+    new_figure,
+    say_nothing,
+    styled,
+)
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 TITLE = "The synchronized orbit"
@@ -56,7 +65,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         for k, name in enumerate(runs["initial"].values)
     ]
     handles = [*laws, *_styles(("-", ":"), ("(b): stable orbit", "unstable orbit")), *states]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
+    legend_below(figure, handles)
     panels[1].set(xlabel="$a$", ylabel=r"$\langle J\rangle$")
     branching = orbits["branch_mean_distance"].max().item()
     panels[1].set_ylim(-0.001, 1.08 * branching if branching > 0.0 else None)

@@ -9,7 +9,7 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import color, label_panels, legend_below, new_figure, page_width, styled
 
 TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
@@ -70,7 +70,7 @@ def draw(solvers: xarray.Dataset) -> Figure:
     handles += [Line2D([], [], **_look(0, j, "0.3"), label=f"from {initial}") for j, initial in enumerate(states)]
     handles.append(Line2D([], [], color="0.3", marker="_", linestyle="", markersize=6, label="standard error"))
     handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's steps"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(8, len(handles)))
+    legend_below(figure, handles)
     titles = [[r"$\langle J\rangle$" for _ in laws]]
     titles.append([f"difference to {solvers.attrs[f'solver_{law}']}" for law in laws])
     titles.append(["steps" for _ in laws])

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_below, new_figure, styled
 
 TITLE = "Stick-slip cycles"
 CATEGORY = "Runs"
@@ -67,7 +67,7 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     panels[len(states)].set_ylim(bottom=0.0)
     panels[2 * len(states)].set_ylim(-1.1, 1.1)
     panels[3 * len(states)].set_ylim(bottom=-0.01)
-    figure.legend(handles=_legend(shown), loc="outside lower center", ncols=4)
+    legend_below(figure, _legend(shown))
     titles = (
         "cycle time",
         "frequency of the end blocks",

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial, wraps
 from pathlib import Path
 from typing import Any, ParamSpec
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -92,6 +93,15 @@ def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
         columns = place.get_gridspec().ncols if place is not None else 1
         width = figure.get_figwidth() / columns if figure is not None else PAGE
         panel.set_title(_wrapped(f"({letter}) {title}", round(LETTERS * width)), loc="left")
+
+
+def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
+    """Put a legend below all panels, in as many columns as fit into the width of the figure."""
+    for columns in range(len(handles), 0, -1):
+        legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return
+        legend.remove()
 
 
 def _wrapped(title: str, letters: int) -> str:

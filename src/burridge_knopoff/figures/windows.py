@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import branch_names
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import label_panels, page_width, styled
+from burridge_knopoff.figures.style import label_panels, legend_below, page_width, styled
 from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Windows of a"
@@ -43,7 +43,7 @@ def draw(refined: xarray.Dataset) -> Figure:
     shown = np.unique(refined["kind"].values[refined["branch"].values >= 0]).tolist()
     handles = [Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown]
     if handles:
-        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+        legend_below(figure, handles)
     label_panels(panels.flat, [*(f"{law} law" for law in laws), *("kind of motion" for _ in laws)])
     return figure
 
