@@ -172,9 +172,13 @@ class SmallStudy:
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
             "basins": self._basins(found["attractors"]),
-            "edges": edges.summarize(self.models, found["attractors"], found["refined"]),
+            "edges": self._edges(found["attractors"], found["refined"]),
             **self._phases(found["attractors"]),
         }
+
+    def _edges(self, found: xarray.Dataset, further: xarray.Dataset) -> xarray.Dataset:
+        laws = zip(self.models, found["law"].values, strict=True)
+        return edges.merge([edges.one_law(model, found.sel(law=law), further.sel(law=law)) for model, law in laws])
 
     def _phases(self, found: xarray.Dataset) -> dict[str, xarray.Dataset]:
         section = dict(self.study.config["phases"])

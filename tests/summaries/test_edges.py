@@ -8,7 +8,7 @@ from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
-from burridge_knopoff.summaries.edges import summarize
+from burridge_knopoff.summaries.edges import merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -77,7 +77,9 @@ def grid():
 
 @pytest.fixture(scope="module")
 def found(grid):
-    return summarize([Model(Chain(3), law_of("linearized", 0.1))], grid, at_all_values(grid))
+    return one_law(
+        Model(Chain(3), law_of("linearized", 0.1)), *(one.isel(law=0) for one in (grid, at_all_values(grid)))
+    )
 
 
 def test_what_branches_do(grid):
@@ -171,3 +173,14 @@ def test_orbits_are_stable_on_one_side_of_the_edge(found):
     assert stable.any()
     assert (~stable).any()
     assert (found["orbit_period"].values > 0.0).all()
+
+
+def test_edges_of_laws_come_one_after_the_other(found):
+    other = found.isel(edge=[1], orbit=[0, 2]).assign_attrs(laws="mine")
+    both = merge([found, other])
+    assert both.attrs["laws"] == "linearized mine"
+    assert both["law"].values.tolist() == [0] * found.sizes["edge"] + [1]
+    assert both["orbit_law"].values.tolist() == [0] * found.sizes["orbit"] + [1, 1]
+    assert both["law"].attrs["flag_meanings"] == both["orbit_law"].attrs["flag_meanings"] == "linearized mine"
+    np.testing.assert_array_equal(both["a"].values, [*found["a"].values, other["a"].item()])
+    np.testing.assert_array_equal(both["orbit_stops"].values[-2:], other["orbit_stops"].values)

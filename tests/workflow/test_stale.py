@@ -17,7 +17,16 @@ POINTS = ("simulate", "simulate_solver")
 OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
 SUMMARIES = (*OF_POINTS, "solvers")
 STABILITY = (
-    *("attractors_of_law", "basin_tile", "basin_pairs", "edges", "phases_of_law", "orbits", "equilibrium", "proof"),
+    *(
+        "attractors_of_law",
+        "basin_tile",
+        "basin_pairs",
+        "edges_of_law",
+        "phases_of_law",
+        "orbits",
+        "equilibrium",
+        "proof",
+    ),
     "two_blocks",
 )
 FIGURES = tuple(

@@ -1,25 +1,48 @@
-# Edges: where each branch of attractors begins, ends or changes, and by what.
+# Edges: where each branch of attractors begins, ends or changes, and by what; for each law, then put together.
+
+
+rule edges_of_law:
+    input:
+        attractors=f"{SUMMARY}/attractors.nc",
+        refined=f"{SUMMARY}/refined.nc",
+    output:
+        f"{RESULTS}/edges/{{law}}.nc",
+    log:
+        f"{RESULTS}/logs/edges/{{law}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/edges/{{law}}.tsv"
+    resources:
+        mem_mb=400,
+        runtime=60,
+    params:
+        model=lambda wildcards: model_config([wildcards.law]),
+        blocks=STUDY.blocks,
+        a=min(STUDY.grid.values()),
+        sources=sources("edges_of_law"),
+    message:
+        "edges of the branches of attractors, {wildcards.law} law"
+    script:
+        "../scripts/edges_of_law.py"
 
 
 rule edges:
     input:
-        attractors=f"{SUMMARY}/attractors.nc",
-        refined=f"{SUMMARY}/refined.nc",
+        expand(rules.edges_of_law.output, law=STUDY.laws),
     output:
         f"{SUMMARY}/edges.nc",
     log:
         f"{RESULTS}/logs/edges.log",
     benchmark:
         f"{RESULTS}/benchmarks/edges.tsv"
+    group:
+        group("summaries")
     resources:
         mem_mb=400,
-        runtime=60,
+        runtime=10,
     params:
-        model=model_config(),
-        blocks=STUDY.blocks,
-        a=min(STUDY.grid.values()),
-        sources=sources("edges", "summaries.edges"),
+        summary="edges",
+        sources=sources("merge", "summaries.edges"),
     message:
-        "edges of all branches of attractors"
+        "edges of all laws"
     script:
-        "../scripts/edges.py"
+        "../scripts/merge.py"

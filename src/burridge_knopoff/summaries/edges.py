@@ -106,24 +106,23 @@ class Entry:
         return self.edge.a if self.edge else 0.5 * (self.low + self.high)
 
 
-def summarize(models: Sequence[Model], attractors: xarray.Dataset, refined: xarray.Dataset) -> xarray.Dataset:
-    """Return the Dataset of all edges.
+def one_law(model: Model, attractors: xarray.Dataset, refined: xarray.Dataset) -> xarray.Dataset:
+    """Return the edges of one law.
 
-    models : one for each law of the attractors, in their order, at any a
-    attractors, refined : those at the values of the grid, and at all
+    model : with this law, at any a
+    attractors, refined : of this law, at the values of the grid, and at all
     """
     values: dict[str, list[Any]] = {name: [] for name in VARIABLES}
-    blocks = models[0].blocks
-    for number, model in enumerate(models):
-        one = refined.isel(law=number).load()
-        changes = branch_changes(attractors.isel(law=number), one)
-        stretches, of_slot = followed(model, one, changes)
-        for entry in sorted(entries(one, changes, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
-            _append_edge(values, number, entry, blocks)
-        branch = one["branch"].values
-        branch_of = {index: int(branch[slot]) for slot, index in reversed(of_slot.items())}
-        for index, stretch_ in enumerate(stretches):
-            _append_orbits(values, number, index, branch_of[index], stretch_)
+    blocks = model.blocks
+    one = refined.load()
+    changes = branch_changes(attractors, one)
+    stretches, of_slot = followed(model, one, changes)
+    for entry in sorted(entries(one, changes, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
+        _append_edge(values, entry, blocks)
+    branch = one["branch"].values
+    branch_of = {index: int(branch[slot]) for slot, index in reversed(of_slot.items())}
+    for index, stretch_ in enumerate(stretches):
+        _append_orbits(values, index, branch_of[index], stretch_)
     rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
@@ -134,18 +133,34 @@ def summarize(models: Sequence[Model], attractors: xarray.Dataset, refined: xarr
     }
     for name, shape in shapes.items():
         rounded[name] = rounded[name].reshape(shape)
-    names = [str(law) for law in attractors["law"].values]
-    laws = axes((), (), names)["law"][1]
+    head = {"v": model.v, "contact": model.contact}
+    return _dataset([str(attractors["law"].item())], rounded, attractors["block"].variable, head)
+
+
+def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
+    """Return the edges of several laws in one Dataset, one law after the other."""
+    values = {name: np.concatenate([part[name].values for part in parts]) for name in VARIABLES}
+    for name, dimension in (("law", "edge"), ("orbit_law", "orbit")):
+        values[name] = np.repeat(np.arange(len(parts), dtype="i1"), [part.sizes[dimension] for part in parts])
+    head = {name: parts[0].attrs[name] for name in ("v", "contact")}
+    return _dataset([part.attrs["laws"] for part in parts], values, parts[0]["block"].variable, head)
+
+
+def _dataset(
+    names: Sequence[str], values: Mapping[str, np.ndarray], block: xarray.Variable, head: Mapping[str, Any]
+) -> xarray.Dataset:
+    """Return the edges of some laws, of these names, as a Dataset."""
     coordinates = {
         "part": ("part", np.array(PARTS, dtype=object), {"long_name": "part of a complex number"}),
-        "block": attractors["block"].variable,
+        "block": block,
     }
-    head = {"laws": " ".join(map(str, laws)), "v": models[0].v, "contact": models[0].contact}
     described = {**VARIABLES, **{name: _numbered(VARIABLES[name], names) for name in ("law", "orbit_law")}}
-    history = {"history": "snakemake, from the attractors and the equations of motion"}
-    return summary(
-        "Edges of the branches of attractors", described, rounded, coordinates, head | history, module=__name__
-    )
+    about = {
+        "laws": " ".join(axes((), (), names)["law"][1]),
+        **head,
+        "history": "snakemake, from the attractors and the equations of motion",
+    }
+    return summary("Edges of the branches of attractors", described, values, coordinates, about, module=__name__)
 
 
 def _numbered(item: Variable, names: Sequence[str]) -> Variable:
@@ -250,10 +265,10 @@ def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
     return EdgeKind.CRISIS if chaotic.all() else EdgeKind.UNDETERMINED
 
 
-def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: int) -> None:
+def _append_edge(values: dict[str, list[Any]], entry: Entry, blocks: int) -> None:
     for name in ("change", "from_branch", "to_branch", "kind", "a"):
         values[name].append(getattr(entry, name))
-    values["law"].append(law)
+    values["law"].append(0)
     values["grid_low"].append(entry.low)
     values["grid_high"].append(entry.high)
     values["motion_before"].append(entry.motion[0])
@@ -274,12 +289,12 @@ def _append_edge(values: dict[str, list[Any]], law: int, entry: Entry, blocks: i
         values[name] += [largest.real, abs(largest.imag)]
 
 
-def _append_orbits(values: dict[str, list[Any]], law: int, number: int, branch: int, one: Stretch) -> None:
+def _append_orbits(values: dict[str, list[Any]], number: int, branch: int, one: Stretch) -> None:
     for point in [*one.downward[:0:-1], *one.upward]:
         if 0.0 < point.length < CLOSE and not point.corner:
             # On the way to a corner.
             continue
-        values["orbit_law"].append(law)
+        values["orbit_law"].append(0)
         values["orbit_stretch"].append(number)
         values["orbit_branch"].append(branch)
         values["orbit_a"].append(point.orbit.a)

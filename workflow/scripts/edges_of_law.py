@@ -1,0 +1,14 @@
+"""Edges of the branches of attractors under one law."""
+
+import sys
+
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.study.model import model_of
+from burridge_knopoff.summaries.edges import one_law
+
+params, law = snakemake.params, snakemake.wildcards.law
+attractors, refined = (open_summary(path).sel(law=law) for path in snakemake.input)
+model = model_of(params.model, law, params.a, params.blocks)
+write_summary(one_law(model, attractors, refined), snakemake.output[0])
