@@ -40,6 +40,7 @@ from burridge_knopoff.summaries import (
     stick_slip,
     two_blocks,
 )
+from burridge_knopoff.summaries.between import named_alike, with_branches_between
 from burridge_knopoff.summaries.points import Grid
 
 ROOT = Path(__file__).parents[1]
@@ -156,7 +157,7 @@ class SmallStudy:
             "agreement": agreement.summarize(grid, kinds, attracting, threshold, config["agreement"]),
             "orbits": orbits.summarize(self.models, values),
             "attractors": attracting,
-            "refined": refined.merge(further, numbers),
+            "refined": named_alike(refined.merge(further, with_branches_between(numbers, further)), attracting),
         }
 
     def further_summaries(self, found: Mapping[str, xarray.Dataset]) -> dict[str, xarray.Dataset]:
