@@ -46,8 +46,8 @@ def label_together(
     """Do the work of `label` for states x_i, U_i' and which blocks stick, each of shape (n, blocks).
 
     A state has reached an attractor when enough of its successive returns, at the stops of the first block, lie within
-    the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these if it gets
-    there within the attractor's patience.
+    the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these, or any other
+    without patience, if it gets there within the attractor's patience.
     """
 
     def first(attractors: Sequence[Attractor], states: np.ndarray | slice, end: float) -> tuple[np.ndarray, np.ndarray]:
@@ -62,12 +62,13 @@ def label_together(
 
     labels, times = first(attractors, slice(None), time_limit)
     prompt = [index for index, attractor in enumerate(attractors) if not attractor.patience]
-    for index in sorted(set(range(len(attractors))) - set(prompt)) if prompt else ():
+    for index, attractor in enumerate(attractors):
         near = np.flatnonzero(labels == index)
-        if len(near):
-            others, when = first([attractors[k] for k in prompt], near, min(attractors[index].patience, time_limit))
-            gone = others != UNDETERMINED
-            labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
+        if not (attractor.patience and prompt and len(near)):
+            continue
+        others, when = first([attractors[k] for k in prompt], near, min(attractor.patience, time_limit))
+        gone = others != UNDETERMINED
+        labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
     return labels, times
 
 

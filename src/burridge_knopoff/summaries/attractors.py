@@ -147,13 +147,19 @@ def branch_numbers(
         grid = part["a"].values.tolist()
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
         renamed = joined(firsts, seconds, first, _states(part, model), settings)
-        following = max((0, *(n for known in numbers for n in known.values())))
-        for number in sorted(int(n) for n in np.unique(part["branch"].values) if n >= 0):
-            if number not in renamed:
-                following += 1
-                renamed[number] = following
-        numbers.append(renamed)
+        numbers.append(with_others(renamed, part, numbers))
     return numbers
+
+
+def with_others(known: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]) -> dict[int, int]:
+    """Return the numbers of branches of one law with those added that have none: they follow all that are taken.
+
+    known : {number of a branch: the one that it gets}; part : the attractors of that law
+    numbers : of all laws whose numbers are taken
+    """
+    following = max((0, *(n for taken in numbers for n in taken.values())))
+    others = sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - known.keys())
+    return {**known, **{number: following + k for k, number in enumerate(others, start=1)}}
 
 
 def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, Instant]]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
 import xarray
+
+from burridge_knopoff.summaries.attractors import with_others
 
 
 def with_branches_between(
@@ -16,14 +17,9 @@ def with_branches_between(
     numbers : for each law {number of a branch: the one that it gets}, of the branches at values of the grid
     parts : of the laws, the attractors at all values, see `refined.one_law`
     """
-    following = max((0, *(n for known in numbers for n in known.values())))
-    result = []
+    result: list[dict[int, int]] = []
     for known, part in zip(numbers, parts, strict=True):
-        own = dict(known)
-        for number in sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - known.keys()):
-            following += 1
-            own[number] = following
-        result.append(own)
+        result.append(with_others(known, part, [*numbers, *result]))
     return result
 
 
