@@ -26,6 +26,7 @@ from burridge_knopoff.stability.settings import (
 from burridge_knopoff.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
+    all_laws,
     attractors,
     basins,
     bifurcation,
@@ -40,7 +41,6 @@ from burridge_knopoff.summaries import (
     stick_slip,
     two_blocks,
 )
-from burridge_knopoff.summaries.between import named_alike, with_branches_between
 from burridge_knopoff.summaries.points import Grid
 
 ROOT = Path(__file__).parents[1]
@@ -147,8 +147,8 @@ class SmallStudy:
             for model in self.models
         ]
         parts = [attractors.one_law(item, states, *options, config["start"]) for item in found]
-        numbers = attractors.branch_numbers(parts, self.models, self.search)
-        attracting = attractors.merge(parts, numbers)
+        numbers = all_laws.branch_numbers(parts, self.models, self.search)
+        attracting = all_laws.merge(parts, numbers)
         further = [refined.one_law(item, *options, refine, config["start"]) for item in found]
         return {
             "mean_distance": mean_distance.summarize(grid, threshold),
@@ -157,7 +157,9 @@ class SmallStudy:
             "agreement": agreement.summarize(grid, kinds, attracting, threshold, config["agreement"]),
             "orbits": orbits.summarize(self.models, values),
             "attractors": attracting,
-            "refined": named_alike(refined.merge(further, with_branches_between(numbers, further)), attracting),
+            "refined": all_laws.named_alike(
+                all_laws.merge(further, all_laws.with_branches_between(numbers, further), refined.VARIABLES), attracting
+            ),
         }
 
     def further_summaries(self, found: Mapping[str, xarray.Dataset]) -> dict[str, xarray.Dataset]:

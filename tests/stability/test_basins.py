@@ -13,7 +13,7 @@ from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, BasinSettings, Refine
-from burridge_knopoff.summaries import attractors, basins
+from burridge_knopoff.summaries import all_laws, attractors, basins
 from tests.stability.test_attractors import SETTINGS
 
 SEARCH = replace(SETTINGS, samples=25, fraction_samples=25)
@@ -27,7 +27,7 @@ def known():
     states = list(PAPER_STATES.values())
     found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, Refine(1.0), starts=states)
     parts = [attractors.one_law(found, states, *FOUND)]
-    return attractors.merge(parts, attractors.branch_numbers(parts, [MODEL], SEARCH))
+    return all_laws.merge(parts, all_laws.branch_numbers(parts, [MODEL], SEARCH))
 
 
 def whole(known, tiles, threads, model=MODEL):

@@ -39,7 +39,7 @@ def values(monkeypatch):
         for a in (low, high):
             ends.append(Search(Model(Chain(3), law_of("linearized", a))))
             ends[-1].attractors = attractors(a)
-        found = refined(*ends, Refine(resolution), np.random.default_rng(1))
+        found = refined(*ends, Refine(resolution))
         return [search.model.a for search in found], asked
 
     return put_in

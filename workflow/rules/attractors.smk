@@ -1,6 +1,9 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
 
 
+# Cores for the long job of each law, which shares them out among processes: with few cores the laws run side by side.
+SHARED_CORES = max(1, (workflow.cores or 1) // len(STUDY.laws))
+
 OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
 
 
@@ -13,8 +16,9 @@ rule attractors_of_law:
         f"{RESULTS}/benchmarks/attractors/{{law}}.tsv"
     # The longest jobs of a study: begun first, so that none is left alone at its end.
     priority: 10
+    threads: SHARED_CORES
     resources:
-        mem_mb=400,
+        mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=240,
     params:
         **keys("initial", "start", "attractors", "refine"),

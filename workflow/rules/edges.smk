@@ -11,8 +11,9 @@ rule edges_of_law:
         f"{RESULTS}/logs/edges/{{law}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/edges/{{law}}.tsv"
+    threads: SHARED_CORES
     resources:
-        mem_mb=400,
+        mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=60,
     params:
         model=lambda wildcards: model_config([wildcards.law]),

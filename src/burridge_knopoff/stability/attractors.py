@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -83,9 +83,11 @@ class Search:
         """Distance within which the returns of a closed orbit repeat."""
         return self.motion_settings.period_tolerance * min(1.0, self.model.scale)
 
-    def seed_of(self, attractor: Attractor, generator: np.random.Generator) -> Instant:
-        """Return a state on an attractor of a neighbouring a, pushed a little off any symmetry."""
-        return pushed(attractor.motion.instant(), self.tuning.symmetry_push * self.resolution, generator)
+    def seeds(self, attractors: Iterable[Attractor]) -> list[Instant]:
+        """Return a state on each of some attractors of a neighbouring a, pushed a little off any symmetry."""
+        generator = np.random.default_rng(self.settings.seed)
+        size = self.tuning.symmetry_push * self.resolution
+        return [pushed(attractor.motion.instant(), size, generator) for attractor in attractors]
 
     def starts(self, given: Sequence[InitialState], start: str) -> list[Instant]:
         """Return where the drawn states, and after them those that are given, begin."""

@@ -18,8 +18,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from scipy.optimize import root_scalar
-from scipy.stats import linregress
 
 from burridge_knopoff.model.model import Instant
 from burridge_knopoff.running.runner import Runner, new_observer
@@ -110,7 +110,7 @@ def fit_power_law(offset: np.ndarray, amplitude: np.ndarray) -> PowerLaw:
 
     The digits kept do not depend on the order in which a linear-algebra library adds.
     """
-    fit = linregress(np.log(offset), np.log(amplitude))
+    fit = scipy.stats.linregress(np.log(offset), np.log(amplitude))
     return PowerLaw(*(round(float(value), 10) for value in (fit.slope, fit.stderr, np.exp(fit.intercept))))
 
 

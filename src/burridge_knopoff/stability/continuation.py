@@ -1,7 +1,8 @@
-"""The attractors of one law along a: found at each a from states and from the attractors beside it, and refined.
+"""The attractors of one law along a: found at each a from states, handed on to the values beside it, and refined.
 
 Between neighbouring values of a at which the attractors differ, values are put in until the change lies between two
-that are near enough to each other.
+that are near enough to each other. What is done at one a, or between two, needs no other: it is shared out among
+processes, and only handing on goes from value to value.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151: the search at each parameter begins from the attractors at the one before.
@@ -11,17 +12,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
-from burridge_knopoff.stability.matching import branches
+from burridge_knopoff.stability.matching import branches, differing, outlines
 from burridge_knopoff.stability.refinement import refined
 from burridge_knopoff.stability.settings import MOTION, REFINE, SEARCH, MotionSettings, Refine, SearchSettings
 from burridge_knopoff.stability.tuning import TUNING, Tuning
@@ -52,6 +55,15 @@ class Continuation:
     samples: list[np.ndarray]
 
 
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """What lies between one model of the grid and the next: attractors put in, and where those of each lead."""
+
+    inner: list[Search]
+    upward: np.ndarray
+    downward: np.ndarray
+
+
 def continue_attractors(
     models: Sequence[Model],
     settings: SearchSettings = SEARCH,
@@ -61,48 +73,75 @@ def continue_attractors(
     starts: Sequence[InitialState] = (),
     start: str = "moving",
     tuning: Tuning = TUNING,
+    processes: int = 1,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
     settings, motion, starts, start, tuning : see `find_attractors`
     refine : how near in a a change is looked for
+    processes : that work at once; no result depends on how many
 
     Raises ValueError if an initial state does not fit the models.
     """
-    generator = np.random.default_rng(settings.seed)
-
-    def seeds(search: Search) -> list[Instant]:
-        return [search.seed_of(attractor, generator) for attractor in search.attractors]
-
-    searches = [Search(model, settings, motion, tuning) for model in models]
-    for k, search in enumerate(searches):
-        before = seeds(searches[k - 1]) if k else []
-        search.labels([*before, *search.starts(starts, start)])
-    for k in range(len(searches) - 2, -1, -1):
-        searches[k].labels(seeds(searches[k + 1]), check=False)
-    for k in range(1, len(searches)):
-        searches[k].labels(seeds(searches[k - 1]), check=False)
-    samples = [search.drawn_labels(start) for search in searches]
-
-    # The sets of attractors are complete now: what follows only reads them.
-    inner = [refined(*pair, refine, generator) for pair in pairwise(searches)]
-    whole = [search for one, more in zip(searches, [*inner, []], strict=False) for search in (one, *more)]
-    grid = [whole.index(search) for search in searches]
-    upward, downward = [], []
-    for k, search in enumerate(searches):
-        nothing = np.full(len(search.attractors), UNDETERMINED)
-        upward.append(searches[k + 1].known_labels(seeds(search)) if k + 1 < len(searches) else nothing)
-        downward.append(searches[k - 1].known_labels(seeds(search)) if k else nothing)
+    with shared_out(processes) as each:
+        searches = [Search(model, settings, motion, tuning) for model in models]
+        searches = each(partial(_searched, starts=starts, start=start), searches)
+        for giver, taker in (*pairwise(reversed(searches)), *pairwise(searches)):
+            _hand_on(giver, taker)
+        drawn = each(partial(_drawn, start=start), searches)
+        # The sets of attractors are complete now: what follows only reads them.
+        searches = [search for search, _ in drawn]
+        steps = each(partial(_step, refine=refine), searches[:-1], searches[1:])
+        whole = [searches[0]]
+        for step, search in zip(steps, searches[1:], strict=True):
+            whole += [*step.inner, search]
+        lived = each(_lifetimes, whole)
     attractors = [search.attractors for search in whole]
-    steps = [other.a - one.a for one, other in pairwise(models)]
-    reach = tuning.remembered * max(steps, default=0.0)
+    # At the ends of the grid nothing follows.
+    first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
+    width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
     return Continuation(
         [search.model for search in whole],
-        grid,
+        [whole.index(search) for search in searches],
         attractors,
-        [lifetimes(search.model, search.attractors, settings, tuning) for search in whole],
-        *branches([search.model.a for search in whole], attractors, reach, models[0].scale, tuning),
-        upward,
-        downward,
-        samples,
+        lived,
+        *branches([search.model.a for search in whole], attractors, tuning.remembered * width, models[0].scale, tuning),
+        [*(step.upward for step in steps), last],
+        [first, *(step.downward for step in steps)],
+        [labels for _, labels in drawn],
     )
+
+
+def _searched(search: Search, starts: Sequence[InitialState], start: str) -> Search:
+    """Find attractors from initial states."""
+    search.labels(search.starts(starts, start))
+    return search
+
+
+def _hand_on(giver: Search, taker: Search) -> None:
+    """Follow attractors to a neighbouring a at which they are not known, or not as they are."""
+    there = outlines(taker.attractors, taker.tuning)
+    lacking, _ = differing(outlines(giver.attractors, giver.tuning), there, taker.model.scale, taker.tuning)
+    if lacking:
+        # Whatever states have led to nothing: what attracts next to it is worth looking for.
+        taker.vain = 0
+        taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
+
+
+def _drawn(search: Search, start: str) -> tuple[Search, np.ndarray]:
+    """Label the states that are drawn for the basin fractions."""
+    labels = search.drawn_labels(start)
+    return search, labels
+
+
+def _step(left: Search, right: Search, refine: Refine) -> _Step:
+    """Find what lies between two neighbours."""
+    return _Step(
+        refined(left, right, refine),
+        right.known_labels(right.seeds(left.attractors)),
+        left.known_labels(left.seeds(right.attractors)),
+    )
+
+
+def _lifetimes(search: Search) -> list[Lifetime | None]:
+    return lifetimes(search.model, search.attractors, search.settings, search.tuning)

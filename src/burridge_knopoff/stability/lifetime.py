@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+import scipy
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.together import new_ensemble
@@ -46,8 +46,8 @@ class Lifetime:
     def interval(self) -> tuple[float, float]:
         """95 % confidence interval of the mean lifetime; its upper end is infinite if no trajectory left."""
         tail = 0.5 * (1.0 - CONFIDENCE)
-        low = 2.0 * self.time / float(chi2.isf(tail, 2 * self.ends + 2))
-        high = 2.0 * self.time / float(chi2.ppf(tail, 2 * self.ends)) if self.ends else math.inf
+        low = 2.0 * self.time / float(scipy.stats.chi2.isf(tail, 2 * self.ends + 2))
+        high = 2.0 * self.time / float(scipy.stats.chi2.ppf(tail, 2 * self.ends)) if self.ends else math.inf
         return low, high
 
     def lasts(self, least: float) -> bool:

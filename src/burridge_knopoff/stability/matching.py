@@ -101,6 +101,23 @@ def matched(
     return {second[row]: first[column] for row, column in pairs if cost[row, column] < largest}
 
 
+def differing(
+    before: Mapping[int, Outline], after: Mapping[int, Outline], scale: float, tuning: Tuning = TUNING
+) -> tuple[dict[int, Outline], dict[int, Outline]]:
+    """Return those of both sets that have no counterpart in the other, or one of another kind, symmetry or period."""
+    found = matched(before, after, scale, tuning)
+    same = {new: old for new, old in found.items() if _features(before[old]) == _features(after[new])}
+    return (
+        {k: item for k, item in before.items() if k not in same.values()},
+        {k: item for k, item in after.items() if k not in same},
+    )
+
+
+def _features(outline: Outline) -> tuple[int, int, int]:
+    attractor = outline.attractor
+    return attractor.motion.kind, attractor.symmetry, attractor.motion.section_period
+
+
 def branches(
     a: Sequence[float], attractors: Sequence[Sequence[Attractor]], reach: float, scale: float, tuning: Tuning = TUNING
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:

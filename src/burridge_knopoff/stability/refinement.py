@@ -5,22 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.matching import Outline, matched, outlines
+from burridge_knopoff.stability.matching import Outline, differing, matched, outlines
 from burridge_knopoff.stability.settings import Refine
 
 #: Attractors of one model by a number.
 Outlines = Mapping[int, Outline]
 
 
-def refined(left: Search, right: Search, refine: Refine, generator: np.random.Generator) -> list[Search]:
+def refined(left: Search, right: Search, refine: Refine) -> list[Search]:
     """Return searches at values of a between two neighbours of the grid, ascending; none if nothing changes.
 
     refine : how near to each other the values have to be at which something differs
-    generator : of the pushes off unstable symmetry
 
     At a value that is put in only those attractors are followed that change between its neighbours: in kind, symmetry
     or period, or in that they have no counterpart. Where nothing attracts, as at a = 0, nothing is put in:
@@ -33,21 +30,22 @@ def refined(left: Search, right: Search, refine: Refine, generator: np.random.Ge
     tuning = replace(left.tuning, lasting=1, patience=left.tuning.patience // 4, trials=1, shrinking=16.0)
     settings = replace(left.settings, pushes=min(left.settings.pushes, tuning.push_group))
     before, after = outlines(left.attractors, tuning), outlines(right.attractors, tuning)
-    changed = _changed(before, after, left)
-    still = {k: item for k, item in before.items() if k not in changed[0]}
+    scale = left.model.scale
+    changed, _ = differing(before, after, scale, tuning)
+    still = {k: item for k, item in before.items() if k not in changed}
 
     def between(first: Model, before: Outlines, last: Model, after: Outlines) -> list[Search]:
-        before, after = _changed(before, after, left)
+        before, after = differing(before, after, scale, tuning)
         near = last.a - first.a <= refine.resolution * (1.0 + 1e-9)
         if near or not (before or after):
             return []
         middle = Search(first.at(0.5 * (first.a + last.a)), settings, left.motion_settings, tuning)
-        seeds = [middle.seed_of(item.attractor, generator) for item in (*before.values(), *after.values())]
+        seeds = middle.seeds(item.attractor for item in (*before.values(), *after.values()))
         middle.labels(seeds, check=False)
         here = outlines(middle.attractors, tuning)
         # What a seed has left for may be an attractor that does not change.
         numbered = {**still, **{-1 - k: item for k, item in before.items()}}
-        other = {k for k, old in matched(numbered, here, left.model.scale, tuning).items() if old in still}
+        other = {k for k, old in matched(numbered, here, scale, tuning).items() if old in still}
         here = {k: item for k, item in here.items() if k not in other}
         return [
             *between(first, before, middle.model, here),
@@ -56,18 +54,3 @@ def refined(left: Search, right: Search, refine: Refine, generator: np.random.Ge
         ]
 
     return between(left.model, before, right.model, after)
-
-
-def _changed(before: Outlines, after: Outlines, search: Search) -> tuple[Outlines, Outlines]:
-    """Return those of both sets that have no counterpart in the other, or one that differs."""
-    found = matched(before, after, search.model.scale, search.tuning)
-    same = {new: old for new, old in found.items() if _features(before[old]) == _features(after[new])}
-    return (
-        {k: item for k, item in before.items() if k not in same.values()},
-        {k: item for k, item in after.items() if k not in same},
-    )
-
-
-def _features(outline: Outline) -> tuple[int, int, int]:
-    attractor = outline.attractor
-    return attractor.motion.kind, attractor.symmetry, attractor.motion.section_period

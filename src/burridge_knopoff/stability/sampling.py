@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import binomtest
+import scipy
 
 from burridge_knopoff.model.initial import InitialState
 
@@ -46,5 +46,5 @@ def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
     """
     if count == 0:
         return np.nan, np.nan, np.nan
-    interval = binomtest(hits, count).proportion_ci(CONFIDENCE, method="wilson")
+    interval = scipy.stats.binomtest(hits, count).proportion_ci(CONFIDENCE, method="wilson")
     return hits / count, float(interval.low), float(interval.high)

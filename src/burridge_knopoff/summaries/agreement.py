@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import scipy
 import xarray
-from scipy.stats import wasserstein_distance
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
@@ -129,7 +129,7 @@ def _section_distance(one: np.ndarray, other: np.ndarray) -> float:
     """Return the Wasserstein distance of two samples, NaN if one is empty."""
     if not len(one) or not len(other):
         return np.nan
-    return float(f"{wasserstein_distance(one, other):.{DIGITS}g}")
+    return float(f"{scipy.stats.wasserstein_distance(one, other):.{DIGITS}g}")
 
 
 def table(dataset: xarray.Dataset) -> str:

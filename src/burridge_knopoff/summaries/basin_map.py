@@ -52,6 +52,7 @@ def basin_map(
     where no attractor is found.
     """
     from burridge_knopoff.stability.continuation import continue_attractors
+    from burridge_knopoff.summaries import all_laws
     from burridge_knopoff.summaries import attractors as attractor_summary
     from burridge_knopoff.summaries import basins as basin_summary
 
@@ -74,7 +75,7 @@ def basin_map(
     options = settings, motion, start
     found = continue_attractors([model], settings, motion, starts=[state], start=start)
     parts = [attractor_summary.one_law(found, [state], *options)]
-    attractors = attractor_summary.merge(parts, attractor_summary.branch_numbers(parts, [model], settings))
+    attractors = all_laws.merge(parts, all_laws.branch_numbers(parts, [model], settings))
     if not (attractors["branch"] >= 0).any():
         raise ValueError(
             f"a: {model.a!r} is not allowed: no attractor was found, from {samples} sampled states (none is at 0)"

@@ -6,8 +6,7 @@ An attractor that is a closed orbit is followed in a to where it loses its stabi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,32 +16,15 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner, new_observer
-from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.edges import Edge
-from burridge_knopoff.stability.following import Following
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit
-from burridge_knopoff.stability.steady import instant_of
-from burridge_knopoff.stability.stretch import Stretch, stretch
-from burridge_knopoff.summaries.branch_changes import BranchChange, Change, branch_changes, slots_of_branches
-
-#: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
-FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
-BEYOND = 4
-
-#: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
-LEAST_A = 0.0
+from burridge_knopoff.stability.stretch import Stretch
+from burridge_knopoff.summaries.branch_changes import Change, branch_changes
+from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries, followed
 
 # Orbits closer than this along a branch are not kept apart in the file.
 CLOSE = 1e-5
-
-# Share of its period within which a closed orbit is the one that has been followed.
-SAME_PERIOD = 1e-3
-
-# Least error that is told: how far rounding changes a root differs between linear-algebra libraries.
-LEAST_ERROR = 1e-10
 
 PARTS = ("real", "imaginary")
 _EDGE, _ORBIT = ("edge",), ("orbit",)
@@ -86,37 +68,18 @@ PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
 
 
-@dataclass(frozen=True)
-class Entry:
-    """An edge of a branch: found on an orbit, or known only to lie within a range of a."""
-
-    change: Change
-    from_branch: int
-    to_branch: int
-    low: float
-    high: float
-    motion: tuple[int, int]
-    lifetime: tuple[float, float]
-    kind: EdgeKind
-    edge: Edge | None
-
-    @property
-    def a(self) -> float:
-        """Friction parameter: that of the edge, or the middle of the range."""
-        return self.edge.a if self.edge else 0.5 * (self.low + self.high)
-
-
-def one_law(model: Model, attractors: xarray.Dataset, refined: xarray.Dataset) -> xarray.Dataset:
+def one_law(model: Model, attractors: xarray.Dataset, refined: xarray.Dataset, processes: int = 1) -> xarray.Dataset:
     """Return the edges of one law.
 
     model : with this law, at any a
     attractors, refined : of this law, at the values of the grid, and at all
+    processes : that work at once; no result depends on how many
     """
     values: dict[str, list[Any]] = {name: [] for name in VARIABLES}
     blocks = model.blocks
     one = refined.load()
     changes = branch_changes(attractors, one)
-    stretches, of_slot = followed(model, one, changes)
+    stretches, of_slot = followed(model, one, changes, processes)
     for entry in sorted(entries(one, changes, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
         _append_edge(values, entry, blocks)
     branch = one["branch"].values
@@ -165,104 +128,6 @@ def _dataset(
 
 def _numbered(item: Variable, names: Sequence[str]) -> Variable:
     return Variable(item.dimensions, item.dtype, "friction law", flag("i1", dict(enumerate(names))))
-
-
-def followed(
-    model: Model, one: xarray.Dataset, changes: Sequence[BranchChange]
-) -> tuple[list[Stretch], dict[tuple[int, int], int]]:
-    """Follow every attractor of one law that is a closed orbit; return the stretches, and the one of each (a, slot).
-
-    one : the attractors at all values of a; those between the grid are left out where the branch does not change
-    """
-    a_values = one["a"].values
-    branch, side, kind = (one[name].values for name in ("branch", "side", "kind"))
-    closed = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)) & (branch >= 0) & (side >= 0)
-    wanted = np.repeat(one["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
-    for change in changes:
-        for k, slot in ((change.low, change.before), (change.high, change.after)):
-            wanted[k, slot] |= slot >= 0
-    found: list[Stretch] = []
-    of_slot: dict[tuple[int, int], int] = {}
-    for k, slot in np.argwhere(closed & wanted):
-        here = model.at(float(a_values[k]))
-        position = one["position"].values[k, slot] - here.sliding_offset
-        try:
-            orbit = closed_motion(here, instant_of(np.concatenate([position, one["velocity"].values[k, slot]])))
-            known = [index for index, other in enumerate(found) if other.holds(orbit, SAME_PERIOD)]
-            if not known:
-                found.append(stretch(orbit, (LEAST_A, float(np.nanmax(a_values))), BEYOND, FOLLOWING))
-        except OrbitError as error:
-            print(f"{model.law.name}: {error}")
-            continue
-        of_slot[int(k), int(slot)] = known[0] if known else len(found) - 1
-    return found, of_slot
-
-
-def entries(
-    one: xarray.Dataset,
-    changes: Sequence[BranchChange],
-    stretches: Sequence[Stretch],
-    of_slot: Mapping[tuple[int, int], int],
-) -> list[Entry]:
-    """Return an entry, or two, for each beginning, end and change, and one for each edge that stable orbits pass.
-
-    A change from one orbit to another has one for the end of the first and one for the beginning of the second, unless
-    they are the same edge.
-    """
-    a, branch, kind = (one[name].values for name in ("a", "branch", "kind"))
-    slots = slots_of_branches(one)
-    grid = np.flatnonzero(one["in_grid"].values[: len(slots)] == 1)
-    found = []
-    for change in changes:
-        ends: list[Edge] = []
-        numbers = of_slot.get((change.low, change.before)), of_slot.get((change.high, change.after))
-        if numbers[0] is not None and numbers[0] == numbers[1]:
-            # One orbit on both sides; only its section points were counted differently.
-            continue
-        for number, name in zip(numbers, ("high_end", "low_end"), strict=True):
-            edge = getattr(stretches[number], name) if number is not None else None
-            if edge is not None and all(abs(edge.a - other.a) > LEAST_ERROR for other in ends):
-                ends.append(edge)
-        low, high = change.low, change.high
-        below = range(low, int(grid[grid <= low][-1]) - 1, -1)
-        above = range(high, int(grid[grid >= high][0]) + 1)
-        motion = (
-            _motion(kind, slots, below, change.from_branch),
-            _motion(kind, slots, above, change.to_branch),
-        )
-        lifetime = _lifetime(one, change)
-        own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
-        found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
-    for number, one_stretch in enumerate(stretches):
-        n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
-        for edge in one_stretch.low_edges + one_stretch.high_edges:
-            if not edge.loses_stability and not edge.turns:
-                k = int(np.clip(np.searchsorted(a[grid], edge.a) - 1, 0, len(grid) - 2))
-                low, high = int(grid[k]), int(grid[k + 1])
-                motion = _motion(kind, slots, [low], n), _motion(kind, slots, [high], n)
-                own = Change.PASSED, n, n, float(a[low]), float(a[high]), motion, (np.nan, np.nan)
-                found.append(Entry(*own, edge.kind, edge))
-    return found
-
-
-def _motion(kind: np.ndarray, slots: Sequence[Mapping[int, int]], places: Iterable[int], branch: int) -> int:
-    """Return the kind of motion on a branch at the first of some values of a at which it is known."""
-    return next((int(kind[k, slots[k][branch]]) for k in places if branch in slots[k]), int(MotionKind.UNDETERMINED))
-
-
-def _lifetime(one: xarray.Dataset, change: BranchChange) -> tuple[float, float]:
-    """Return the interval of the lifetime of chaos next to an edge, the shorter where there is chaos on both sides."""
-    sides = [(change.low, change.before), (change.high, change.after)]
-    known = [(one["lifetime_low"].values[side], one["lifetime_high"].values[side]) for side in sides if side[1] >= 0]
-    return min((interval for interval in known if np.isfinite(interval[0])), default=(np.nan, np.nan))
-
-
-def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
-    """Return the kind of an edge next to which there is no closed orbit: a crisis if chaos ends, begins or dies out."""
-    sides = (change.low, change.before), (change.high, change.after)
-    ends = [kind[k, slot] for k, slot in sides if slot >= 0]
-    chaotic = np.isin(ends, (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS))
-    return EdgeKind.CRISIS if chaotic.all() else EdgeKind.UNDETERMINED
 
 
 def _append_edge(values: dict[str, list[Any]], entry: Entry, blocks: int) -> None:

@@ -6,8 +6,6 @@ Each law has values of its own. The file has the slots of `attractors`, over (la
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 import xarray
 
@@ -37,8 +35,3 @@ def one_law(
     about = {**attractors.search_attributes(model, settings, motion, start), "refine_resolution": refine.resolution}
     title = f"Attractors at refined values of a, {model.law.name} friction law"
     return summary(title, VARIABLES, values, slot_coordinates(model.blocks), about, module=__name__)
-
-
-def merge(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[int, int]]) -> xarray.Dataset:
-    """Return the attractors of all laws in one Dataset, as `attractors.merge` does."""
-    return attractors.merge(parts, numbers, VARIABLES, "Attractors at refined values of a", __name__)

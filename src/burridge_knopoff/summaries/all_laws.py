@@ -1,0 +1,158 @@
+"""The attractors of all laws in one file, at the values of the grid and at all values: branches numbered alike.
+
+`refined.nc` has the numbers and names of `attractors.nc`, and those of branches that exist only between values of the
+grid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.stability.joining import joined
+from burridge_knopoff.stability.labels import UNDETERMINED
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.summaries.attractors import VARIABLES
+from burridge_knopoff.summaries.slots import NAMES, branch_names, missing
+
+_HEAD = ("Conventions", "title", "law", *provenance(__name__))
+
+
+def merge(
+    parts: Sequence[xarray.Dataset],
+    numbers: Sequence[Mapping[int, int]],
+    variables: Mapping[str, Variable] = VARIABLES,
+    title: str = "Attractors",
+) -> xarray.Dataset:
+    """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN.
+
+    numbers : for each law {number of a branch: the one that it gets}, see `branch_numbers`
+    """
+    values = {}
+    for name, item in variables.items():
+        arrays = [part[name].values for part in parts]
+        if name.endswith("branch"):
+            arrays = [_renumbered(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
+        shape = np.max([array.shape for array in arrays], axis=0)
+        values[name] = np.full((len(parts), *shape), missing(name, item), dtype=item.dtype)
+        for number, array in enumerate(arrays):
+            within: Any = (number, *(slice(0, size) for size in array.shape))
+            values[name][within] = array
+    coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
+    coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
+    attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
+    whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()} | NAMES
+    values.update(branch_names(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))
+    return summary(title, whole, values, coordinates, attributes, module=__name__)
+
+
+def branch_numbers(
+    parts: Sequence[xarray.Dataset], models: Sequence[Model], settings: SearchSettings
+) -> list[dict[int, int]]:
+    """Return, for each law, the numbers of its branches: what turns into a branch of the first law takes its number.
+
+    parts : of the laws, see `one_law`; models : of each law, at any a
+    settings : of the search
+
+    All others have a number of their own.
+    """
+    numbers = [{int(n): int(n) for n in np.unique(parts[0]["branch"].values) if n >= 0}]
+    first = _states(parts[0], models[0])
+    for part, model in zip(parts[1:], models[1:], strict=True):
+        grid = part["a"].values.tolist()
+        firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
+        renamed = joined(firsts, seconds, first, _states(part, model), settings)
+        numbers.append(_with_others(renamed, part, numbers))
+    return numbers
+
+
+def _with_others(
+    known: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]
+) -> dict[int, int]:
+    """Return the numbers of branches of one law with those added that have none: they follow all that are taken.
+
+    known : {number of a branch: the one that it gets}; part : the attractors of that law
+    numbers : of all laws whose numbers are taken
+    """
+    following = max((0, *(n for taken in numbers for n in taken.values())))
+    others = sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - known.keys())
+    return {**known, **{number: following + k for k, number in enumerate(others, start=1)}}
+
+
+def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, Instant]]:
+    """Return {branch: {position of a in the grid: a state on it}}, of mirror images those of one side."""
+    states: dict[int, dict[int, Instant]] = {}
+    for k, slot in np.argwhere((part["branch"].values >= 0) & (part["side"].values >= 0)).tolist():
+        one = part.isel(a=k, attractor=slot)
+        velocity = one["velocity"].values
+        position = one["position"].values - model.at(one["a"].item()).sliding_offset
+        states.setdefault(one["branch"].item(), {})[k] = Instant(position, velocity, velocity == 0.0)
+    return states
+
+
+def with_branches_between(
+    numbers: Sequence[Mapping[int, int]], parts: Sequence[xarray.Dataset]
+) -> list[dict[int, int]]:
+    """Return the numbers of branches with those added that exist only between values of the grid.
+
+    numbers : for each law {number of a branch: the one that it gets}, of the branches at values of the grid
+    parts : of the laws, the attractors at all values, see `refined.one_law`
+    """
+    result: list[dict[int, int]] = []
+    for known, part in zip(numbers, parts, strict=True):
+        result.append(_with_others(known, part, [*numbers, *result]))
+    return result
+
+
+def named_alike(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
+    """Return attractors at all values of a with the names that branches have at the values of the grid."""
+    names = dict(zip(attractors["branch_number"].values.tolist(), attractors["branch_name"].values, strict=True))
+    own = zip(refined["branch_number"].values.tolist(), refined["branch_name"].values, strict=True)
+    return refined.assign(branch_name=refined["branch_name"].copy(data=[names.get(n, name) for n, name in own]))
+
+
+def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
+    """Return the numbers of branches replaced by new ones; what is undetermined stays so."""
+    result = np.full_like(branch, UNDETERMINED)
+    for before, after in renamed.items():
+        result[branch == before] = after
+    return result
+
+
+def digest(dataset: xarray.Dataset) -> str:
+    """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
+    lines = []
+    a = dataset["a"].values
+    names = dict(zip(dataset["branch_number"].values.tolist(), dataset["branch_name"].values, strict=True))
+    for law in dataset["law"].values:
+        one = dataset.sel(law=law)
+        branch = one["branch"].values
+        for number in np.unique(branch[branch >= 0]):
+            slots = branch == number
+            where = a[slots.any(axis=1)]
+            mean = one["mean_distance"].values[slots]
+            kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
+            share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)
+            name = names[int(number)]
+            lines.append(
+                f"{law}, {name}: at {len(where)} of {len(a)} values of a, {where[0]:g} to {where[-1]:g}; "
+                f"<J> {mean.min():.4f} to "
+                f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g})"
+            )
+        undetermined = one["undetermined_count"].values
+        empty = a[branch.max(axis=1) < 0]
+        total = int(dataset.attrs["fraction_samples"]) * len(a)
+        lines.append(
+            f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
+            + (f"; no attractor at a = {', '.join(f'{value:g}' for value in empty)}" if len(empty) else "")
+        )
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,195 @@
+"""The entries of `edges.nc`, found by following closed orbits to where the branches of attractors end or change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.stability.closed_motion import closed_motion
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.edges import Edge
+from burridge_knopoff.stability.following import Following
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.orbit import OrbitError
+from burridge_knopoff.stability.periodic import PeriodicOrbit
+from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.stretch import Stretch, stretch
+from burridge_knopoff.summaries.branch_changes import BranchChange, Change, slots_of_branches
+
+#: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
+FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
+BEYOND = 4
+
+#: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
+LEAST_A = 0.0
+
+# Share of its period within which a closed orbit is the one that has been followed.
+SAME_PERIOD = 1e-3
+
+# Least error that is told: how far rounding changes a root differs between linear-algebra libraries.
+LEAST_ERROR = 1e-10
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An edge of a branch: found on an orbit, or known only to lie within a range of a."""
+
+    change: Change
+    from_branch: int
+    to_branch: int
+    low: float
+    high: float
+    motion: tuple[int, int]
+    lifetime: tuple[float, float]
+    kind: EdgeKind
+    edge: Edge | None
+
+    @property
+    def a(self) -> float:
+        """Friction parameter: that of the edge, or the middle of the range."""
+        return self.edge.a if self.edge else 0.5 * (self.low + self.high)
+
+
+def followed(
+    model: Model, one: xarray.Dataset, changes: Sequence[BranchChange], processes: int = 1
+) -> tuple[list[Stretch], dict[tuple[int, int], int]]:
+    """Follow every attractor of one law that is a closed orbit; return the stretches, and the one of each (a, slot).
+
+    one : the attractors at all values of a; those between the grid are left out where the branch does not change
+    processes : that work at once; no result depends on how many
+    """
+    a_values = one["a"].values
+    branch, side, kind = (one[name].values for name in ("branch", "side", "kind"))
+    closed = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)) & (branch >= 0) & (side >= 0)
+    wanted = np.repeat(one["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
+    for change in changes:
+        for k, slot in ((change.low, change.before), (change.high, change.after)):
+            wanted[k, slot] |= slot >= 0
+    places = [(int(k), int(slot)) for k, slot in np.argwhere(closed & wanted)]
+    models = [model.at(float(a_values[k])) for k, _ in places]
+    states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
+    found: list[Stretch] = []
+    of_slot: dict[tuple[int, int], int] = {}
+
+    def held(place: tuple[int, int], orbit: PeriodicOrbit, since: int = 0) -> bool:
+        """Tell whether an orbit has been followed, on a stretch from that number on."""
+        number = next((n for n in range(since, len(found)) if found[n].holds(orbit, SAME_PERIOD)), None)
+        if number is not None:
+            of_slot[place] = number
+        return number is not None
+
+    with shared_out(processes) as each:
+        orbits = each(_closed, models, *states)
+        left = list(zip(places, orbits, strict=True))
+        while left:
+            # Those next in order that have not been followed: what one of them shows of the others is seen afterwards.
+            following: list[tuple[tuple[int, int], PeriodicOrbit]] = []
+            while left and len(following) < processes:
+                place, orbit = left.pop(0)
+                if isinstance(orbit, OrbitError):
+                    print(f"{model.law.name}: {orbit}")
+                elif not held(place, orbit):
+                    following.append((place, orbit))
+            known = len(found)
+            stretches = each(partial(_stretch, largest=float(np.nanmax(a_values))), [orbit for _, orbit in following])
+            for (place, orbit), one_stretch in zip(following, stretches, strict=True):
+                if held(place, orbit, known):
+                    continue
+                if isinstance(one_stretch, OrbitError):
+                    print(f"{model.law.name}: {one_stretch}")
+                    continue
+                of_slot[place] = len(found)
+                found.append(one_stretch)
+    return found, of_slot
+
+
+def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
+    """Return the closed orbit through a state U_i, U_i', or why there is none."""
+    try:
+        return closed_motion(model, instant_of(np.concatenate([position - model.sliding_offset, velocity])))
+    except OrbitError as error:
+        return error
+
+
+def _stretch(orbit: PeriodicOrbit, largest: float) -> Stretch | OrbitError:
+    """Follow an orbit, and find the edges that it meets, or return why it cannot be followed."""
+    try:
+        found = stretch(orbit, (LEAST_A, largest), BEYOND, FOLLOWING)
+        # Found here, the edges go with the stretch to the process that asks for them.
+        _ = found.low_edges, found.high_edges, found.stable
+    except OrbitError as error:
+        return error
+    return found
+
+
+def entries(
+    one: xarray.Dataset,
+    changes: Sequence[BranchChange],
+    stretches: Sequence[Stretch],
+    of_slot: Mapping[tuple[int, int], int],
+) -> list[Entry]:
+    """Return an entry, or two, for each beginning, end and change, and one for each edge that stable orbits pass.
+
+    A change from one orbit to another has one for the end of the first and one for the beginning of the second, unless
+    they are the same edge.
+    """
+    a, branch, kind = (one[name].values for name in ("a", "branch", "kind"))
+    slots = slots_of_branches(one)
+    grid = np.flatnonzero(one["in_grid"].values[: len(slots)] == 1)
+    found = []
+    for change in changes:
+        ends: list[Edge] = []
+        numbers = of_slot.get((change.low, change.before)), of_slot.get((change.high, change.after))
+        if numbers[0] is not None and numbers[0] == numbers[1]:
+            # One orbit on both sides; only its section points were counted differently.
+            continue
+        for number, name in zip(numbers, ("high_end", "low_end"), strict=True):
+            edge = getattr(stretches[number], name) if number is not None else None
+            if edge is not None and all(abs(edge.a - other.a) > LEAST_ERROR for other in ends):
+                ends.append(edge)
+        low, high = change.low, change.high
+        below = range(low, int(grid[grid <= low][-1]) - 1, -1)
+        above = range(high, int(grid[grid >= high][0]) + 1)
+        motion = (
+            _motion(kind, slots, below, change.from_branch),
+            _motion(kind, slots, above, change.to_branch),
+        )
+        lifetime = _lifetime(one, change)
+        own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
+        found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
+    for number, one_stretch in enumerate(stretches):
+        n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
+        for edge in one_stretch.low_edges + one_stretch.high_edges:
+            if not edge.loses_stability and not edge.turns:
+                k = int(np.clip(np.searchsorted(a[grid], edge.a) - 1, 0, len(grid) - 2))
+                low, high = int(grid[k]), int(grid[k + 1])
+                motion = _motion(kind, slots, [low], n), _motion(kind, slots, [high], n)
+                own = Change.PASSED, n, n, float(a[low]), float(a[high]), motion, (np.nan, np.nan)
+                found.append(Entry(*own, edge.kind, edge))
+    return found
+
+
+def _motion(kind: np.ndarray, slots: Sequence[Mapping[int, int]], places: Iterable[int], branch: int) -> int:
+    """Return the kind of motion on a branch at the first of some values of a at which it is known."""
+    return next((int(kind[k, slots[k][branch]]) for k in places if branch in slots[k]), int(MotionKind.UNDETERMINED))
+
+
+def _lifetime(one: xarray.Dataset, change: BranchChange) -> tuple[float, float]:
+    """Return the interval of the lifetime of chaos next to an edge, the shorter where there is chaos on both sides."""
+    sides = [(change.low, change.before), (change.high, change.after)]
+    known = [(one["lifetime_low"].values[side], one["lifetime_high"].values[side]) for side in sides if side[1] >= 0]
+    return min((interval for interval in known if np.isfinite(interval[0])), default=(np.nan, np.nan))
+
+
+def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
+    """Return the kind of an edge next to which there is no closed orbit: a crisis if chaos ends, begins or dies out."""
+    sides = (change.low, change.before), (change.high, change.after)
+    ends = [kind[k, slot] for k, slot in sides if slot >= 0]
+    chaotic = np.isin(ends, (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS))
+    return EdgeKind.CRISIS if chaotic.all() else EdgeKind.UNDETERMINED

@@ -1,0 +1,94 @@
+"""Attractors along a: what is found at one value is looked for at the others, and no process more changes a number."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.stability import continuation
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.attractors import Search
+from burridge_knopoff.stability.continuation import continue_attractors
+from burridge_knopoff.stability.settings import MOTION, Refine, SearchSettings
+from tests.stability.stand_in import stand_in
+
+STILL, OTHER = 0.0, 5.0
+A_VALUES = (0.1, 0.2, 0.3, 0.4)
+
+
+def models(a_values=A_VALUES):
+    return [Model(Chain(3), law_of("linearized", a)) for a in a_values]
+
+
+def at(place, partner):
+    returns = np.full((1, 6), place)
+    return stand_in(Symmetry.SYMMETRIC, 0.1, partner, returns=returns, mirror_returns=returns)
+
+
+@pytest.fixture
+def scripted(monkeypatch):
+    """States lead to one attractor, and at a = 0.2 to another one as well, which exists up to a = 0.3."""
+    followed = []
+
+    class Scripted(Search):
+        def labels(self, starts, check=True):
+            if check:
+                self.attractors = [at(STILL, 0)]
+                self.vain = 6
+            else:
+                assert self.vain == 0
+                followed.append((self.model.a, [round(start.position[1]) for start in starts]))
+            if self.model.a == 0.2 or (not check and self.model.a <= 0.3):
+                self.attractors = [at(STILL, 0), at(OTHER, 1)]
+
+        def known_labels(self, starts):
+            known = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}
+            return np.array([known.get(round(start.position[1]), -1) for start in starts])
+
+        def drawn_labels(self, start):
+            return np.full(7, len(self.attractors))
+
+    monkeypatch.setattr(continuation, "Search", Scripted)
+    return followed
+
+
+def test_what_one_value_has_is_looked_for_at_the_others(scripted):
+    """Downward and upward, as far as it goes; what both have is not followed again."""
+    found = continue_attractors(models(), refine=Refine(1.0))
+    assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
+    assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
+    assert [branch.tolist() for branch in found.branch] == [[1, 2], [1, 2], [1, 2], [1]]
+    assert [index.tolist() for index in found.upward] == [[0, 1], [0, 1], [0, -1], [-1]]
+    assert [index.tolist() for index in found.downward] == [[-1, -1], [0, 1], [0, 1], [0]]
+    assert [labels.tolist() for labels in found.samples] == [[2] * 7] * 3 + [[1] * 7]
+    assert found.grid == [0, 1, 2, 3]
+
+
+def same(one, other):
+    """Require everything that two results hold to be equal to the bit."""
+    assert type(one) is type(other)
+    if isinstance(one, np.ndarray):
+        np.testing.assert_array_equal(one, other)
+    elif isinstance(one, list | tuple):
+        assert len(one) == len(other)
+        for first, second in zip(one, other, strict=True):
+            same(first, second)
+    elif hasattr(one, "motion") or hasattr(one, "returns"):
+        for item in fields(one):
+            same(getattr(one, item.name), getattr(other, item.name))
+    elif not isinstance(one, Model):
+        assert one == other
+
+
+def test_no_number_depends_on_the_processes():
+    settings = SearchSettings(samples=10, fraction_samples=50, transient=1000.0, window=800.0, pushes=4)
+    options = settings, MOTION, Refine(0.01)
+    one, two = (
+        continue_attractors(models((0.06, 0.09, 0.1)), *options, starts=list(PAPER_STATES.values()), processes=count)
+        for count in (1, 2)
+    )
+    assert len(one.models) > 3
+    for item in fields(one):
+        same(getattr(one, item.name), getattr(two, item.name))

@@ -1,0 +1,26 @@
+"""What several tests of summaries begin from."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.stability.settings import MOTION
+from burridge_knopoff.summaries import attractors
+from tests.summaries.continued import SETTINGS, STATES, continuation
+
+
+@pytest.fixture
+def one_law(monkeypatch):
+    """The summary of a law; of the initial states, under a symmetric contact, the second attractor is reached, or none.
+
+    With blocks that are tested at the start nothing is reached by the first state.
+    """
+
+    def label(model, found, starts, time_limit):
+        assert time_limit == 123.0
+        reached = [1 if len(found) else -1] * len(starts)
+        if starts and starts[0].stuck.any():
+            reached[0] = -1
+        return np.array(reached, int), np.zeros(len(starts))
+
+    monkeypatch.setattr(attractors, "label", label)
+    return lambda law: attractors.one_law(continuation(law), STATES, SETTINGS, MOTION, "tested")

@@ -1,0 +1,47 @@
+"""A hand-made continuation, of which tests know what becomes of it in the summaries."""
+
+import numpy as np
+
+from burridge_knopoff import Chain, InitialState, Model, law_of
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.continuation import Continuation
+from burridge_knopoff.stability.lifetime import Lifetime
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.settings import SearchSettings
+from tests.stability.stand_in import stand_in
+
+STATES = [InitialState("here", (0.0,) * 3, (0.1,) * 3), InitialState("back", (0.0,) * 3, (0.1, -0.1, 0.1))]
+SETTINGS = SearchSettings(samples=9, fraction_samples=4, time_limit=123.0, lifetime=500.0)
+
+
+def continuation(law):
+    """Return synchrony and a torus, then a mirror pair that the torus turns into, then nothing.
+
+    Between the first two values of the grid one was put in, at which the torus alone was followed.
+    """
+    torus = {
+        "kind": MotionKind.QUASIPERIODIC,
+        "section_period": 0,
+        "stop_rate": np.array([0.1, 0.0, 0.3]),
+        "slow": True,
+    }
+    first = [
+        stand_in(Symmetry.SYMMETRIC, 0.14, 0, 0.5, mean_distance_error=1e-3, **torus),
+        stand_in(Symmetry.SYNCHRONIZED, 0.0, 1, 0.0, kind=MotionKind.SYNCHRONIZED, close_returns=20, radius=0.02),
+    ]
+    between = [stand_in(Symmetry.SYMMETRIC, 0.145, 0, 0.5, **torus)]
+    pair = {"kind": MotionKind.CHAOTIC, "exponent": np.array([0.03, 0.0])}
+    second = [stand_in(Symmetry.ASYMMETRIC, 0.15, 1, -2.0, **pair), stand_in(Symmetry.ASYMMETRIC, 0.15, 0, 2.0, **pair)]
+    numbers = [([1, 0], [0, 0]), ([1], [0]), ([1, 1], [-1, 1]), ([], [])]
+    dying = Lifetime(4, 1200.0)
+    return Continuation(
+        [Model(Chain(3), law_of(law, a), 0.2) for a in (0.05, 0.07, 0.1, 0.2)],
+        [0, 2, 3],
+        [first, between, second, []],
+        lifetimes=[[None, None], [None], [dying, dying], []],
+        branch=[np.array(branch) for branch, _ in numbers],
+        side=[np.array(side) for _, side in numbers],
+        upward=[np.array([1, -1]), np.array([-1, -1]), np.zeros(0, int)],
+        downward=[np.array([-1, -1]), np.array([0, 0]), np.zeros(0, int)],
+        samples=[np.array([0, 0, 1, -1]), np.array([1, 1, 1, 0]), np.full(4, -1)],
+    )

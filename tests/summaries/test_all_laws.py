@@ -1,0 +1,91 @@
+"""The attractors of all laws in one file: what is one branch has one number and one name."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.summaries import all_laws
+from burridge_knopoff.summaries.all_laws import named_alike, with_branches_between
+from tests.summaries.continued import SETTINGS
+
+
+def test_laws_are_put_together_under_common_numbers(one_law):
+    first, second, third = (one_law(law) for law in ("linearized", "nonlinear", "exponential"))
+    numbers = [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
+    found = all_laws.merge([first.isel(attractor=slice(1, 2)), second, third], numbers)
+    assert found["law"].values.tolist() == ["linearized", "nonlinear", "exponential"]
+    assert found["branch"].values.tolist() == [
+        [[1, -1], [1, -1], [-1, -1]],
+        [[0, 1], [1, 1], [-1, -1]],
+        [[0, 2], [2, 2], [-1, -1]],
+    ]
+    assert found["upward_branch"].values[2].tolist() == [[-1, 2], [-1, -1], [-1, -1]]
+    assert found["sweep_branch"].values[2, 0].tolist() == [[0, -1, -1], [2, 2, -1]]
+    np.testing.assert_array_equal(found["mean_distance"].values[0], [[0.14, np.nan], [0.15, np.nan], [np.nan] * 2])
+    assert found["close_returns"].values[0].tolist() == [[8, -1], [8, -1], [-1, -1]]
+    assert found["basin_count"].values[0].tolist() == [[2, 0], [1, 0], [0, 0]]
+    assert "law" not in found.attrs
+    assert found.attrs["fraction_samples"] == 4
+    assert found["branch_number"].values.tolist() == [0, 1, 2]
+
+
+def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law):
+    """All others have one of their own, over all laws."""
+    parts = [one_law(law) for law in ("linearized", "nonlinear", "exponential")]
+    models = [Model(Chain(3), law_of(part.attrs["law"], 0.0), 0.2) for part in parts]
+    answers = [{0: 0, 1: 1}, {0: 0}]
+
+    def joined(firsts, seconds, first, second, settings):
+        assert [model.a for model in firsts] == [model.a for model in seconds] == [0.05, 0.1, 0.2]
+        assert {model.law.name for model in firsts} == {"linearized"}
+        assert sorted(first) == sorted(second) == [0, 1]
+        # Of a mirror pair the side that counts as the first.
+        assert sorted(second[1]) == [0, 1]
+        assert first[1][1].position[0] == pytest.approx(2.0)
+        assert first[1][1].stuck.tolist() == [True, False, False]
+        assert settings is SETTINGS
+        return answers.pop(0)
+
+    monkeypatch.setattr(all_laws, "joined", joined)
+    assert all_laws.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
+
+
+def test_the_digest_tells_each_branch(one_law):
+    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    assert all_laws.digest(found) == (
+        "linearized, synchronized: at 1 of 3 values of a, 0.05 to 0.05; <J> 0.0000 to 0.0000; synchronized; basin "
+        "fraction at most 0.250 (a = 0.05)\n"
+        "linearized, mirror pair (1): at 2 of 3 values of a, 0.05 to 0.1; <J> 0.1400 to 0.1500; quasiperiodic, "
+        "transient chaos; basin fraction at most 1.000 (a = 0.1)\n"
+        "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
+    )
+
+
+def branches(*numbers):
+    return xr.Dataset({"branch": (("value", "attractor"), np.array(numbers))})
+
+
+def test_a_branch_between_has_a_number_of_its_own():
+    numbers = [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
+    parts = [branches([0, 1], [3, -1], [4, 2]), branches([0, 2], [3, 1], [-1, 9])]
+    assert with_branches_between(numbers, parts) == [
+        {0: 0, 1: 1, 4: 4, 2: 6, 3: 7},
+        {0: 0, 2: 1, 3: 5, 1: 8, 9: 9},
+    ]
+    assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
+
+
+def named(names):
+    return xr.Dataset(
+        {
+            "branch_number": ("number", list(names)),
+            "branch_name": ("number", np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}),
+        }
+    )
+
+
+def test_names_are_those_at_the_values_of_the_grid():
+    found = named_alike(named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"}))
+    assert found["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
+    assert found["branch_name"].attrs == {"long_name": "what it is called"}
