@@ -1,8 +1,10 @@
 """Attractors of one law along a, at the values of the grid and at those put in between."""
 
+import logging
 import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+logging.basicConfig(level=logging.INFO, format="%(message)s")
 
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.model.initial import InitialState

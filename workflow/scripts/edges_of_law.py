@@ -1,8 +1,10 @@
 """Edges of the branches of attractors under one law."""
 
+import logging
 import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+logging.basicConfig(level=logging.INFO, format="%(message)s")
 
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.study.model import model_of

@@ -2,25 +2,40 @@
 
 from __future__ import annotations
 
+import logging
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing import get_context
 from typing import Any
 
-#: Does the work of `map`, and returns a list.
-Mapping = Callable[..., list[Any]]
+_LOG = logging.getLogger(__name__)
 
 
 @contextmanager
-def shared_out(processes: int) -> Iterator[Mapping]:
+def shared_out(processes: int) -> Iterator[Callable[..., list[Any]]]:
     """Give what calls a function for each item of one or several sequences, in so many processes at once.
 
-    Function, items and results have to be picklable, and the function must not rely on what another call has changed.
+    `each(what, function, *sequences)` returns the list of results, and logs the CPU seconds that `what` has taken.
+    Function, items and results have to be picklable, and a call must not rely on what another one has changed.
     """
     if processes == 1:
-        yield lambda function, *items: list(map(function, *items))
+        yield partial(_each, map)
         return
     # A fresh interpreter would run the script of the caller once more.
     with ProcessPoolExecutor(processes, get_context("fork")) as pool:
-        yield lambda function, *items: list(pool.map(function, *items))
+        yield partial(_each, pool.map)
+
+
+def _each(call: Callable[..., Any], what: str, function: Callable[..., Any], *items: Any) -> list[Any]:
+    done = list(call(partial(_timed, function), *items))
+    seconds = [spent for _, spent in done]
+    _LOG.info("%s: %d, %.1f s, the longest %.1f s", what, len(done), sum(seconds), max(seconds, default=0.0))
+    return [result for result, _ in done]
+
+
+def _timed(function: Callable[..., Any], *items: Any) -> tuple[Any, float]:
+    begin = time.process_time()
+    return function(*items), time.process_time() - begin

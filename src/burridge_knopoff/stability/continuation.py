@@ -85,17 +85,17 @@ def continue_attractors(
     """
     with shared_out(processes) as each:
         searches = [Search(model, settings, motion, tuning) for model in models]
-        searches = each(partial(_searched, starts=starts, start=start), searches)
+        searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
         for giver, taker in (*pairwise(reversed(searches)), *pairwise(searches)):
             _hand_on(giver, taker)
-        drawn = each(partial(_drawn, start=start), searches)
+        drawn = each("labelled for basin fractions", partial(_drawn, start=start), searches)
         # The sets of attractors are complete now: what follows only reads them.
         searches = [search for search, _ in drawn]
-        steps = each(partial(_step, refine=refine), searches[:-1], searches[1:])
+        steps = each("refined", partial(_step, refine=refine), searches[:-1], searches[1:])
         whole = [searches[0]]
         for step, search in zip(steps, searches[1:], strict=True):
             whole += [*step.inner, search]
-        lived = each(_lifetimes, whole)
+        lived = each("lifetimes", _lifetimes, whole)
     attractors = [search.attractors for search in whole]
     # At the ends of the grid nothing follows.
     first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))

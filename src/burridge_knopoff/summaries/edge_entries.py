@@ -85,7 +85,7 @@ def followed(
         return number is not None
 
     with shared_out(processes) as each:
-        orbits = each(_closed, models, *states)
+        orbits = each("closed orbits", _closed, models, *states)
         left = list(zip(places, orbits, strict=True))
         while left:
             # Those next in order that have not been followed: what one of them shows of the others is seen afterwards.
@@ -97,7 +97,9 @@ def followed(
                 elif not held(place, orbit):
                     following.append((place, orbit))
             known = len(found)
-            stretches = each(partial(_stretch, largest=float(np.nanmax(a_values))), [orbit for _, orbit in following])
+            stretches = each(
+                "followed", partial(_stretch, largest=float(np.nanmax(a_values))), [orbit for _, orbit in following]
+            )
             for (place, orbit), one_stretch in zip(following, stretches, strict=True):
                 if held(place, orbit, known):
                     continue
