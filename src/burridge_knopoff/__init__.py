@@ -17,24 +17,26 @@ __all__ = [
     "find_attractors",
     "label_states",
     "law_of",
+    "open_study",
     "simulate",
+    "sweep",
     "synchronized_orbit",
     "transverse_exponent",
 ]
 
 if TYPE_CHECKING:
     from burridge_knopoff.laws import FormulaLaw, Law, law_of
+    from burridge_knopoff.library.basin_map import basin_map
+    from burridge_knopoff.library.simulate import simulate
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import InitialState
     from burridge_knopoff.model.model import Model
     from burridge_knopoff.running.settings import Settings
-    from burridge_knopoff.running.simulation import simulate
     from burridge_knopoff.running.trajectory import Trajectory
     from burridge_knopoff.stability.attractors import find_attractors
     from burridge_knopoff.stability.chains import transverse_exponent
     from burridge_knopoff.stability.family import synchronized_orbit
     from burridge_knopoff.stability.labels import label_states
-    from burridge_knopoff.summaries.basin_map import basin_map
 
 _HOME = {
     "Chain": "model.chain",
@@ -44,11 +46,13 @@ _HOME = {
     "Model": "model.model",
     "Settings": "running.settings",
     "Trajectory": "running.trajectory",
-    "basin_map": "summaries.basin_map",
+    "basin_map": "library.basin_map",
     "find_attractors": "stability.attractors",
     "label_states": "stability.labels",
+    "open_study": "library.open_study",
+    "sweep": "library.sweep",
     "law_of": "laws",
-    "simulate": "running.simulation",
+    "simulate": "library.simulate",
     "synchronized_orbit": "stability.family",
     "transverse_exponent": "stability.chains",
 }
