@@ -25,9 +25,8 @@ CONFIG = {
 MISSING = ("nonlinear", "plus", "0.0800")
 
 
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("results") / "few"
+def make_study(folder):
+    """Make the points of a study but one, and something for a summary."""
     study = load_study(CONFIG, "few.yaml")
     for law, initial, a in all_points(study):
         if (law, initial, a) != MISSING:
@@ -37,6 +36,12 @@ def results(tmp_path_factory):
     (folder / "summary").mkdir()
     xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf(folder / "summary" / "some.nc")
     write_study_record(folder, study, "few.yaml", CONFIG, "--configfile few.yaml")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("results") / "few"
+    make_study(folder)
     return folder
 
 

@@ -51,6 +51,14 @@ def basin_map(
     The map `branch` of the first Dataset has the shape (1, pixels, pixels), U_N(0) along the rows. The uncertainty
     exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is not allowed, and
     where no attractor is found.
+
+    >>> from burridge_knopoff import basin_map
+    >>> search = {"samples": 12, "transient": 500, "window": 500}
+    >>> basins, attractors = basin_map("linearized", 0.08, pixels=4, **search)
+    >>> basins.branch.shape, basins.undetermined_count.item()
+    ((1, 4, 4), 2)
+    >>> attractors.mean_distance.sel(law="linearized", a=0.08).values.round(3).tolist()
+    [0.0, 0.141]
     """
     from burridge_knopoff.stability.continuation import continue_attractors
     from burridge_knopoff.summaries import attractors as attractor_summary

@@ -30,9 +30,11 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     Raises ValueError, one line, if the folder holds no study, or a file that cannot be read.
 
     >>> from burridge_knopoff import open_study
-    >>> study = open_study("results/paper")  # doctest: +SKIP
-    >>> study["grid"].mean_distance.sel(law="linearized").plot.line(x="a")  # doctest: +SKIP
-    >>> study["points/linearized/plus/a0.0800"].velocity.plot.line(x="trajectory_time")  # doctest: +SKIP
+    >>> study = open_study("results/paper")
+    >>> study["grid"].mean_distance.dims
+    ('law', 'initial', 'a')
+    >>> study["points/linearized/plus/a0.0800"].velocity.dims
+    ('trajectory_time', 'block')
     """
     results = Path(results)
     record = read_study_record(results)

@@ -62,7 +62,7 @@ def simulate(
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=100, window=100, batches=2)
     >>> run.status, run.event_count, round(run.mean_distance, 4)
-    ('completed', 211, 0.6154)
+    ('completed', 204, 0.1401)
     >>> own = {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}
     >>> simulate("nonlinear", 0.1, own, transient=0, window=50).model.blocks
     2
