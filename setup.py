@@ -38,29 +38,36 @@ class RecordedBuild(build_ext):
     def run(self) -> None:
         """Compile all of it or, if nothing has changed, what is not there."""
         # Times of files do not tell what was compiled from what.
-        self.force = self.force or FORCE
+        self.force = self.force or changed()
         self.parallel = self.parallel or os.cpu_count()
         (KERNEL / RECORD).unlink(missing_ok=True)
+        # Only here: pip runs this file three times, and a source distribution needs no C.
+        translated = cythonize(
+            [extension(item.name, Path(item.sources[0])) for item in self.extensions],
+            nthreads=os.cpu_count() or 1,
+            force=self.force,
+            build_dir="build/cython",
+            shared_utility_qualified_name=SHARED,
+            compiler_directives=DIRECTIVES,
+        )
+        for item, in_c in zip(self.extensions, translated, strict=True):
+            item.sources = in_c.sources
         super().run()
         write_record(Path(self.get_ext_fullpath("burridge_knopoff.kernel.series")).parent)
 
+    def get_source_files(self) -> list[str]:
+        """Return what a source distribution holds of the kernel: all but what Cython makes."""
+        return [name for name in super().get_source_files() if Path(name).exists()]
 
-FORCE = changed()
+
 setup(
     cmdclass={"build_ext": RecordedBuild},
-    ext_modules=cythonize(
-        [
-            extension(SHARED, Path("_shared.c")),
-            *(
-                extension(f"burridge_knopoff.kernel.{source.stem}", source)
-                for source in sorted(KERNEL.glob("*.py"))
-                if source.stem != "__init__"
-            ),
-        ],
-        nthreads=os.cpu_count() or 1,
-        force=FORCE,
-        build_dir="build/cython",
-        shared_utility_qualified_name=SHARED,
-        compiler_directives=DIRECTIVES,
-    ),
+    ext_modules=[
+        extension(SHARED, Path("_shared.c")),
+        *(
+            extension(f"burridge_knopoff.kernel.{source.stem}", source)
+            for source in sorted(KERNEL.glob("*.py"))
+            if source.stem != "__init__"
+        ),
+    ],
 )

@@ -18,10 +18,9 @@ from pathlib import Path
 import numpy as np
 from measure import cpu_times, print_table, verdict
 
-from burridge_knopoff import Chain, Model, find_attractors, law_of
+from burridge_knopoff import Chain, Model, find_attractors, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.stability.basins import pixel_centres, plane
 from burridge_knopoff.stability.labels import label_states
 

@@ -78,3 +78,11 @@ def small_studies(tmp_path_factory: pytest.TempPathFactory):
         return pickle.loads((folder / "study.pickle").read_bytes())
 
     return small_study
+
+
+@pytest.fixture(scope="session")
+def installed(repository: Path, tmp_path_factory: pytest.TempPathFactory):
+    """The package installed from its source distribution, in an environment with what it declares and nothing else."""
+    from tests.installation import Installation, install
+
+    return Installation(made_once(tmp_path_factory, "installed", lambda folder: install(repository, folder)))

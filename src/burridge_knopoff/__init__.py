@@ -1,4 +1,24 @@
-"""Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model)."""
+"""Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model).
+
+The library is what is imported from here; `help` of each name has its shapes, units, errors and an example.
+
+The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built in, `FormulaLaw` for one of one's own);
+an `InitialState` to begin from, an `Instant` on the way.
+
+Runs: `simulate` makes a `Trajectory` by `Settings`, `sweep` many of them along a; `open_study` reads those of a study.
+
+Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
+`SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
+plane.
+
+Orbits: `closed_motion` and `find_periodic_orbit` return a `PeriodicOrbit`, `synchronized_orbit` an `Orbit`, or raise
+`OrbitError`. Their stability: `multipliers` returns `Multipliers`, `transverse_multiplier` one of them.
+
+Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is that of synchrony.
+
+Edges: `follow` leads along a branch, each orbit a `BranchOrbit`, as `Following` says; `locate_edges` finds every `Edge`
+on it, and its `EdgeKind`.
+"""
 
 from __future__ import annotations
 
@@ -6,51 +26,111 @@ from typing import TYPE_CHECKING
 
 __version__ = "0.1.0"
 __all__ = [
+    "Attractor",
+    "BranchOrbit",
     "Chain",
+    "Edge",
+    "EdgeKind",
+    "Following",
     "FormulaLaw",
     "InitialState",
+    "Instant",
     "Law",
     "Model",
+    "MotionKind",
+    "MotionSettings",
+    "Multipliers",
+    "Orbit",
+    "OrbitError",
+    "PeriodicOrbit",
+    "SearchSettings",
     "Settings",
+    "SteadyMotion",
+    "Symmetry",
     "Trajectory",
     "basin_map",
+    "closed_motion",
     "find_attractors",
+    "find_periodic_orbit",
+    "follow",
     "label_states",
     "law_of",
+    "locate_edges",
+    "multipliers",
+    "open_study",
     "simulate",
+    "sweep",
     "synchronized_orbit",
     "transverse_exponent",
+    "transverse_multiplier",
 ]
 
 if TYPE_CHECKING:
     from burridge_knopoff.laws import FormulaLaw, Law, law_of
+    from burridge_knopoff.library.basin_map import basin_map
+    from burridge_knopoff.library.open_study import open_study
+    from burridge_knopoff.library.simulate import simulate
+    from burridge_knopoff.library.sweep import sweep
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import InitialState
-    from burridge_knopoff.model.model import Model
+    from burridge_knopoff.model.model import Instant, Model
     from burridge_knopoff.running.settings import Settings
-    from burridge_knopoff.running.simulation import simulate
     from burridge_knopoff.running.trajectory import Trajectory
+    from burridge_knopoff.stability.attractor import Attractor, Symmetry
     from burridge_knopoff.stability.attractors import find_attractors
     from burridge_knopoff.stability.chains import transverse_exponent
+    from burridge_knopoff.stability.closed_motion import closed_motion
+    from burridge_knopoff.stability.edge_kind import EdgeKind
+    from burridge_knopoff.stability.edges import Edge, locate_edges
     from burridge_knopoff.stability.family import synchronized_orbit
+    from burridge_knopoff.stability.floquet import Multipliers, multipliers
+    from burridge_knopoff.stability.following import Following, follow
     from burridge_knopoff.stability.labels import label_states
-    from burridge_knopoff.summaries.basin_map import basin_map
+    from burridge_knopoff.stability.motion import MotionKind
+    from burridge_knopoff.stability.orbit import Orbit, OrbitError, transverse_multiplier
+    from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
+    from burridge_knopoff.stability.pseudo_arclength import BranchOrbit
+    from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+    from burridge_knopoff.stability.steady import SteadyMotion
 
 _HOME = {
+    "Attractor": "stability.attractor",
+    "BranchOrbit": "stability.pseudo_arclength",
     "Chain": "model.chain",
+    "Edge": "stability.edges",
+    "EdgeKind": "stability.edge_kind",
+    "Following": "stability.following",
     "FormulaLaw": "laws",
     "InitialState": "model.initial",
+    "Instant": "model.model",
     "Law": "laws",
     "Model": "model.model",
+    "MotionKind": "stability.motion",
+    "MotionSettings": "stability.settings",
+    "Multipliers": "stability.floquet",
+    "Orbit": "stability.orbit",
+    "OrbitError": "stability.orbit",
+    "PeriodicOrbit": "stability.periodic",
+    "SearchSettings": "stability.settings",
     "Settings": "running.settings",
+    "SteadyMotion": "stability.steady",
+    "Symmetry": "stability.attractor",
     "Trajectory": "running.trajectory",
-    "basin_map": "summaries.basin_map",
+    "basin_map": "library.basin_map",
+    "closed_motion": "stability.closed_motion",
     "find_attractors": "stability.attractors",
+    "find_periodic_orbit": "stability.periodic",
+    "follow": "stability.following",
     "label_states": "stability.labels",
     "law_of": "laws",
-    "simulate": "running.simulation",
+    "locate_edges": "stability.edges",
+    "multipliers": "stability.floquet",
+    "open_study": "library.open_study",
+    "simulate": "library.simulate",
+    "sweep": "library.sweep",
     "synchronized_orbit": "stability.family",
     "transverse_exponent": "stability.chains",
+    "transverse_multiplier": "stability.orbit",
 }
 
 
@@ -63,3 +143,8 @@ def __getattr__(name: str) -> object:
         globals()[name] = value
         return value
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    # For the completion of names that have not been used yet.
+    return sorted({*globals(), *__all__})

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
 from burridge_knopoff.laws import FormulaLaw
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.running.simulation import simulate
 
 
 @pytest.fixture(scope="module")

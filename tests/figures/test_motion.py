@@ -3,9 +3,9 @@
 import matplotlib as mpl
 import pytest
 
+from burridge_knopoff import simulate
 from burridge_knopoff.figures import distance, motion
 from burridge_knopoff.figures.style import write_figure
-from burridge_knopoff.running.simulation import simulate
 
 
 @pytest.fixture(scope="module")

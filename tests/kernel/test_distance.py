@@ -7,9 +7,9 @@ import pytest
 from mpmath import mp
 from scipy.integrate import quad
 
+from burridge_knopoff import simulate
 from burridge_knopoff.kernel.distance import _gauss_legendre
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.running.simulation import simulate
 
 
 def test_mean_distance_to_rounding():

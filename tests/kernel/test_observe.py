@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff import simulate
 from tests.flows import wave
 
 

@@ -9,9 +9,9 @@ import xarray as xr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import point_identity, write_point
 from burridge_knopoff.provenance.seal import BadFile, Seal, identity, read_seal, seal
-from burridge_knopoff.running.simulation import simulate
 from tests.optional import needs, setting
 
 

@@ -2,10 +2,10 @@
 
 import pytest
 
+from burridge_knopoff import simulate
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.running.simulation import simulate
 
 
 @pytest.mark.parametrize(

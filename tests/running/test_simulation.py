@@ -5,11 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.laws import LAWS
+from burridge_knopoff import simulate
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.model.model import CONTACTS, Model
-from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff.model.model import CONTACTS
 from tests.flows import SYMMETRIC
 
 EVENT_DRIVEN = [("linearized", "map"), ("linearized", "series"), ("nonlinear", "series")]
@@ -123,10 +122,3 @@ def test_motion_without_bound_ends_the_run(solver):
     assert run.status == "diverged"
     assert run.end_time < 1000.0
     assert np.isnan(run.mean_distance)
-
-
-@pytest.mark.parametrize("options", [{"window": 10.0}, {"windows": 10.0}, {"v": 0.2}, {"chain": Chain(3)}])
-def test_settings_by_name_are_refused_beside_a_model(options):
-    """They would have no effect."""
-    with pytest.raises(ValueError, match="not allowed beside a model"):
-        simulate(Model(Chain(3), LAWS["linearized"](0.08)), "plus", **options)

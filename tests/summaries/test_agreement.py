@@ -7,10 +7,10 @@ import pytest
 import xarray
 from scipy.stats import wasserstein_distance
 
+from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import agreement, lyapunov, mean_distance
 from burridge_knopoff.summaries.judgement import judge

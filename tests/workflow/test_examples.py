@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff import simulate
 from tests.pages import outputs
 from tests.test_tutorial import FROM_FILES
 from tests.workflow.conftest import REPOSITORY, Study

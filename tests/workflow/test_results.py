@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
+from burridge_knopoff import simulate
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.stability.family import Family
 
 GRID = [0.05, 0.08, 0.2, 0.22]

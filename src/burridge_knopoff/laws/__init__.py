@@ -31,6 +31,15 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
         name as `law` if it goes by another one
 
     Raises ValueError if there is no such law, or if the law refuses its numbers.
+
+    Built in are linearized and nonlinear (the paper's), carlson_langer, exponential and stribeck; the module of each in
+    `burridge_knopoff.laws` has its formula and its source.
+
+    >>> from burridge_knopoff import law_of
+    >>> law_of("carlson_langer", 0.5, {"sigma": 0.02})
+    <law carlson_langer: (1 - sigma)/(1 + a*u/(1 - sigma)), a=0.5, sigma=0.02>
+    >>> law_of("mine", 0.5, {"formula": "(1 - drop)*exp(-a*u)", "drop": 0.02}).name
+    'mine'
     """
     values = dict(description or {})
     if "name" in values:

@@ -37,6 +37,16 @@ class Law:
 
     Raises ValueError for a number that is not finite, for Φ(0), the friction on a block that starts, unless it is above
     0 and at most 1, and where Φ is not analytic and finite for all speeds up to FASTEST.
+
+    A law is a function of the speed, in units of ωF(0)/k; `at` gives it at another a. Laws that are built in come from
+    `law_of`, and name their source; a law of one's own is a `FormulaLaw`, or a subclass with `formula` and `text`.
+
+    >>> from burridge_knopoff import Law, law_of
+    >>> law = law_of("nonlinear", 0.25)
+    >>> isinstance(law, Law), law([0.0, 1.0, 4.0]).tolist(), float(law.slope(0.0))
+    (True, [1.0, 0.8, 0.5], -0.25)
+    >>> law.at(0.5).a
+    0.5
     """
 
     #: Φ in the syntax of a config: u is U', a the friction parameter.
@@ -141,6 +151,13 @@ class FormulaLaw(Law):
     """A law given by its formula, under a name, with numbers for all names in it but `a` and `u`.
 
     Raises ValueError as `Law` does, and for a formula with anything in it that is not allowed there.
+
+    Allowed are numbers, + − * / **, brackets, and exp, log, sqrt and tanh; u is the speed U'.
+
+    >>> from burridge_knopoff import FormulaLaw
+    >>> law = FormulaLaw(0.04, "1/(1 + a*u)**p", name="power", p=2.0)
+    >>> law, round(float(law(5.0)), 4)
+    (<law power: 1/(1 + a*u)**p, a=0.04, p=2.0>, 0.6944)
     """
 
     def __init__(self, a: float, formula: str, /, *, name: str = "formula", **numbers: float) -> None:

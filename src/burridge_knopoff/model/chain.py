@@ -34,6 +34,16 @@ class Chain:
     that K·1 = D. With the defaults N = 3 is the paper's chain (Eq. 2), N = 2 the two-block train model that it cites.
 
     Raises ValueError for a number of blocks, of springs, or a strength that is not allowed.
+
+    Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
+    in units of F(0).
+
+    >>> from burridge_knopoff import Chain
+    >>> chain = Chain(3, coupling=(1.0, 1.5))
+    >>> chain.stiffness.tolist()
+    [[2.0, -1.0, 0.0], [-1.0, 4.5, -1.5], [0.0, -1.5, 2.5]]
+    >>> chain.is_mirror_symmetric, Chain(5, ends="ring").is_mirror_symmetric
+    (False, True)
     """
 
     blocks: Annotated[int, Whole(2, MAXIMUM_BLOCKS), "number of blocks N"] = 3

@@ -22,6 +22,12 @@ class InitialState:
     It says neither which blocks stick nor where uniform sliding is: `Model.begin` makes an `Instant` of it.
 
     Raises ValueError, one line, for anything out of range, and where they do not match in count.
+
+    Both are in the units of `Model`. The paper's two states, `minus` and `plus`, are known by name (its Section III).
+
+    >>> from burridge_knopoff import InitialState
+    >>> InitialState("own", position=(-0.9, -1.1), velocity=(0.1, 0.1))
+    InitialState(name='own', position=(-0.9, -1.1), velocity=(0.1, 0.1))
     """
 
     name: str

@@ -30,6 +30,16 @@ class Model:
     chain, law : see `Chain` and `laws`
 
     Raises ValueError, one line, for anything out of range.
+
+    All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), v in units of ωF(0)/k, as in the paper
+    (Section II, Eqs. 1 and 2).
+
+    >>> from burridge_knopoff import Chain, Model, law_of
+    >>> model = Model(Chain(4), law_of("nonlinear", 0.08), v=0.12)
+    >>> model.blocks, model.a, model.at(0.1).a
+    (4, 0.08, 0.1)
+    >>> model.sliding_offset.shape
+    (4,)
     """
 
     chain: Chain
@@ -115,6 +125,14 @@ class Instant:
     that a solver changes as it goes.
 
     position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : which blocks stick
+
+    Positions and velocities are in the units of `Model`, e_i is its `sliding_offset`.
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> at = model.begin(InitialState("own", (-0.9, -1.1, -1.0), (0.1, 0.1, 0.1)), start="tested")
+    >>> at.stuck.tolist(), at.velocity.tolist()
+    ([True, False, True], [0.0, 0.1, 0.0])
     """
 
     position: np.ndarray

@@ -33,6 +33,11 @@ class Settings:
     """How a run begins, how it is computed, and what is kept of it; times in units of 1/ω.
 
     Raises ValueError, one line, for anything out of range.
+
+    >>> from burridge_knopoff import Settings
+    >>> settings = Settings(transient=100, window=200, events="all")
+    >>> settings.duration, settings.solver
+    (300.0, 'series')
     """
 
     start: Annotated[str, OneOf(STARTS), START] = "moving"

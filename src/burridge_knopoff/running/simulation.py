@@ -3,79 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields
-from typing import Any, overload
 
 import numpy as np
 
 from burridge_knopoff.kernel.exponents import Exponents
-from burridge_knopoff.laws import Law, law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState, initial_state
+from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import RK4_ORDER, SERIES_ORDER, Runner, new_observer
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.trajectory import Trajectory, collect
 
 
-@overload
-def simulate(model: Model, initial: str | InitialState = ..., settings: Settings = ..., /) -> Trajectory: ...
-
-
-@overload
-def simulate(
-    law: str | Law = ...,
-    a: float = ...,
-    initial: str | InitialState = ...,
-    *,
-    chain: Chain | None = ...,
-    v: float = ...,
-    contact: str = ...,
-    **settings: Any,
-) -> Trajectory: ...
-
-
-def simulate(
-    law: Any = "linearized",
-    a: Any = None,
-    initial: Any = None,
-    *,
-    chain: Chain | None = None,
-    v: float = 0.1,
-    contact: str = "one_sided",
-    **settings: Any,
-) -> Trajectory:
-    """Run one simulation and return its trajectory: `simulate(model, initial, settings)`, or in short by numbers.
-
-    law, a : a law and its friction parameter, 0.08 if none is given: the name of a law that is built in, or a `Law`
-    initial : minus (if none is given) or plus (the paper's, three blocks) or an InitialState
-    chain : without one the paper's springs, as many blocks as the initial state has
-    v, contact : see Model; settings : those of Settings by name
-
-    Raises ValueError, one line, for anything that the model or the solver does not allow.
-    """
-    if isinstance(law, Model):
-        if settings or (chain, v, contact) != (None, 0.1, "one_sided"):
-            raise ValueError("chain, v, contact, settings by name: not allowed beside a model, which takes a Settings")
-        return run(law, _state(a), initial)
-    state = _state(initial)
-    known = {item.name for item in fields(Settings)}
-    for key in settings:
-        if key not in known:
-            raise ValueError(f"{key}: not a setting: {' | '.join(sorted({*known, 'chain', 'contact', 'v'}))}")
-    a = 0.08 if a is None else a
-    law = law.at(a) if isinstance(law, Law) else law_of(law, a)
-    return run(Model(chain or Chain(len(state.position)), law, v, contact), state, Settings(**settings))
-
-
-def _state(initial: str | InitialState | None) -> InitialState:
-    return initial if isinstance(initial, InitialState) else initial_state(initial or "minus")
-
-
 def run(model: Model, initial: InitialState, settings: Settings | None = None, at: Instant | None = None) -> Trajectory:
-    """Run one simulation of a model; see `simulate`.
+    """Run one simulation of a model and return its trajectory.
 
     at : the state to begin from if it is one in the middle of a motion; without it that of the initial state
+
+    Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
     settings = Settings() if settings is None else settings
     settings.check_blocks(model.blocks)

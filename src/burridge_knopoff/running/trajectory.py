@@ -24,6 +24,19 @@ class Trajectory:
     """What a run left: model, initial state, settings, status, and observables; arrays have the names of point files.
 
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
+
+    Times are in units of 1/ω. Shapes: `time`, `distance` (samples,); `event_time`, `event_block`, `event_kind`
+    (events,), `event_position`, `event_velocity` (events, blocks), and likewise `earlier_event_…` for events without
+    states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`, `velocity` (times, blocks);
+    `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches in front. docs/data.md has a
+    line on each. Averages are NaN unless `status` is completed.
+
+    >>> from burridge_knopoff import simulate
+    >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
+    >>> run.status, run.event_count, run.event_position.shape
+    ('completed', 10, (10, 3))
+    >>> run.to_dataset().velocity.dims
+    ('trajectory_time', 'block')
     """
 
     model: Model

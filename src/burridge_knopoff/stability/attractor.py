@@ -18,6 +18,10 @@ class Symmetry(IntEnum):
 
     Mirror blocks move as one (synchronized), the set is its own mirror image (symmetric), or neither (asymmetric), as
     in every chain that is not its own mirror image.
+
+    >>> from burridge_knopoff import Symmetry
+    >>> [item.name for item in Symmetry]
+    ['SYNCHRONIZED', 'SYMMETRIC', 'ASYMMETRIC']
     """
 
     SYNCHRONIZED = 0
@@ -36,6 +40,15 @@ class Attractor:
     close_returns : successive returns within the radius after which a trajectory counts as captured
     patience : time by which a captured trajectory may still come to a closed orbit in the midst of the attractor; 0
         where there is no such orbit
+
+    Distances are the largest difference of a position or a velocity, in the units of `Model`.
+
+    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> settings = SearchSettings(samples=12, transient=500, window=500)
+    >>> attractors, labels = find_attractors(model, settings)
+    >>> attractors[1].symmetry.name, attractors[1].partner
+    ('SYMMETRIC', 1)
     """
 
     motion: SteadyMotion

@@ -52,6 +52,17 @@ def find_attractors(
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
     nothing that settles. What no state reaches is not found, nor is a motion on which the first block never stops:
     attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
+
+    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> settings = SearchSettings(samples=12, transient=500, window=500)
+    >>> attractors, labels = find_attractors(model, settings)
+    >>> for attractor in attractors:
+    ...     print(attractor.motion.kind.words, round(attractor.motion.mean_distance, 3))
+    synchronized 0.0
+    periodic 0.141
+    >>> labels.shape, (labels == 1).sum().item()
+    ((12,), 1)
     """
     search = Search(model, settings, motion, tuning)
     labels = search.labels(search.starts(starts, start))

@@ -135,6 +135,16 @@ def transverse_exponent(
     exponent is its mean rate of growth over the window, which begins after a time of alignment; the standard error is
     that of BATCHES equal batches. Negative: mirror blocks that are near each other synchronize. NaN if the run fails,
     −∞ if the perturbation vanishes. Raises ValueError if the chain is not its own mirror image.
+
+    model, state : any state of a motion, as `Model.begin` and `Orbit.reference` are
+    alignment, window : in units of 1/ω, as the exponent is in units of ω
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> state = model.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
+    >>> exponent, error = transverse_exponent(model, state, alignment=500.0, window=2000.0)
+    >>> round(exponent, 3), error < 1e-3
+    (-0.007, True)
     """
     _check_mirror(model)
     blocks = model.blocks

@@ -30,9 +30,17 @@ SIMULTANEOUS = 1e-9
 def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: float = WINDOW) -> PeriodicOrbit:
     """Return the periodic orbit on which a motion that has settled lies; the shortest return that closes it.
 
-    state : of the motion; settling : time that it is left to settle first
+    model, state : of the motion
+    settling, window : times that it is left to settle first, and in which it has to return
 
     Raises OrbitError if the motion does not return within the window, or to no periodic orbit.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> round(orbit.period, 4), orbit.symmetry.name, orbit.signature
+    (157.2451, 'SYMMETRIC', (20, 54, 20))
     """
     runner = Runner(model, keep_events=True, events_from=settling)
     runner.begin(state)

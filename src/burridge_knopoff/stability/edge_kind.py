@@ -14,6 +14,10 @@ class EdgeKind(IntEnum):
     neimark_sacker : a pair of complex multipliers leaves the unit circle, a torus branches off
     pitchfork : mirror symmetry breaks, multiplier +1 of a perturbation that breaks it
     crisis : a set that is no closed orbit ends
+
+    >>> from burridge_knopoff import EdgeKind
+    >>> EdgeKind.FOLD.name, int(EdgeKind.NEIMARK_SACKER)
+    ('FOLD', 3)
     """
 
     UNDETERMINED = -1

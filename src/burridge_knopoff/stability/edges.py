@@ -55,6 +55,14 @@ class Edge:
     before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
         a branch of simpler orbits
     turns : whether the branch turns back in a there
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, locate_edges, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> (edge,) = locate_edges(branch)
+    >>> edge.kind.name, edge.loses_stability, edge.a_error < 1e-9
+    ('PITCHFORK', True, True)
     """
 
     a: float
@@ -78,7 +86,18 @@ class Edge:
 
 
 def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
-    """Yield all edges along a followed branch, in the order in which it meets them, each found as it is asked for."""
+    """Yield all edges along a followed branch, in the order in which it meets them, each found as it is asked for.
+
+    branch : as `follow` returns it
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, locate_edges, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> (edge,) = locate_edges(branch)
+    >>> edge.kind.name, round(edge.a, 9)
+    ('PITCHFORK', 0.086972905)
+    """
     for k, point in enumerate(branch):
         following = branch[k + 1] if k + 1 < len(branch) else None
         if point.corner:

@@ -35,6 +35,14 @@ def synchronized_orbit(model: Model) -> Orbit:
 
     Raises OrbitError, a ValueError, if its chain is not one of three blocks that is its own mirror image, or if no
     orbit is found.
+
+    docs/synchronization.md derives where it is stable.
+
+    >>> from burridge_knopoff import Chain, Model, law_of, synchronized_orbit, transverse_multiplier
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> orbit = synchronized_orbit(model)
+    >>> round(orbit.period, 6), round(transverse_multiplier(orbit), 4)
+    (5.672418, 0.9589)
     """
     return Family(model).at(model.a)
 

@@ -32,6 +32,14 @@ class Multipliers:
     keeping : of all perturbations, or of those that keep mirror blocks together if these move as one
     breaking : of those that part mirror blocks; empty unless these move as one
     power : returns in a period
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> found = multipliers(orbit)
+    >>> abs(found.whole).round(4).tolist(), found.unstable
+    ([0.3786, 0.0, 0.0, 0.0, 0.0], 0)
     """
 
     keeping: np.ndarray
@@ -55,6 +63,15 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 
     The flow f is an eigenvector of the return with the eigenvalue 1: what is left on its orthogonal complement has the
     other eigenvalues, however close to 1 they are.
+
+    orbit : of any chain; that of the flow, which is 1, is left out
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> multipliers(orbit).unstable == 0
+    True
     """
     nothing = np.zeros(orbit.model.blocks, dtype=bool)
     everything = np.eye(2 * orbit.model.blocks)

@@ -26,7 +26,12 @@ FASTER = 2.0
 
 @dataclass(frozen=True)
 class Following:
-    """How a branch is followed: lengths of steps along it, mostly lengths in a, and the most orbits that are kept."""
+    """How a branch is followed: lengths of steps along it, mostly lengths in a, and the most orbits that are kept.
+
+    >>> from burridge_knopoff import Following
+    >>> Following(most_orbits=20).largest_step
+    0.0005
+    """
 
     first_step: float = 1e-4
     largest_step: float = 5e-4
@@ -47,13 +52,23 @@ def follow(
 ) -> list[BranchOrbit]:
     """Return the orbits of a branch from one on, until a leaves a range or enough is known.
 
-    upward : whether a grows at first
+    orbit : stable or not, of any chain; a_range : (low, high)
+    settings : lengths of steps; upward : whether a grows at first
     enough : told after each orbit, with all orbits so far
 
     Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
     The branch also ends where it joins one of simpler orbits, and where no step is short enough.
 
     Raises OrbitError if it cannot begin.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> [round(point.orbit.a, 4) for point in branch]
+    [0.0865, 0.0866, 0.0868, 0.0872, 0.0877]
+    >>> [point.multipliers.unstable for point in branch]
+    [0, 0, 0, 1, 1]
     """
     low, high = a_range
     points = [begin_branch(orbit, upward)]

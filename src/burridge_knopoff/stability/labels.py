@@ -84,12 +84,23 @@ def label_states(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return which attractor each initial state reaches, and the time τ at which that was certain, both of shape (n,).
 
-    attractors : as `find_attractors` returns them
+    model, attractors : as `find_attractors` takes and returns them
     position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
     time_limit : by which a state has to reach one of them
     threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
 
     A label is the index of an attractor, or −1 where none is reached.
+
+    >>> import numpy as np
+    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> settings = SearchSettings(samples=12, transient=500, window=500)
+    >>> attractors, labels = find_attractors(model, settings)
+    >>> position = np.array([[-0.989, -0.993, -0.991], [0.989, -0.993, -0.991]])
+    >>> velocity = np.array([[0.099, 0.1012, 0.1023]] * 2)
+    >>> labels, times = label_states(model, attractors, position, velocity)
+    >>> labels.tolist(), times.round().tolist()
+    ([0, 1], [62.0, 355.0])
     """
     stuck = model.starts_stuck(position, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)

@@ -15,6 +15,10 @@ class MotionKind(IntEnum):
 
     SYNCHRONIZED is periodic, with end blocks that move as one. TRANSIENT_CHAOS is said of sets only, not of runs: chaos
     of which an ensemble shows that it ends, or not that it lasts.
+
+    >>> from burridge_knopoff import MotionKind
+    >>> MotionKind(4).words, MotionKind.CHAOTIC.value
+    ('transient chaos', 3)
     """
 
     UNDETERMINED = -1

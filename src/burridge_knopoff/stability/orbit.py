@@ -35,7 +35,15 @@ LONGEST_PERIOD = 500.0
 
 
 class OrbitError(ValueError):
-    """There is no such orbit, or it was not found; the message says why."""
+    """There is no such orbit, or it was not found; the message says why.
+
+    >>> from burridge_knopoff import Chain, Model, OrbitError, law_of, synchronized_orbit
+    >>> try:
+    ...     synchronized_orbit(Model(Chain(4), law_of("linearized", 0.08)))
+    ... except OrbitError as error:
+    ...     print(error)
+    chain: 4 blocks are not allowed: the orbit is that of 3 blocks, symmetric in a mirror
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +54,14 @@ class Orbit:
     residual : max norm of the state one period later minus the reference state
     monodromy : how perturbations at the reference instant return a period later, shape (6, 6)
     events : time since the reference instant, block (0 to 2) and kind (0 stop, 1 start) of every event of a period
+
+    Times are in units of 1/ω.
+
+    >>> from burridge_knopoff import Chain, Model, law_of, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> orbit = synchronized_orbit(model)
+    >>> orbit.monodromy.shape, len(orbit.events), round(orbit.lateral_slip_time, 4)
+    ((6, 6), 6, 4.8937)
     """
 
     model: Model
@@ -195,7 +211,15 @@ def _middle(orbit: Orbit) -> float:
 
 
 def transverse_multiplier(orbit: Orbit) -> float:
-    """Return by which factor a difference between blocks 1 and 3 has grown after a period of a synchronized orbit."""
+    """Return by which factor a difference between blocks 1 and 3 has grown after a period of a synchronized orbit.
+
+    Synchrony is stable against it between −1 and 1.
+
+    >>> from burridge_knopoff import Chain, Model, law_of, synchronized_orbit, transverse_multiplier
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> [round(transverse_multiplier(synchronized_orbit(model.at(a))), 3) for a in (0.05, 0.0869729, 0.12)]
+    [0.759, 1.0, 1.178]
+    """
     change = orbit.monodromy[:, 0] - orbit.monodromy[:, 2]
     return float(0.5 * (change[0] - change[2]))
 

@@ -47,6 +47,15 @@ class PeriodicOrbit:
     residual : max norm of the state after a return minus the reference state
     monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
     events : time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period
+
+    Times are in units of 1/ω, states in those of `Model`.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> orbit.monodromy.shape, orbit.residual < 1e-12, round(orbit.period / orbit.return_time)
+    ((6, 6), True, 2)
     """
 
     model: Model
@@ -169,9 +178,18 @@ def safe_offset(orbit: PeriodicOrbit) -> float:
 def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
     """Return the periodic orbit near a state between two events, by Newton's method.
 
+    model, guess : the state, in the model whose orbit is sought
     return_time : after which the state about returns: a period, or half of one for SYMMETRIC, in a mirror
 
     Raises OrbitError if none is found, ValueError if the chain has no mirror image and the symmetry needs one.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, find_periodic_orbit, law_of, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> near = find_periodic_orbit(model.at(0.081), orbit.reference, orbit.return_time, orbit.symmetry)
+    >>> near.a, round(near.period, 4)
+    (0.081, 157.2682)
     """
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(

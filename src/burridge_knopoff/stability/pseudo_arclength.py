@@ -39,6 +39,13 @@ class BranchOrbit:
     joined : the simpler orbit that this one is, where the branch has come to another one: an orbit of more symmetry, or
         of half the period; the branch ends before it
     remaining : length from here to the corner of the branch where the orbit grazes; NaN if it is not right there
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> branch[1].tangent.shape, branch[1].corner, branch[1].joined
+    ((8,), False, None)
     """
 
     orbit: PeriodicOrbit

@@ -32,6 +32,10 @@ class MotionSettings:
     """How kinds of motion are told: the config's section `motion`, and its synchronization_threshold.
 
     Raises ValueError, one line, for anything out of range.
+
+    >>> from burridge_knopoff import MotionSettings
+    >>> MotionSettings(chaotic_exponent=2e-3).longest_period
+    120
     """
 
     zero_exponent: Annotated[float, SHARE, "a Lyapunov exponent of this modulus at most counts as 0"] = 5e-4
@@ -63,6 +67,10 @@ class SearchSettings:
     """How attractors are looked for, told apart and matched along a: the config's section `attractors`.
 
     Raises ValueError, one line, for anything out of range.
+
+    >>> from burridge_knopoff import SearchSettings
+    >>> SearchSettings(samples=40).time_limit
+    20000.0
     """
 
     samples: Annotated[

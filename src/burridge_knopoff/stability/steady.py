@@ -61,6 +61,16 @@ class SteadyMotion:
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
     stop_rate : stops of each block in a unit of time, shape (blocks,)
     kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
+
+    returns, mirror_returns, spacing : see `Returns`
+
+    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> settings = SearchSettings(samples=12, transient=500, window=500)
+    >>> attractors, labels = find_attractors(model, settings)
+    >>> motion = attractors[1].motion
+    >>> motion.kind.words, round(motion.mean_distance, 3), motion.returns.shape[1], motion.stop_rate.shape
+    ('periodic', 0.141, 6, (3,))
     """
 
     returns: np.ndarray

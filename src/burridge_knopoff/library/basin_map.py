@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
-from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.laws import Law
+from burridge_knopoff.library.by_name import SearchOptions, settings_of, shows
+from burridge_knopoff.library.given import Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.settings import MOTION, POSITIONS, BasinSettings, MotionSettings, SearchSettings
 
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     import xarray
 
 
+@shows(SearchSettings)
 def basin_map(
     law: Model | Law | str,
     a: float | None = None,
-    initial: str | InitialState = "minus",
+    initial: Initial = "minus",
     *,
     pixels: int = 64,
     first_position: Sequence[float] = POSITIONS,
@@ -32,13 +33,13 @@ def basin_map(
     seed: int = 1,
     threads: int = 1,
     motion: MotionSettings = MOTION,
-    **search: Any,
+    **search: Unpack[SearchOptions],
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Return a map of basins and its attractors, in the form of `basins.nc` and `attractors.nc`, for one model.
 
     law : a Model, which has its own a, chain, v and contact; or a law at this a: the name of one that is built in, or a
         `Law`
-    initial : gives all but U_1(0) and U_N(0): minus or plus (the paper's) or an InitialState
+    initial : gives all but U_1(0) and U_N(0), in any form that `simulate` takes
     chain : without one the paper's springs, as many blocks as the initial state has; v, contact : see `Model`
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
@@ -50,19 +51,24 @@ def basin_map(
     The map `branch` of the first Dataset has the shape (1, pixels, pixels), U_N(0) along the rows. The uncertainty
     exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is not allowed, and
     where no attractor is found.
+
+    >>> from burridge_knopoff import basin_map
+    >>> search = {"samples": 12, "transient": 500, "window": 500}
+    >>> basins, attractors = basin_map("linearized", 0.08, pixels=4, **search)
+    >>> basins.branch.shape, basins.undetermined_count.item()
+    ((1, 4, 4), 2)
+    >>> attractors.mean_distance.sel(law="linearized", a=0.08).values.round(3).tolist()
+    [0.0, 0.141]
     """
     from burridge_knopoff.stability.continuation import continue_attractors
     from burridge_knopoff.summaries import all_laws
     from burridge_knopoff.summaries import attractors as attractor_summary
     from burridge_knopoff.summaries import basins as basin_summary
 
-    state = initial_state(initial) if isinstance(initial, str) else initial
-    model = _model(law, a, state, chain, v, contact)
-    known = {item.name for item in fields(SearchSettings)}
-    for key in search:
-        if key not in known:
-            raise ValueError(f"{key}: not allowed as a setting of the search: {' | '.join(sorted(known))}")
-    settings = SearchSettings(samples=samples, seed=seed, **{"fraction_samples": samples, **search})
+    state = given_state(initial)
+    model = given_model(law, a, len(state.position), chain, v, contact)
+    options = {"samples": samples, "seed": seed, "fraction_samples": samples, **search}
+    settings = settings_of(SearchSettings, None, options)
     plane = BasinSettings(
         pixels=pixels,
         initial=state,
@@ -72,30 +78,17 @@ def basin_map(
         tiles=1,
         threads=threads,
     )
-    options = settings, motion, start
+    chosen = settings, motion, start
     found = continue_attractors([model], settings, motion, starts=[state], start=start)
-    parts = [attractor_summary.one_law(found, [state], *options)]
+    parts = [attractor_summary.one_law(found, [state], *chosen)]
     attractors = all_laws.merge(parts, all_laws.branch_numbers(parts, [model], settings))
     if not (attractors["branch"] >= 0).any():
         raise ValueError(
             f"a: {model.a!r} is not allowed: no attractor was found, from {samples} sampled states (none is at 0)"
         )
-    tile = basin_summary.tile(attractors, model, 0, plane, *options)
-    pairs = basin_summary.pairs(attractors, model, plane, *options)
+    tile = basin_summary.tile(attractors, model, 0, plane, *chosen)
+    pairs = basin_summary.pairs(attractors, model, plane, *chosen)
     basins = basin_summary.merge([(model, [tile], pairs)], [model.law.name], plane, settings.time_limit, start)
     for dataset in (attractors, basins):
         dataset.attrs["history"] = "burridge_knopoff.basin_map"
     return basins, attractors
-
-
-def _model(
-    law: Model | Law | str, a: float | None, state: InitialState, chain: Chain | None, v: float, contact: str
-) -> Model:
-    if isinstance(law, Model):
-        if (a, chain, v, contact) != (None, None, 0.1, "one_sided"):
-            raise ValueError("a, chain, v, contact: not allowed beside a model, which has its own")
-        return law
-    if a is None:
-        raise ValueError("a: None is not allowed but beside a model: 0 or more")
-    chain = Chain(len(state.position)) if chain is None else chain
-    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), v, contact)

@@ -1,0 +1,73 @@
+"""Settings by name: what type checkers and editors know of them, and what a notebook completes."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypedDict, TypeVar
+
+from burridge_knopoff.model.fields import fields_of
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+_T = TypeVar("_T")
+
+
+class RunSettings(TypedDict, total=False):
+    """The settings of a run by name: the fields of `Settings`, where ranges, defaults and meanings stand."""
+
+    start: str
+    solver: str
+    step: float
+    transient: float
+    window: float
+    batches: int
+    sampling: float
+    trajectory: float
+    trajectory_sampling: float
+    events: str
+    event_window: float
+    lyapunov_exponents: int
+    lyapunov_alignment: float
+
+
+class SearchOptions(TypedDict, total=False):
+    """Settings of a search by name: fields of `SearchSettings`, where their ranges, defaults and meanings stand."""
+
+    fraction_samples: int
+    position: Sequence[float]
+    velocity: Sequence[float]
+    transient: float
+    window: float
+    time_limit: float
+    resolution: float
+    pushes: int
+    lifetime: float
+
+
+def shows(kind: type) -> Callable[[_F], _F]:
+    """Return a decorator that shows the settings of a class in the signature of a function, in place of its `**`."""
+
+    def decorate(function: _F) -> _F:
+        own = inspect.signature(function)
+        named = [item for item in own.parameters.values() if item.kind is not inspect.Parameter.VAR_KEYWORD]
+        more = [
+            inspect.Parameter(
+                name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=type(field.default).__name__
+            )
+            for name, field in fields_of(kind).items()
+            if name not in own.parameters
+        ]
+        function.__signature__ = own.replace(parameters=[*named, *more])  # type: ignore[attr-defined]
+        return function
+
+    return decorate
+
+
+def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any]) -> _T:
+    """Return settings of a class with some of them given by name; raises ValueError, one line, for other names."""
+    known = fields_of(kind)
+    for name in by_name:
+        if name not in known:
+            raise ValueError(f"{name}: not a setting: {' | '.join(sorted(known))}")
+    return kind(**by_name) if settings is None else replace(settings, **by_name)  # type: ignore[type-var]

@@ -1,0 +1,66 @@
+"""What a person gives for an initial state and for a model, in the forms that come to mind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import Field, Keys, fields_of
+from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
+from burridge_knopoff.model.model import Model
+
+#: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
+Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray
+
+#: The name of a state that is given by numbers alone.
+OWN = "own"
+
+_KEYS = Keys({"name": Field(STATE_NAME, "name of the state", OWN), **fields_of(InitialState)})
+_FORMS = f"{' | '.join(PAPER_STATES)}, InitialState, {{'position': …, 'velocity': …}}, or (position, velocity)"
+
+
+def given_state(given: Initial) -> InitialState:
+    """Return an initial state from any of its forms; raises ValueError, one line, for anything else."""
+    if isinstance(given, InitialState):
+        return given
+    if isinstance(given, str):
+        return initial_state(given)
+    if not isinstance(given, Mapping):
+        pair = _plain(given)
+        if not (isinstance(pair, list | tuple) and len(pair) == 2 and all(isinstance(_plain(x), list) for x in pair)):
+            raise ValueError(f"initial: {str(given)[:60]} is not allowed: {_FORMS}, each one number a block")
+        given = dict(zip(("position", "velocity"), pair, strict=True))
+    return InitialState(**_KEYS.form({key: _plain(value) for key, value in given.items()}, "initial"))
+
+
+def _plain(values: Any) -> Any:
+    """Return a sequence or an array of any kind as a list."""
+    if isinstance(values, str | Mapping):
+        return values
+    return np.asarray(values).tolist() if hasattr(values, "__array__") else list(values) if _many(values) else values
+
+
+def _many(values: Any) -> bool:
+    return hasattr(values, "__iter__")
+
+
+def given_model(
+    law: Model | Law | str, a: float | None, blocks: int, chain: Chain | None, v: float, contact: str
+) -> Model:
+    """Return a model that is given as one, or as a law with what else belongs to it.
+
+    blocks : of the paper's springs if there is no chain
+    Raises ValueError, one line, for anything that is not allowed, and for what a model has already.
+    """
+    if isinstance(law, Model):
+        if (a, chain, v, contact) != (None, None, 0.1, "one_sided"):
+            raise ValueError("a, chain, v, contact: not allowed beside a model, which has its own")
+        return law
+    if a is None:
+        raise ValueError("a: None is not allowed but beside a model: 0 or more")
+    chain = Chain(blocks) if chain is None else chain
+    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), v, contact)

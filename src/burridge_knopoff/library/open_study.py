@@ -1,0 +1,73 @@
+"""The results of a study as one tree of datasets, read as they are asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.dataset.lazy_point import NUMBERS, lazy_point
+from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.dataset.summary import AXES, axes
+from burridge_knopoff.provenance.record import read_study_record
+from burridge_knopoff.study.paths import POINT
+
+
+def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
+    """Return all points and summaries of a study as one tree; arrays are read from the files when they are asked for.
+
+    results : folder of a study, results/<study>
+    points : whether point files are opened, all of them (some milliseconds each); without them there is no grid either
+
+    `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file, and
+    `tree["grid"]` has what is one number a point over (law, initial, a): NaN, or −1 among whole numbers, where a point
+    is not there. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. No file is held
+    against the sources that made it: `bk check` does that.
+
+    Raises ValueError, one line, if the folder holds no study, or a file that cannot be read.
+
+    >>> from burridge_knopoff import open_study
+    >>> study = open_study("results/paper")
+    >>> study["grid"].mean_distance.dims
+    ('law', 'initial', 'a')
+    >>> study["points/linearized/plus/a0.0800"].velocity.dims
+    ('trajectory_time', 'block')
+    """
+    results = Path(results)
+    record = read_study_record(results)
+    config, values = record["config"], record["grid"]
+    laws, states = list(config["laws"]), list(config["initial"])
+    nodes = {"/": xarray.Dataset(attrs=config)}
+    if points:
+        found = {name: np.full((len(laws), len(states), len(values)), _absent(name)) for name in NUMBERS}
+        for i, law in enumerate(laws):
+            for j, initial in enumerate(states):
+                for k, a in enumerate(values):
+                    name = f"points/{POINT.format(law=law, initial=initial, a=a)}"
+                    if (results / name).is_file():
+                        point = nodes[name.removesuffix(".nc")] = _opened(results / name, lazy_point)
+                        for number, everywhere in found.items():
+                            everywhere[i, j, k] = point.variables[number].values
+        nodes["grid"] = xarray.Dataset(
+            {name: (tuple(AXES), found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
+            axes(states, list(values.values()), laws),
+        )
+    for path in sorted(results.glob("summary/*.nc")):
+        nodes[f"summary/{path.stem}"] = _opened(path, xarray.open_dataset)
+    return xarray.DataTree.from_dict(nodes, name=config["study"])
+
+
+def _absent(name: str) -> Any:
+    """Return what stands for the number of a point that is not there."""
+    kind = np.dtype(POINT_VARIABLES[name].dtype)
+    return kind.type(np.nan if kind.kind == "f" else -1)
+
+
+def _opened(path: Path, how: Callable[[Path], xarray.Dataset]) -> xarray.Dataset:
+    try:
+        return how(path)
+    except (OSError, RuntimeError, ValueError, LookupError) as error:
+        raise ValueError(f"{path}: cannot be read ({error})") from error

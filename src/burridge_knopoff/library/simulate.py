@@ -1,0 +1,80 @@
+"""One run in one call."""
+
+from __future__ import annotations
+
+from typing import Any, Unpack, overload
+
+from burridge_knopoff.laws import Law
+from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
+from burridge_knopoff.library.given import Initial, given_model, given_state
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.trajectory import Trajectory
+
+
+@overload
+def simulate(
+    law: Model, initial: Initial = ..., settings: Settings | None = ..., /, **by_name: Unpack[RunSettings]
+) -> Trajectory: ...
+
+
+@overload
+def simulate(
+    law: str | Law = ...,
+    a: float = ...,
+    initial: Initial = ...,
+    settings: Settings | None = ...,
+    *,
+    chain: Chain | None = ...,
+    v: float = ...,
+    contact: str = ...,
+    **by_name: Unpack[RunSettings],
+) -> Trajectory: ...
+
+
+@shows(Settings)
+def simulate(
+    law: Any = "linearized",
+    a: Any = None,
+    initial: Any = None,
+    settings: Settings | None = None,
+    *,
+    chain: Chain | None = None,
+    v: float = 0.1,
+    contact: str = "one_sided",
+    **by_name: Any,
+) -> Trajectory:
+    """Run one simulation and return its trajectory: `simulate(law, a, initial)` or `simulate(model, initial)`.
+
+    law, a : a law and its friction parameter, 0.08 if none is given: the name of a law that is built in, or a `Law`;
+        or in the place of both a `Model`, which has its own chain, v and contact
+    initial : minus (if none is given) or plus (the paper's, three blocks), an `InitialState`,
+        {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,)
+    settings : of the run; by_name : some of them, or all, by name (see `Settings`)
+    chain : without one the paper's springs, as many blocks as the initial state has
+    v, contact : see `Model`
+
+    All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
+    ValueError, one line, for anything that the model or the solver does not allow.
+
+    >>> from burridge_knopoff import simulate
+    >>> run = simulate("linearized", 0.08, "plus", transient=100, window=100, batches=2)
+    >>> run.status, run.event_count, round(run.mean_distance, 4)
+    ('completed', 204, 0.1401)
+    >>> own = {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}
+    >>> simulate("nonlinear", 0.1, own, transient=0, window=50).model.blocks
+    2
+    """
+    if isinstance(law, Model):
+        if a is not None:
+            # By position: simulate(model, initial, settings).
+            a, initial, settings = None, a, settings if initial is None else initial
+    else:
+        a = 0.08 if a is None else a
+    if not (settings is None or isinstance(settings, Settings)):
+        raise ValueError(f"settings: {settings!r} is not allowed: a Settings, or settings by name")
+    state = given_state("minus" if initial is None else initial)
+    model = given_model(law, a, len(state.position), chain, v, contact)
+    return run(model, state, settings_of(Settings, settings, by_name))

@@ -1,0 +1,101 @@
+"""Runs along a, as many at once as there are cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+
+from burridge_knopoff.laws import Law
+from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
+from burridge_knopoff.library.given import Initial, given_model, given_state
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.ranges import Whole
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
+
+if TYPE_CHECKING:
+    import xarray
+
+#: Dimensions of what every run has as much of.
+_EVERYWHERE = {"batch", "exponent"}
+
+
+@shows(Settings)
+def sweep(
+    law: Model | Law | str,
+    a: Sequence[float] | np.ndarray,
+    initial: Initial = "minus",
+    settings: Settings | None = None,
+    *,
+    chain: Chain | None = None,
+    v: float = 0.1,
+    contact: str = "one_sided",
+    cores: int | None = None,
+    **by_name: Unpack[RunSettings],
+) -> xarray.Dataset:
+    """Run a simulation at each of some a, and return what is one number a run, a batch or an exponent, over a.
+
+    law : a `Model`, at any a, with its own chain, v and contact, or a law: the name of one that is built in, or a `Law`
+    a : friction parameters, shape (n,); `a` of the Dataset, in the same order
+    initial, settings, chain, v, contact, by_name : see `simulate`
+    cores : runs at once, as many as this machine has cores if none is given; they change no number
+
+    The variables are those of a point file (docs/data.md) with `a` as the first dimension, among them `mean_distance`,
+    `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 where a run is complete. Raises ValueError, one
+    line, for anything that is not allowed, before the first run; what is not allowed at one a only is named with it.
+
+    >>> from burridge_knopoff import sweep
+    >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
+    >>> runs.mean_distance.dims, runs.lyapunov_exponent.shape
+    (('a',), (3, 3))
+    >>> (runs.mean_distance < 1e-6).values.tolist()
+    [True, True, False]
+    """
+    state = given_state(initial)
+    chosen = settings_of(Settings, settings, by_name)
+    values = np.asarray(a, dtype=object).ravel().tolist()
+    if not values:
+        raise ValueError("a: no value is not allowed: at least one")
+    if cores is not None:
+        cores = Whole(1, 1024).form(cores, "cores")
+    if isinstance(law, Model):
+        models = [given_model(law, None, 0, chain, v, contact).at(value) for value in values]
+    else:
+        models = [given_model(law, value, len(state.position), chain, v, contact) for value in values]
+    for model in models:
+        chosen.check_blocks(model.blocks)
+        model.begin(state, chosen.start)
+
+    def one(model: Model) -> xarray.Dataset:
+        try:
+            return _numbers(run(model, state, chosen).to_dataset())
+        except (ValueError, MemoryError) as error:
+            raise type(error)(f"a = {model.a!r}: {error}") from error
+
+    # The kernel lets go of Python's lock while it runs: threads use all cores.
+    with ThreadPoolExecutor(cores or _cores()) as pool:
+        try:
+            found = list(pool.map(one, models))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    import xarray
+
+    return xarray.concat(
+        found, "a", data_vars=[*found[0]], coords="minimal", compat="override", combine_attrs="drop_conflicts"
+    )
+
+
+def _numbers(point: xarray.Dataset) -> xarray.Dataset:
+    """Return a run without what it has more or less of than others, and what tells its initial state."""
+    kept = [name for name, item in point.data_vars.items() if set(item.dims) <= _EVERYWHERE]
+    return point[kept].drop_vars("block", errors="ignore")
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,95 @@
+"""The package as others get it: a source distribution, the wheel made from it, and that wheel in an environment."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import venv
+from dataclasses import dataclass
+from importlib.metadata import Distribution, distribution
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+SDIST = "from setuptools import build_meta; build_meta.build_sdist('dist')"
+
+
+@dataclass(frozen=True)
+class Installation:
+    """A folder with the distributions, in `dist`, and the environment."""
+
+    folder: Path
+
+    @property
+    def python(self) -> str:
+        """Path of its Python."""
+        return str(self.folder / "environment" / "bin" / "python")
+
+    @property
+    def source(self) -> Path:
+        """The source distribution."""
+        return next((self.folder / "dist").glob("*.tar.gz"))
+
+    @property
+    def wheel(self) -> Path:
+        """The wheel."""
+        return next((self.folder / "dist").glob("*.whl"))
+
+
+def install(repository: Path, folder: Path) -> None:
+    """Build both distributions and install the wheel, without a network.
+
+    The kernel is compiled for vectors of two and without optimisation: that is quicker, and tests/kernel/test_builds.py
+    holds its numbers against those of the checkout's.
+    """
+    tree = folder / "tree"
+    compiled = shutil.ignore_patterns("*.so", "build.json", "*.egg-info", "__pycache__")
+    shutil.copytree(repository / "src", tree / "src", ignore=compiled)
+    for path in repository.iterdir():
+        if path.is_file() and not path.name.startswith("."):
+            shutil.copy(path, tree)
+    subprocess.run([sys.executable, "-c", SDIST], cwd=tree, check=True, capture_output=True)
+    shutil.move(tree / "dist", folder / "dist")
+    shutil.rmtree(tree)
+
+    made = Installation(folder)
+    with tarfile.open(made.source) as archive:
+        archive.extractall(folder / "unpacked", filter="data")
+    (unpacked,) = (folder / "unpacked").iterdir()
+    flags = unpacked / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
+    assert '"-O3"' in flags.read_text()
+    flags.write_text(flags.read_text().replace('"-O3"', '"-O0"'))
+    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    offline = ["--no-index", "--no-deps"]
+    subprocess.run(
+        [*pip, "wheel", "--no-build-isolation", *offline, "--wheel-dir", str(folder / "dist"), str(unpacked)],
+        env={**os.environ, "BURRIDGE_KNOPOFF_LANES": "2"},
+        check=True,
+    )
+    shutil.rmtree(folder / "unpacked")
+
+    environment = folder / "environment"
+    venv.create(environment, symlinks=True)
+    subprocess.run([*pip, "--python", made.python, "install", *offline, str(made.wheel)], check=True)
+    (packages,) = environment.glob("lib/python*/site-packages")
+    (information,) = packages.glob("*.dist-info")
+    for needed in _needs(Distribution.at(information)).values():
+        for name in {file.parts[0] for file in needed.files or ()} - {"..", "__pycache__"}:
+            (packages / name).symlink_to(str(needed.locate_file(name)))
+
+
+def _needs(package: Distribution) -> dict[str, Distribution]:
+    """Return all that a distribution needs without extras, and all that this needs, as it is installed here."""
+    found: dict[str, Distribution] = {}
+    waiting = [package]
+    while waiting:
+        for line in waiting.pop().requires or ():
+            requirement = Requirement(line)
+            wanted = requirement.marker is None or requirement.marker.evaluate({"extra": ""})
+            if wanted and requirement.name not in found:
+                found[requirement.name] = distribution(requirement.name)
+                waiting.append(found[requirement.name])
+    return found

@@ -1,0 +1,111 @@
+"""A study as one tree: points and summaries as their files say, numbers over the grid, and what is missing."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray
+
+from burridge_knopoff import open_study
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.study import all_points, load_study
+
+CONFIG = {
+    "study": "few",
+    "a": [0.05, 0.08, 0.22],
+    "initial": {"minus": {}, "plus": {}},
+    "transient": 20,
+    "window": 60,
+    "batches": 2,
+    "event_window": 50,
+}
+MISSING = ("nonlinear", "plus", "0.0800")
+
+
+def make_study(folder):
+    """Make the points of a study but one, and something for a summary."""
+    study = load_study(CONFIG, "few.yaml")
+    for law, initial, a in all_points(study):
+        if (law, initial, a) != MISSING:
+            path = folder / "points" / law / initial / f"a{a}.nc"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_point(run(study.model(law, study.value(a)), study.state(initial), study.settings(law)), path)
+    (folder / "summary").mkdir()
+    xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf(folder / "summary" / "some.nc")
+    write_study_record(folder, study, "few.yaml", CONFIG, "--configfile few.yaml")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("results") / "few"
+    make_study(folder)
+    return folder
+
+
+def test_nodes_are_the_files(results):
+    study = open_study(results)
+    files = [*results.rglob("*.nc")]
+    assert len(files) == 12
+    for path in files:
+        node = study[str(path.relative_to(results).with_suffix(""))]
+        with xarray.open_dataset(path) as expected:
+            assert node.to_dataset().identical(expected), path
+    counts = {study[f"points/linearized/minus/a{a}"].sizes["event"] for a in ("0.0500", "0.2200")}
+    assert len(counts) == 2
+    assert study.name == "few"
+    assert study.attrs["transient"] == 20.0
+
+
+def test_parts_of_arrays_are_read_as_they_are_asked_for(results):
+    path = results / "points" / "linearized" / "plus" / "a0.2200.nc"
+    node = open_study(results)["points/linearized/plus/a0.2200"]
+    with xarray.open_dataset(path) as point:
+        for chosen in ({"block": 1}, {"event": [5, 2, 2]}, {"event": slice(None, None, 7), "block": [0, 2]}):
+            assert node.event_velocity.isel(chosen).equals(point.event_velocity.isel(chosen))
+        assert node.velocity.sel(block=2).equals(point.velocity.sel(block=2))
+
+
+def test_numbers_over_the_grid(results):
+    grid = open_study(results)["grid"]
+    assert dict(grid.sizes) == {"law": 2, "initial": 2, "a": 3}
+    law, initial, a = MISSING
+    missing = grid.sel(law=law, initial=initial, a=float(a))
+    assert np.isnan(missing.mean_distance)
+    assert missing.event_count == missing.status == -1
+    with xarray.open_dataset(results / "points" / "nonlinear" / "minus" / "a0.0800.nc") as point:
+        one = grid.sel(law="nonlinear", initial="minus", a=0.08)
+        assert set(grid.data_vars) == {name for name, item in point.data_vars.items() if not item.dims}
+        for name in grid.data_vars:
+            assert one[name].item() == point[name].item()
+            assert grid[name].dtype == point[name].dtype
+            assert grid[name].attrs.keys() == point[name].attrs.keys()
+
+
+def test_without_points(results):
+    assert set(open_study(results, points=False).children) == {"summary"}
+
+
+@pytest.mark.parametrize("name", ["points/linearized/plus/a0.0500.nc", "summary/some.nc"])
+def test_a_file_that_cannot_be_read_is_named(results, tmp_path, name):
+    subprocess.run(["cp", "-a", f"{results}/.", str(tmp_path)], check=True)
+    (tmp_path / name).write_bytes(b"no netCDF")
+    with pytest.raises(ValueError, match="cannot be read") as caught:
+        open_study(tmp_path)
+    assert str(tmp_path / name) in str(caught.value)
+
+
+def test_a_folder_without_a_study_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="not the results of a study"):
+        open_study(tmp_path)
+
+
+def test_dask_is_not_needed(results):
+    script = (
+        "import sys; sys.modules['dask'] = None; from burridge_knopoff import open_study; "
+        f"print(open_study({str(results)!r})['grid'].mean_distance.sel(a=0.05).notnull().all().item())"
+    )
+    run = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    assert run.stdout == "True\n"

@@ -1,0 +1,99 @@
+"""One run in one call: initial states as they come to mind, settings by name, and what is refused."""
+
+import inspect
+import typing
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, Settings, basin_map, law_of, simulate
+from burridge_knopoff.library.by_name import RunSettings, SearchOptions
+from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.stability.settings import SearchSettings
+
+POSITION, VELOCITY = [-0.9, -1.0, -0.8], [0.1, 0.0, 0.2]
+SHORT = {"transient": 0.0, "window": 20.0}
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"position": POSITION, "velocity": VELOCITY},
+        {"position": np.array(POSITION), "velocity": tuple(VELOCITY)},
+        (POSITION, VELOCITY),
+        (np.array(POSITION), np.array(VELOCITY)),
+        np.array([POSITION, VELOCITY]),
+    ],
+)
+def test_an_initial_state_in_plain_numbers(given):
+    run = simulate("nonlinear", 0.1, given, **SHORT)
+    expected = simulate("nonlinear", 0.1, InitialState("own", tuple(POSITION), tuple(VELOCITY)), **SHORT)
+    assert run.initial == expected.initial
+    assert run.event_time.tolist() == expected.event_time.tolist()
+
+
+def test_an_initial_state_with_a_name():
+    run = simulate("nonlinear", 0.1, {"name": "mine", "position": POSITION, "velocity": VELOCITY}, **SHORT)
+    assert run.initial == InitialState("mine", tuple(POSITION), tuple(VELOCITY))
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (POSITION, "or (position, velocity)"),
+        (3, "initial: 3 is not allowed"),
+        (np.array(1.0), "initial: 1.0 is not allowed"),
+        (("minus", "plus"), "or (position, velocity)"),
+        ({"positon": POSITION, "velocity": VELOCITY}, "initial.positon: unknown key"),
+        ({"position": POSITION}, "initial.velocity: missing"),
+        ({"position": 1.0, "velocity": VELOCITY}, "initial.position: 1.0"),
+        ({"position": POSITION, "velocity": VELOCITY[:2]}, "2 numbers for 3 positions"),
+        ((POSITION, [0.1, "x", 0.1]), "initial.velocity[1]: 'x'"),
+        ((POSITION, [0.1, float("nan"), 0.1]), "initial.velocity[1]: nan"),
+        ((POSITION, [0.1, -0.1, 0.1]), "one_sided"),
+    ],
+)
+def test_a_bad_initial_state_is_refused_in_one_line(given, words):
+    with pytest.raises(ValueError, match=r"not allowed|unknown key|missing|one a block") as caught:
+        simulate("linearized", 0.08, given)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_settings_are_those_of_both_ways():
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    settings = Settings(**SHORT, batches=3)
+    ways = [
+        simulate(model, "plus", settings),
+        simulate(model, "plus", **SHORT, batches=3),
+        simulate(model, initial="plus", settings=Settings(**SHORT), batches=3),
+        simulate("linearized", 0.08, "plus", settings),
+        simulate("linearized", 0.08, "plus", **SHORT, batches=3),
+    ]
+    assert {run.settings for run in ways} == {settings}
+    assert len({run.mean_distance for run in ways}) == 1
+
+
+@pytest.mark.parametrize("options", [{"v": 0.2}, {"chain": Chain(3)}, {"contact": "symmetric"}])
+def test_what_a_model_has_is_refused_beside_it(options):
+    """It would have no effect."""
+    with pytest.raises(ValueError, match="not allowed beside a model"):
+        simulate(Model(Chain(3), law_of("linearized", 0.08)), "plus", **options)
+
+
+def test_other_things_in_the_place_of_settings_are_refused():
+    with pytest.raises(ValueError, match="settings: 'plus' is not allowed"):
+        simulate("linearized", 0.08, "minus", "plus")
+
+
+@pytest.mark.parametrize(
+    ("function", "named", "kind", "apart"),
+    [(simulate, RunSettings, Settings, set()), (basin_map, SearchOptions, SearchSettings, {"samples", "seed"})],
+)
+def test_names_that_editors_and_notebooks_complete_are_those_of_the_settings(function, named, kind, apart):
+    types = typing.get_type_hints(named)
+    assert types == {name: hint for name, hint in typing.get_type_hints(kind).items() if name not in apart}
+    shown = inspect.signature(function).parameters
+    fields = fields_of(kind)
+    assert set(fields) <= set(shown)
+    assert {name: shown[name].default for name in types} == {name: fields[name].default for name in types}

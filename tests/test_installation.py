@@ -1,0 +1,81 @@
+"""Installed from its distributions, away from the checkout: what a plain install brings is enough for the library."""
+
+import json
+import subprocess
+import tarfile
+import zipfile
+
+import pytest
+
+from tests.pages import blocks
+
+# Rooms of a study alone, which `snakemake` uses from a checkout: the extra `study`.
+OF_STUDY = ("proof", "report", "summaries.proof")
+
+MODULES = """
+import importlib, json, pkgutil, sys
+import burridge_knopoff
+
+missing = {}
+for module in pkgutil.walk_packages(burridge_knopoff.__path__, "burridge_knopoff."):
+    if not module.name.endswith("._shared"):
+        try:
+            importlib.import_module(module.name)
+        except ModuleNotFoundError as error:
+            missing[module.name.removeprefix("burridge_knopoff.")] = error.name
+print(json.dumps([burridge_knopoff.__file__, missing]))
+"""
+
+WORK = """
+from burridge_knopoff import basin_map, simulate, sweep
+from burridge_knopoff.figures import basins as basin_figure
+from burridge_knopoff.figures.style import write_figure
+
+run = simulate("stribeck", 0.1, "plus", transient=20, window=50)
+run.to_dataset().to_netcdf("run.nc")
+assert sweep("nonlinear", [0.1, 0.2], transient=20, window=50).sizes["a"] == 2
+maps = basin_map("linearized", 0.08, pixels=2, samples=4, transient=500, window=500)
+write_figure(basin_figure.draw(*maps, {"plus": (0.989, -0.991)}), "basins.png")
+"""
+
+
+def run(installed, folder, *arguments):
+    done = subprocess.run([installed.python, "-I", *arguments], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_everything_but_the_rooms_of_a_study_can_be_imported(installed, tmp_path):
+    where, missing = json.loads(run(installed, tmp_path, "-c", MODULES))
+    assert where.startswith(str(installed.folder / "environment"))
+    assert [name for name in missing if not name.startswith(OF_STUDY)] == []
+
+
+def test_the_python_of_the_readme_runs(installed, tmp_path, repository):
+    texts = [block.text for block in blocks((repository / "README.md").read_text()) if block.info == "python"]
+    # A session reads the files of a study.
+    texts = [text for text in texts if not text.startswith(">>>")]
+    assert texts
+    for text in texts:
+        run(installed, tmp_path, "-c", text)
+
+
+def test_runs_basins_and_figures_work(installed, tmp_path):
+    run(installed, tmp_path, "-c", WORK)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["basins.png", "run.nc"]
+
+
+def test_the_command_works(installed, tmp_path):
+    command = "import sys; from burridge_knopoff.cli import main; sys.exit(main())"
+    arguments = "simulate --law linearized --a 0.08 --transient 10 --window 20 --out run.nc"
+    run(installed, tmp_path, "-c", command, *arguments.split())
+    assert (tmp_path / "run.nc").is_file()
+
+
+@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", "report/templates/laws.jinja", "py.typed"])
+def test_both_distributions_hold(installed, name):
+    assert f"burridge_knopoff/{name}" in zipfile.ZipFile(installed.wheel).namelist()
+    with tarfile.open(installed.source) as archive:
+        names = archive.getnames()
+    assert any(item.endswith(f"/src/burridge_knopoff/{name}") for item in names)
+    assert not [item for item in names if item.endswith((".so", ".c")) or "/tests/" in item]
