@@ -1,10 +1,12 @@
 """Broken configs and command lines: one line that says what is wrong, and nothing written."""
 
+import json
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from burridge_knopoff.provenance.files import write_text
 from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
 from tests.workflow.conftest import TINY, Study
 from tests.workflow.snakemake import run_snakemake
@@ -107,6 +109,21 @@ def test_a_bad_command_line(tmp_path, case):
     start, _, _ = " ".join(study.command()).partition(" --configfile")
     run = run_snakemake([*start.split(), *arguments], tmp_path, study.environment())
     check(run, tmp_path, ["study.yaml"], words)
+
+
+def test_a_folder_of_results_belongs_to_its_config(tmp_path):
+    """The same file may be edited; another one of the same name is refused, with what to do, and nothing is written."""
+    study = Study(tmp_path, TINY)
+    results = tmp_path / "results" / "tiny"
+    record = {"software": "", "git_commit": "", "arguments": "", "given": {}, "config": {}, "grid": {}}
+    for owner, code in (("other.yaml", 1), ("study.yaml", 0)):
+        write_text(results / "study.json", json.dumps({**record, "config_file": owner}))
+        run = study.run("-n", f"{POINTS}/plus/a0.0800.nc")
+        assert run.returncode == code
+        assert (
+            "study.yaml: study: 'tiny' is not allowed: results/tiny has the results of other.yaml" in run.stderr
+        ) is (code == 1)
+        assert [path.name for path in results.rglob("*")] == ["study.json"]
 
 
 def test_a_config_with_any_name_is_read(tmp_path):

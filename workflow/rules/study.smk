@@ -1,4 +1,5 @@
 # The study that the config describes, where its results lie, and what rules of several stages use.
+import copy
 import os
 import shlex
 import sys
@@ -22,7 +23,7 @@ from burridge_knopoff.provenance.files import (
     display_path,
     nearest_folder,
 )
-from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study import (
     ConfigError,
@@ -54,14 +55,16 @@ try:
     read_claims(CLAIMS_FILE)
     CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
-    GIVEN = read_config(CONFIG_FILE)
+    WRITTEN = read_config(CONFIG_FILE)
+    GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
     RESULTS = f"results/{STUDY.name}"
     # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
-except (ConfigError, OSError) as error:
+    check_owner(RESULTS, CONFIG_FILE, WRITTEN)
+except (ValueError, OSError) as error:
     sys.exit(f"{error}")
 
 SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
@@ -99,7 +102,7 @@ def prepare_results():
     try:
         check_folder(RESULTS, inside=True)
         write_study_record(
-            RESULTS, STUDY, CONFIG_FILE, read_yaml(CONFIG_FILE), shlex.join(ARGUMENTS)
+            RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS)
         )
     except OSError as error:
         sys.exit(f"{error}")
