@@ -66,6 +66,7 @@ TARGETS = {
     "results/tiny/basins/linearized/a0.0510/pairs.nc": ["a0.0510: not a point of study tiny"],
     "results/tiny/chains/blocks11.nc": ["results/tiny/chains/blocks11.nc: neither"],
     "results/tiny/attractors/linear.nc": ["results/tiny/attractors/linear.nc: neither"],
+    "results/tiny/summary/solvers.csv": ["solvers.csv: neither"],
     "results/tiny/figures/motion_middle.pdf": ["motion_middle.pdf: neither"],
 }
 

@@ -101,9 +101,7 @@ def prepare_results():
     """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
     try:
         check_folder(RESULTS, inside=True)
-        write_study_record(
-            RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS)
-        )
+        write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
     except OSError as error:
         sys.exit(f"{error}")
     PLAN.announce(RESULTS, workflow.rules)
