@@ -43,7 +43,7 @@ POOR = {
 
 @dataclass(frozen=True)
 class Poor:
-    """Two blocks, one initial state, no maps, no chains, no benchmarks, a failed run, and a verdict in hostile words."""
+    """Two blocks, one initial state, no maps, no chains, no benchmarks, a failed run, and hostile words."""
 
     study: Study
     sources: Sources

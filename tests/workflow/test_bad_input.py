@@ -54,7 +54,7 @@ TARGETS = {
     "nothing.nc": ["nothing.nc: neither a rule nor a file of this study"],
     "point": ["point: neither a rule"],
     f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],
-    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny"],
+    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny: the name of this a is a0.0800"],
     f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: neither a rule"],
     "results/tiny/points/linear/plus/a0.0800.nc": ["linear/plus/a0.0800.nc: neither"],
     "results/other/points/linearized/plus/a0.0800.nc": ["results/other/points/linearized/plus/a0.0800.nc: neither"],
@@ -79,9 +79,12 @@ def test_a_target_that_is_not_of_the_study(tmp_path, target):
 CONFIG = ["--configfile", "study.yaml"]
 # Arguments of snakemake, and the words of the line.
 LINES = {
-    "target_behind_configfile": ([*CONFIG, "points"], ["--configfile: several files", "a target stands before"]),
-    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: several files"]),
-    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: several files"]),
+    "target_behind_configfile": (
+        [*CONFIG, "points"],
+        ["--configfile: points is not allowed as a second", "a target stands before"],
+    ),
+    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: study.yaml is not allowed as a second"]),
+    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: study.yaml is not allowed as a second"]),
     "missing": (["--configfile", "missing.yaml"], ["missing.yaml: cannot be read: No such file"]),
     "folder": (["--configfile", "."], ["cannot be read: it is not a regular file"]),
     "device": (["--configfile", "/dev/zero"], ["/dev/zero: cannot be read: it is not a regular file"]),
@@ -125,6 +128,24 @@ def test_a_folder_of_results_belongs_to_its_config(tmp_path):
             "study.yaml: study: 'tiny' is not allowed: results/tiny has the results of other.yaml" in run.stderr
         ) is (code == 1)
         assert [path.name for path in results.rglob("*")] == ["study.json"]
+
+
+def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
+    said = "slurm_load_jobs error: Unable to contact slurm controller (connect failure)"
+    squeue = tmp_path / "bin" / "squeue"
+    squeue.parent.mkdir()
+    squeue.write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
+    squeue.chmod(0o755)
+    study = Study(tmp_path / "study", TINY)
+    environment = study.environment()
+    environment["PATH"] = f"{squeue.parent}:{environment['PATH']}"
+    command = study.command(
+        "--workflow-profile", str(study.repository / "workflow/profiles/slurm"), f"{POINTS}/plus/a0.0800.nc"
+    )
+    run = run_snakemake(command, study.folder, environment)
+    assert run.returncode == 1
+    assert f"no job is submitted, Slurm does not answer: squeue: {said}" in run.stderr.splitlines()
+    assert not (study.folder / "results").exists()
 
 
 def test_a_config_with_any_name_is_read(tmp_path):

@@ -2,6 +2,7 @@
 import copy
 import os
 import shlex
+import subprocess
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -35,14 +36,14 @@ from burridge_knopoff.study import (
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import POINT
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import SEVERAL_FILES
+from snakemake_logger_plugin_study.refusal import several_files
 
 ROOT = Path(workflow.basedir)
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 if len(workflow.configfiles) > 1:
-    sys.exit(SEVERAL_FILES)
+    sys.exit(several_files(workflow.configfiles))
 if " " in sys.executable:
     sys.exit(
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
@@ -99,12 +100,24 @@ wildcard_constraints:
 
 def prepare_results():
     """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
+    check_cluster()
     try:
         check_folder(RESULTS, inside=True)
         write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
     except OSError as error:
         sys.exit(f"{error}")
     PLAN.announce(RESULTS, workflow.rules)
+
+
+def check_cluster():
+    """End a run whose jobs go to a Slurm that does not answer, before each of them tries for minutes."""
+    submit = Path(getattr(workflow.executor_settings, "submit_cmd", None) or "")
+    if submit.name == "submit.py" and submit.with_name("jobs.py").is_file():
+        answer = subprocess.run([submit, "--probe"], capture_output=True, text=True)
+        if answer.returncode:
+            sys.exit(
+                f"no job is submitted, Slurm does not answer: {answer.stderr.strip()}"
+            )
 
 
 def sources(script, *modules):

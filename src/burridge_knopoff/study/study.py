@@ -165,7 +165,9 @@ class Study:
     def value(self, a: str) -> float:
         """Return the value of a by its name in file names; raises ConfigError if it is not in the grid."""
         if a not in self.grid:
-            raise ConfigError(f"a{a}: not a point of study {self.name}: a is not in its grid")
+            meant = next((name for name, value in self.grid.items() if value == float(a)), "")
+            reason = f"the name of this a is a{meant}" if meant else "a is not in its grid"
+            raise ConfigError(f"a{a}: not a point of study {self.name}: {reason}")
         return self.grid[a]
 
     def settings(self, law: str, solver: str | None = None) -> Settings:
