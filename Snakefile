@@ -20,17 +20,26 @@ container: "docker://python:3.11"
 
 include: "workflow/rules/study.smk"
 include: "workflow/rules/simulate.smk"
-include: "workflow/rules/attractors.smk"
-include: "workflow/rules/basins.smk"
-include: "workflow/rules/edges.smk"
-include: "workflow/rules/phases.smk"
-include: "workflow/rules/solvers.smk"
+
+
+# Stages that the config can leave out, with all files that they make.
+for stage in ("attractors", "basins", "edges", "phases", "solvers", "proof"):
+    if stage not in STUDY.left_out:
+
+        include: f"workflow/rules/{stage}.smk"
+
+
 include: "workflow/rules/two_blocks.smk"
-include: "workflow/rules/proof.smk"
 include: "workflow/rules/summaries.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/chains.smk"
-include: "workflow/rules/claims.smk"
+
+
+if "claims" in STUDY.stages:
+
+    include: "workflow/rules/claims.smk"
+
+
 include: "workflow/rules/report.smk"
 
 

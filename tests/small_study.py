@@ -154,7 +154,9 @@ class SmallStudy:
             "mean_distance": mean_distance.summarize(grid, threshold),
             "bifurcation": bifurcation.summarize(grid),
             "lyapunov": kinds,
-            "agreement": agreement.summarize(grid, kinds, attracting, threshold, config["agreement"]),
+            "agreement": agreement.summarize(
+                grid, kinds, attracting, synchronization_threshold=threshold, agreement=config["agreement"]
+            ),
             "orbits": orbits.summarize(self.models, values),
             "attractors": attracting,
             "refined": all_laws.named_alike(

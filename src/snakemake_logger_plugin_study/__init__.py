@@ -6,6 +6,7 @@ left. Everything else goes through Snakemake's own handler, filter and format.
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 import time
@@ -151,8 +152,15 @@ class LogHandler(LogHandlerBase):
             self._display = PlainDisplay(self._tally, self._lock, self._say)
 
     def _write(self, record: LogRecord) -> None:
-        if super().filter(record):
+        if not super().filter(record):
+            return
+        try:
             self._text.handle(record)
+        except BrokenPipeError:
+            # Whoever read has gone, as `head` does: the run goes on, and what follows goes nowhere.
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._stream.fileno())
+            os.close(nowhere)
 
     def _say(self, line: str) -> None:
         self._write(_line(line))

@@ -10,10 +10,6 @@ from pathlib import Path
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study import ConfigError, read_config
 
-SEVERAL_FILES = (
-    "--configfile: several files are not allowed: one file is one study (a target stands before --configfile)"
-)
-
 # What Snakemake takes for the name of a key.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
 
@@ -40,6 +36,15 @@ def reworded(message: str) -> str | None:
     return None
 
 
+def several_files(paths: Sequence[str | Path]) -> str:
+    """Return what is said where --configfile has more than one file: Snakemake takes targets after it for files."""
+    first, second = map(display_path, paths[:2])
+    return (
+        f"--configfile: {second} is not allowed as a second file: one file is one study; "
+        f"a target stands before it, as in snakemake {second} --configfile {first}"
+    )
+
+
 def check_command_line(arguments: Sequence[str]) -> None:
     """Raise ConfigError, one line, for a config file that cannot be read and for what --config does not take.
 
@@ -54,7 +59,7 @@ def check_command_line(arguments: Sequence[str]) -> None:
         # Snakemake's own parser says what is wrong.
         return
     if len(options.configfile) > 1:
-        raise ConfigError(SEVERAL_FILES)
+        raise ConfigError(several_files(options.configfile))
     for path in options.configfile:
         if "__use_yte__" in read_config(Path(path)):
             raise ConfigError(

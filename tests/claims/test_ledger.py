@@ -199,6 +199,10 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
         "holds: near below 1 (2); holds: c | [orbits](figures/orbits.png) |"
     ) in as_markdown({**content, "claims": [claim]}, "figures").splitlines()
     assert as_markdown({**content, "claims": [claim]}, "figures").count("###") == 1
+    claims = [{**claim, "name": name, "verdict": NOT_TESTABLE, "reason": "Short runs."} for name in ("one", "two")]
+    text = as_markdown({**content, "claims": claims}, "figures")
+    assert text.endswith("\n\n### Not testable\n\n- Short runs. (2: one, two)\n")
+    assert "|" not in text
 
 
 def test_counts_are_those_of_the_verdicts(content: dict) -> None:

@@ -44,6 +44,13 @@ def test_a_gap_where_a_run_has_no_result(attractors):
     assert panels[0].get_title(loc="left") == "(a) linearized law"
 
 
+def test_runs_alone_where_attractors_are_left_out():
+    values = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
+    panels = draw(means(values)).axes
+    assert [panel.get_title(loc="left") for panel in panels] == ["(a) linearized law", "(b) nonlinear law"]
+    assert np.array_equal(panels[0].get_lines()[0].get_ydata(), values[0, 0], equal_nan=True)
+
+
 def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white(attractors):
     strips = draw(means(np.zeros((2, 1, 3))), attractors).axes[2]
     picture = strips.collections[0].get_array()

@@ -2,6 +2,7 @@
 
 import io
 import logging
+import os
 import sys
 from inspect import getsource, signature
 from types import SimpleNamespace
@@ -280,6 +281,18 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
         assert len(written(*ROUTINE[:5], other, quiet={quiet}).splitlines()) == lines
     monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
     assert "what the run left cannot be told: division by zero" in written(*ROUTINE)
+
+
+def test_a_reader_that_goes_ends_no_run(monkeypatch):
+    """As in `snakemake -n | head`."""
+    read, write = os.pipe()
+    os.close(read)
+    with os.fdopen(write, "w", buffering=1) as stream:
+        monkeypatch.setattr(sys, "stderr", stream)
+        handler = plugin.LogHandler(common_settings=SimpleNamespace(**SETTINGS), settings=None)
+        for _ in range(3):
+            handler.handle(record("a line"))
+        handler.close()
 
 
 def test_an_unknown_job_that_fails_is_told_of_as_snakemake_does(written):

@@ -43,7 +43,7 @@ POOR = {
 
 @dataclass(frozen=True)
 class Poor:
-    """Two blocks, one initial state, no maps, no chains, no benchmarks, a failed run, and nothing that is testable."""
+    """Two blocks, one initial state, no maps, no chains, no benchmarks, a failed run, and hostile words."""
 
     study: Study
     sources: Sources
@@ -63,9 +63,9 @@ def poor(tmp_path_factory) -> Poor:
         Image.new("RGBA", (900, 600), "white").save(folder / "figures" / f"{name}.png")
     claims = folder / "summary" / "claims.json"
     content = json.loads(
-        '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"not testable": 1},'
+        '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"fails": 1},'
         ' "claims": [{"name": "none", "topic": "chaos", "statement": "It </script><img src=x onerror=alert(1)>.",'
-        ' "place": "Sec. <b onclick=x>1</b>", "verdict": "not testable", "reason": "No run.",'
+        ' "place": "Sec. <b onclick=x>1</b>", "verdict": "fails", "reason": "No run.",'
         ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null}],'
         ' "conventions": {"<u onfocus=x>any</u>": "not testable"}}]}'
     )

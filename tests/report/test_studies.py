@@ -7,9 +7,10 @@ import pytest
 
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
+from burridge_knopoff.study import load_study
 from tests.report.conftest import CLAIMS
 from tests.report.test_page import Page
-from tests.small_study import STUDIES
+from tests.small_study import SMALL, STUDIES
 
 STORED = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits", "attractors", "basins", "two_blocks")
 
@@ -45,6 +46,21 @@ def test_every_law_has_its_charts_and_its_formula(small, html):
     assert ("is the only one of the study" in text) == (len(laws) == 1)
     for other in laws[1:]:
         assert f"{other.capitalize()} law compared with the {laws[0]} law" in text
+
+
+def test_a_study_of_curves_alone(small_studies, tmp_path):
+    """No attractors, no verdicts: what was left out is said, and no link leads to a file that is not there."""
+    small = small_studies("one_law")
+    study = load_study({**SMALL, **STUDIES["one_law"], "without": ["attractors", "claims"]}, "small.yaml")
+    names = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits")
+    for name in names:
+        write_summary(small.found[name], tmp_path / f"{name}.nc")
+    html = render(study, Sources(None, {name: tmp_path / f"{name}.nc" for name in names}, {}))
+    text = " ".join(" ".join(Page(html).text).split())
+    assert "Left out by the config attractors, edges, basins, phases, claims" in text
+    assert "Attractors were not looked for" in text
+    assert "No statement of the paper was judged." in text
+    assert not re.search(r'href="summary/(attractors|basins|claims)', html)
 
 
 def test_what_does_not_hold_in_the_chain_is_said(small, html):

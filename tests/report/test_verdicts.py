@@ -17,23 +17,26 @@ def test_verdicts_are_counted_and_put_by_topic():
     assert [(topic, len(claims)) for topic, claims in verdicts.topics.items()] == [
         ("synchronization", 2),
         ("friction laws", 1),
-        ("motion", 2),
+        ("motion", 1),
     ]
+    assert list(verdicts.untestable) == ["The study has no experiment."]
     assert verdicts.setting["contact"] == "one_sided"
 
 
-def test_one_reason_for_all_is_said_once(tmp_path):
+def test_what_cannot_be_judged_is_put_by_its_reason(tmp_path):
     content = json.loads(CLAIMS.read_text())
-    assert read_verdicts(CLAIMS).one_reason == ""
     content["counts"] = {"not testable": len(content["claims"])}
-    for claim in content["claims"]:
-        claim.update(verdict="not testable", reason="Not testable here: short runs.", conventions={})
+    for number, claim in enumerate(content["claims"]):
+        claim.update(verdict="not testable", reason="Few values." if number else "Short runs.", conventions={})
     path = tmp_path / "claims.json"
     path.write_text(as_json(content))
-    assert read_verdicts(path).one_reason == "Not testable here: short runs."
-    content["claims"][0]["reason"] = "Another."
-    path.write_text(as_json(content))
-    assert read_verdicts(path).one_reason == ""
+    verdicts = read_verdicts(path)
+    assert {reason: len(claims) for reason, claims in verdicts.untestable.items()} == {
+        "Short runs.": 1,
+        "Few values.": 4,
+    }
+    assert verdicts.topics == {}
+    assert sum(read_verdicts(None).counts.values()) == 0
 
 
 @pytest.mark.parametrize(

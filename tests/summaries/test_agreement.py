@@ -43,7 +43,17 @@ def compare(runs, tmp_path):
 
 def summarized(grid, **reached):
     kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
-    return agreement.summarize(grid, kinds, attractors_of(grid, **reached), 1e-6, AGREEMENT)
+    return agreement.summarize(
+        grid, kinds, attractors_of(grid, **reached), synchronization_threshold=1e-6, agreement=AGREEMENT
+    )
+
+
+def test_without_attractors_nobody_knows_which_runs_settled(compare):
+    grid, known = compare()
+    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
+    other = agreement.summarize(grid, kinds, synchronization_threshold=1e-6, agreement=AGREEMENT)
+    assert (other["settled"] == -1).all()
+    xarray.testing.assert_identical(other.drop_vars("settled"), known.drop_vars("settled"))
 
 
 def attractors_of(grid, mean=0.0, error=0.0, branch=0):

@@ -1,10 +1,12 @@
 """Broken configs and command lines: one line that says what is wrong, and nothing written."""
 
+import json
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from burridge_knopoff.provenance.files import write_text
 from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
 from tests.workflow.conftest import TINY, Study
 from tests.workflow.snakemake import run_snakemake
@@ -52,7 +54,7 @@ TARGETS = {
     "nothing.nc": ["nothing.nc: neither a rule nor a file of this study"],
     "point": ["point: neither a rule"],
     f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],
-    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny"],
+    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny: the name of this a is a0.0800"],
     f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: neither a rule"],
     "results/tiny/points/linear/plus/a0.0800.nc": ["linear/plus/a0.0800.nc: neither"],
     "results/other/points/linearized/plus/a0.0800.nc": ["results/other/points/linearized/plus/a0.0800.nc: neither"],
@@ -64,6 +66,7 @@ TARGETS = {
     "results/tiny/basins/linearized/a0.0510/pairs.nc": ["a0.0510: not a point of study tiny"],
     "results/tiny/chains/blocks11.nc": ["results/tiny/chains/blocks11.nc: neither"],
     "results/tiny/attractors/linear.nc": ["results/tiny/attractors/linear.nc: neither"],
+    "results/tiny/summary/solvers.csv": ["solvers.csv: neither"],
     "results/tiny/figures/motion_middle.pdf": ["motion_middle.pdf: neither"],
 }
 
@@ -76,9 +79,12 @@ def test_a_target_that_is_not_of_the_study(tmp_path, target):
 CONFIG = ["--configfile", "study.yaml"]
 # Arguments of snakemake, and the words of the line.
 LINES = {
-    "target_behind_configfile": ([*CONFIG, "points"], ["--configfile: several files", "a target stands before"]),
-    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: several files"]),
-    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: several files"]),
+    "target_behind_configfile": (
+        [*CONFIG, "points"],
+        ["--configfile: points is not allowed as a second", "a target stands before"],
+    ),
+    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: study.yaml is not allowed as a second"]),
+    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: study.yaml is not allowed as a second"]),
     "missing": (["--configfile", "missing.yaml"], ["missing.yaml: cannot be read: No such file"]),
     "folder": (["--configfile", "."], ["cannot be read: it is not a regular file"]),
     "device": (["--configfile", "/dev/zero"], ["/dev/zero: cannot be read: it is not a regular file"]),
@@ -107,6 +113,39 @@ def test_a_bad_command_line(tmp_path, case):
     start, _, _ = " ".join(study.command()).partition(" --configfile")
     run = run_snakemake([*start.split(), *arguments], tmp_path, study.environment())
     check(run, tmp_path, ["study.yaml"], words)
+
+
+def test_a_folder_of_results_belongs_to_its_config(tmp_path):
+    """The same file may be edited; another one of the same name is refused, with what to do, and nothing is written."""
+    study = Study(tmp_path, TINY)
+    results = tmp_path / "results" / "tiny"
+    record = {"software": "", "git_commit": "", "arguments": "", "given": {}, "config": {}, "grid": {}}
+    for owner, code in (("other.yaml", 1), ("study.yaml", 0)):
+        write_text(results / "study.json", json.dumps({**record, "config_file": owner}))
+        run = study.run("-n", f"{POINTS}/plus/a0.0800.nc")
+        assert run.returncode == code
+        assert (
+            "study.yaml: study: 'tiny' is not allowed: results/tiny has the results of other.yaml" in run.stderr
+        ) is (code == 1)
+        assert [path.name for path in results.rglob("*")] == ["study.json"]
+
+
+def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
+    said = "slurm_load_jobs error: Unable to contact slurm controller (connect failure)"
+    squeue = tmp_path / "bin" / "squeue"
+    squeue.parent.mkdir()
+    squeue.write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
+    squeue.chmod(0o755)
+    study = Study(tmp_path / "study", TINY)
+    environment = study.environment()
+    environment["PATH"] = f"{squeue.parent}:{environment['PATH']}"
+    command = study.command(
+        "--workflow-profile", str(study.repository / "workflow/profiles/slurm"), f"{POINTS}/plus/a0.0800.nc"
+    )
+    run = run_snakemake(command, study.folder, environment)
+    assert run.returncode == 1
+    assert f"no job is submitted, Slurm does not answer: squeue: {said}" in run.stderr.splitlines()
+    assert not (study.folder / "results").exists()
 
 
 def test_a_config_with_any_name_is_read(tmp_path):

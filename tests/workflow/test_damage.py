@@ -114,7 +114,9 @@ def readers(results: Path):
         "mean_distance": lambda grid: mean_distance.summarize(grid, 1e-6),
         "bifurcation": bifurcation.summarize,
         "lyapunov": lambda grid: lyapunov.summarize(grid, 3, 1e-6, motion),
-        "agreement": lambda grid: agreement.summarize(grid, *others, 1e-6, compared),
+        "agreement": lambda grid: agreement.summarize(
+            grid, *others, synchronization_threshold=1e-6, agreement=compared
+        ),
         "stick_slip": lambda grid: stick_slip.summarize(grid, **RUN),
         "solvers": lambda grid: solvers.summarize(grid, {}, 0.01),
         "figures": lambda grid: open_point(grid, "linearized", "minus", "0.2000"),

@@ -3,13 +3,7 @@
 
 rule claims:
     input:
-        [
-            f"{SUMMARY}/{name}.nc"
-            for name in [*SUMMARIES, "attractors", "refined", "edges", "solvers"]
-        ],
-        f"{SUMMARY}/phases.nc" if STUDY.has_phases else [],
-        [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
-        PROOF,
+        expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
     output:
         content=f"{SUMMARY}/claims.json",
         table=report(

@@ -1,10 +1,17 @@
 # Figures: a rule for each module of burridge_knopoff.figures that has a caption, as PDF for print and PNG for the screen.
 from burridge_knopoff.figures.description import figure_descriptions
 
+# Those of the summaries that the study has, and of longer chains, which have a target of their own.
+CHAIN_SUMMARIES = ["chains", "two_blocks"]
 DESCRIPTIONS = [
     figure
-    for figure in figure_descriptions()
-    if not figure.condition or getattr(STUDY, figure.condition)
+    for described in figure_descriptions()
+    if (
+        figure := described.in_study(
+            CHAIN_SUMMARIES if "chains" in described.inputs else MADE
+        )
+    )
+    and (not figure.condition or getattr(STUDY, figure.condition))
 ]
 SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
     law=STUDY.shown_law, a=STUDY.shown_point, initial="{initial}"

@@ -1,10 +1,6 @@
 # Proof: the synchronized orbit of the paper's chain, and where it is lost, in ball arithmetic.
 
 
-# For stages that take it where there is one.
-PROOF = [f"{SUMMARY}/proof.nc"] if STUDY.proved_laws else []
-
-
 rule proof:
     output:
         f"{SUMMARY}/proof.nc",

@@ -11,7 +11,7 @@ OPTIONAL_RESULTS = {
 
 rule report:
     input:
-        claims=rules.claims.output.content,
+        claims=CLAIMS_MADE[:1],
         summaries=[path for path in rules.summary.input if path.endswith(".nc")],
         figures=[path for path in rules.figures.input if path.endswith(".png")],
     output:

@@ -1,6 +1,8 @@
 # The study that the config describes, where its results lie, and what rules of several stages use.
+import copy
 import os
 import shlex
+import subprocess
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -22,7 +24,7 @@ from burridge_knopoff.provenance.files import (
     display_path,
     nearest_folder,
 )
-from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study import (
     ConfigError,
@@ -34,14 +36,14 @@ from burridge_knopoff.study import (
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import POINT
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import SEVERAL_FILES
+from snakemake_logger_plugin_study.refusal import several_files
 
 ROOT = Path(workflow.basedir)
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 if len(workflow.configfiles) > 1:
-    sys.exit(SEVERAL_FILES)
+    sys.exit(several_files(workflow.configfiles))
 if " " in sys.executable:
     sys.exit(
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
@@ -54,14 +56,16 @@ try:
     read_claims(CLAIMS_FILE)
     CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
-    GIVEN = read_config(CONFIG_FILE)
+    WRITTEN = read_config(CONFIG_FILE)
+    GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
     RESULTS = f"results/{STUDY.name}"
     # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
-except (ConfigError, OSError) as error:
+    check_owner(RESULTS, CONFIG_FILE, WRITTEN)
+except (ValueError, OSError) as error:
     sys.exit(f"{error}")
 
 SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
@@ -96,14 +100,24 @@ wildcard_constraints:
 
 def prepare_results():
     """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
+    check_cluster()
     try:
         check_folder(RESULTS, inside=True)
-        write_study_record(
-            RESULTS, STUDY, CONFIG_FILE, read_yaml(CONFIG_FILE), shlex.join(ARGUMENTS)
-        )
+        write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
     except OSError as error:
         sys.exit(f"{error}")
     PLAN.announce(RESULTS, workflow.rules)
+
+
+def check_cluster():
+    """End a run whose jobs go to a Slurm that does not answer, before each of them tries for minutes."""
+    submit = Path(getattr(workflow.executor_settings, "submit_cmd", None) or "")
+    if submit.name == "submit.py" and submit.with_name("jobs.py").is_file():
+        answer = subprocess.run([submit, "--probe"], capture_output=True, text=True)
+        if answer.returncode:
+            sys.exit(
+                f"no job is submitted, Slurm does not answer: {answer.stderr.strip()}"
+            )
 
 
 def sources(script, *modules):

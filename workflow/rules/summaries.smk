@@ -18,6 +18,13 @@ SUMMARIES = {
     "orbits": {"of": "models"},
     "equilibrium": {"of": "models"},
 }
+# Of these and of the stages that the study has.
+MADE = [*SUMMARIES, *STUDY.stage_summaries]
+CLAIMS_MADE = (
+    multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md")
+    if "claims" in STUDY.stages
+    else []
+)
 SUMMARY_FILES = {"points": {"points": rules.points.input}, "models": {}}
 SUMMARY_PARAMS = {
     "points": {"points": {"folder": f"{RESULTS}/points", **STUDY.points}},
@@ -31,17 +38,14 @@ SUMMARY_PARAMS = {
 
 rule summary:
     input:
-        expand(
-            f"{SUMMARY}/{{name}}.nc",
-            name=[*SUMMARIES, "attractors", "edges", "solvers"],
-        ),
+        expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
         multiext(f"{SUMMARY}/agreement", ".csv", ".txt"),
-        f"{SUMMARY}/attractors.txt",
-        multiext(f"{SUMMARY}/basins", ".nc", ".txt") if STUDY.basin_maps else [],
-        f"{SUMMARY}/phases.nc" if STUDY.has_phases else [],
-        [] if STUDY.single_length_key else f"{SUMMARY}/two_blocks.nc",
-        multiext(f"{SUMMARY}/proof", ".nc", ".txt") if STUDY.proved_laws else [],
-        multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md"),
+        [
+            f"{SUMMARY}/{stage}.txt"
+            for stage in ("attractors", "basins", "proof")
+            if stage in STUDY.stages
+        ],
+        CLAIMS_MADE,
 
 
 for name, row in SUMMARIES.items():
@@ -51,7 +55,11 @@ for name, row in SUMMARIES.items():
             name
         input:
             **SUMMARY_FILES[row["of"]],
-            summaries=[f"{SUMMARY}/{other}.nc" for other in row.get("summaries", [])],
+            summaries=[
+                f"{SUMMARY}/{other}.nc"
+                for other in row.get("summaries", [])
+                if other in MADE
+            ],
         output:
             f"{SUMMARY}/{name}.nc",
             [

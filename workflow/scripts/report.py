@@ -11,5 +11,6 @@ from burridge_knopoff.study import Study
 params = snakemake.params
 paths = [Path(path) for path in (*snakemake.input.summaries, *snakemake.input.figures, *params.optional)]
 summaries, figures = ({path.stem: path for path in paths if path.suffix == suffix} for suffix in (".nc", ".png"))
-sources = Sources(Path(snakemake.input.claims), summaries, figures, Path(params.benchmarks))
+claims = [Path(path) for path in snakemake.input.claims]
+sources = Sources(claims[0] if claims else None, summaries, figures, Path(params.benchmarks))
 write_report(Study(params.config, params.grid), sources, params.configfile, snakemake.output[0])

@@ -270,7 +270,7 @@ def as_csv(content: Mapping[str, Any]) -> str:
 
 
 def as_markdown(content: Mapping[str, Any], figures: str) -> str:
-    """Return the ledger as Markdown tables, one for each topic.
+    """Return the ledger as Markdown tables, one for each topic, and in a line for each reason what cannot be judged.
 
     figures : folder of the figures that a table links to, relative to the file that it goes into
     """
@@ -278,7 +278,7 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
         "; ".join(f"{count} {name}" for name, count in content["counts"].items()) + ".",
     ]
     for topic in TOPICS:
-        claims = [claim for claim in content["claims"] if claim["topic"] == topic]
+        claims = [claim for claim in content["claims"] if claim["topic"] == topic and claim["verdict"] != NOT_TESTABLE]
         if not claims:
             continue
         lines += [
@@ -292,9 +292,16 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
             figure = f"[{claim['figure']}]({figures}/{claim['figure']}.png)" if claim["figure"] else ""
             own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
             judged = f"**{claim['verdict']}**{own}"
-            turning = "; ".join(claim["turns"]) or (NOTHING if claim["verdict"] != NOT_TESTABLE else "")
+            turning = "; ".join(claim["turns"]) or NOTHING
             cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"], turning]
             lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
+    untestable: dict[str, list[str]] = {}
+    for claim in content["claims"]:
+        if claim["verdict"] == NOT_TESTABLE:
+            untestable.setdefault(claim["reason"], []).append(claim["name"])
+    if untestable:
+        lines += ["", "### Not testable", ""]
+        lines += [f"- {reason} ({len(names)}: {', '.join(names)})" for reason, names in untestable.items()]
     return "\n".join(lines) + "\n"
 
 

@@ -15,7 +15,6 @@ TITLE = "Basins of attraction"
 CATEGORY = "Attractors"
 INPUTS = ("basins", "attractors")
 FROM_STUDY = ("marked_states",)
-CONDITION = "basin_maps"
 CAPTION = """\
 Maps over the initial positions U_1(0) and U_N(0) of the end blocks, each pixel in the colour of the branch that is
 reached; the mirror image of a branch in a lighter shade, undetermined in black. The initial states of the study that

@@ -5,6 +5,7 @@ A module of this folder that assigns CAPTION is a figure. It has a function `dra
 TITLE, CATEGORY : in words; PAPER : figures of the paper that it shows again, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
 INPUTS : names of the summaries that `draw` takes, in order; or `runs` alone, the point files of single runs by state
+OPTIONAL : names of those that it takes besides if the study has them, and what is seen of each
 FROM_STUDY : names of properties of `Study` that it takes besides
 CONDITION : property of `Study` without which there is no such figure
 FILE : name of the picture if it is not that of the module
@@ -13,8 +14,8 @@ FILE : name of the picture if it is not that of the module
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 
@@ -27,6 +28,7 @@ class Description:
     category: str
     caption: str
     inputs: tuple[str, ...]
+    optional: Mapping[str, str] = field(default_factory=dict)
     from_study: tuple[str, ...] = ()
     condition: str = ""
     paper: str = ""
@@ -47,6 +49,14 @@ class Description:
         paper = f" The paper's {self.paper}." if self.paper else ""
         return _filled(f"{' '.join(self.caption.split())}{paper}", wildcards)
 
+    def in_study(self, summaries: Collection[str]) -> Description | None:
+        """Return the figure as a study with some summaries has it; None if one that it needs is missing."""
+        if not self.of_runs and not set(self.inputs) <= set(summaries):
+            return None
+        there = {name: text for name, text in self.optional.items() if name in summaries}
+        caption = "\n".join([self.caption, *there.values()])
+        return replace(self, caption=caption, inputs=(*self.inputs, *there), optional={})
+
     def title_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the title of one picture."""
         return _filled(self.title, wildcards)
@@ -63,8 +73,8 @@ def figure_descriptions() -> list[Description]:
     return sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name))
 
 
-def described_picture(file: str) -> tuple[str, str]:
-    """Return title and caption of a picture by the name of its file.
+def described_picture(file: str, summaries: Collection[str]) -> tuple[str, str]:
+    """Return title and caption of a picture by the name of its file, in a study with some summaries.
 
     Raises ValueError if no figure makes it.
     """
@@ -72,6 +82,7 @@ def described_picture(file: str) -> tuple[str, str]:
         head, wildcard, _ = figure.file.partition("{initial}")
         if file == figure.file or (wildcard and file.startswith(head)):
             wildcards = {"initial": file.removeprefix(head)}
+            figure = figure.in_study(summaries) or figure
             return figure.title_of(wildcards), figure.caption_of(wildcards)
     raise ValueError(f"{file}: no figure of that name")
 
@@ -83,6 +94,6 @@ def _described(path: Path) -> Description | None:
             constants[node.targets[0].id] = node.value
     if "CAPTION" not in constants:
         return None
-    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
+    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "OPTIONAL", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
     told = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
     return Description(path.stem, **{"file": path.stem, **told})

@@ -15,42 +15,48 @@ from burridge_knopoff.figures.style import cells, label_panels, legend_below, pa
 TITLE = "⟨J⟩ against a"
 CATEGORY = "Synchronization"
 PAPER = "Figs. 3a, 3b"
-INPUTS = ("mean_distance", "attractors")
+INPUTS = ("mean_distance",)
 CAPTION = """\
-Above: the time average ⟨J⟩ of the phase-space distance between the end blocks against a, for each law: runs from each
-initial state (black, bars of three standard errors), on top of the attractors that were found, in the colours of their
-branches. Below: the branch that each initial state reaches under each convention of contact and start.
+The time average ⟨J⟩ of the phase-space distance between the end blocks against a, for each law: runs from each initial
+state (black, bars of three standard errors).
 """
+OPTIONAL = {
+    "attractors": """\
+Coloured points: the attractors that were found, by branch. Below: the branch that each initial state reaches under each
+convention of contact and start.
+"""
+}
 
 # Each initial state has a marker; colours are left to the branches.
 MARKERS = "ovs^Dphx"
 
 
 @styled
-def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
+def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None) -> Figure:
     """Draw ⟨J⟩(a) of the runs over the branches of attractors, and which branch each initial state reaches.
 
     A column for each law. Above: coloured points are attractors, black curves are the runs with three standard errors;
     gaps are runs that did not complete. Below: a row for each initial state under each convention of contact and start,
-    in the colour of the branch that it reaches; white is undetermined.
+    in the colour of the branch that it reaches; white is undetermined. Without attractors there are the runs only.
     """
     laws = mean_distance["law"].values
-    rows = attractors.sizes["initial"] * attractors.sizes["contact"] * attractors.sizes["start"]
-    strip = 0.13 * rows + 0.2
-    figure = Figure(figsize=(page_width(len(laws)), 3.4 + strip), layout="constrained")
-    panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, strip])
-    colors = branch_colors(attractors)
+    strips = [] if attractors is None else [0.13 * attractors["initial_branch"].isel(law=0, a=0).size + 0.2]
+    figure = Figure(figsize=(page_width(len(laws)), 3.4 + sum(strips)), layout="constrained")
+    panels = figure.subplots(
+        1 + len(strips), len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, *strips]
+    )
+    colors = {} if attractors is None else branch_colors(attractors)
     for column, law in enumerate(laws):
-        curves, conventions = panels[:, column]
-        _branches(curves, attractors.sel(law=law), colors)
-        _runs(curves, mean_distance.sel(law=law))
-        _conventions(conventions, attractors.sel(law=law), colors)
-        conventions.set_xlabel("$a$")
+        if attractors is not None:
+            _branches(panels[0, column], attractors.sel(law=law), colors)
+            _conventions(panels[1, column], attractors.sel(law=law), colors)
+        _runs(panels[0, column], mean_distance.sel(law=law))
+        panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     panels[0, 0].set_ylim(bottom=-0.01)
-    panels[0, 0].set_xlim(*cells(attractors["a"].values)[[0, -1]])
-    _legend(figure, mean_distance, colors, branch_names(attractors))
-    label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)])
+    panels[0, 0].set_xlim(*cells(mean_distance["a"].values)[[0, -1]])
+    _legend(figure, mean_distance, colors, {} if attractors is None else branch_names(attractors))
+    label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)][: panels.size])
     return figure
 
 

@@ -12,7 +12,6 @@ from burridge_knopoff.figures.style import COLORS, PAGE, label_panels, new_figur
 TITLE = "Phases of the end blocks"
 CATEGORY = "Attractors"
 INPUTS = ("phases",)
-CONDITION = "has_phases"
 CAPTION = """\
 The fraction of states that synchronize, by the amplitude A and the difference of phase at which the end blocks
 oscillate about uniform sliding; at up to four of the values of a at which any do, a row for each law. Right of the

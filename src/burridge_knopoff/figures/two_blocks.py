@@ -12,7 +12,6 @@ from burridge_knopoff.figures.style import PAGE, color, marker, new_figure, styl
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
-CONDITION = "has_other_lengths"
 CAPTION = """\
 ⟨J⟩ of two blocks against a under each law, from each sampled initial state. Shaded where one law disagrees with the
 first one for one of the states, in ⟨J⟩ or in the kind of motion.

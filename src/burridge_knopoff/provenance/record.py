@@ -60,6 +60,29 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     return record
 
 
+def check_owner(results: str | Path, config_file: str | Path, given: dict[str, Any]) -> None:
+    """Refuse a folder of results for a config file if another file, with another content, has made what lies there.
+
+    A config that was edited keeps its folder, and so does one that was moved or copied and not edited since.
+
+    given : what the config file holds
+    Raises ValueError, one line, with what differs and what to do.
+    """
+    try:
+        record = read_study_record(results)
+    except ValueError:
+        return
+    owner, known = record["config_file"], record["given"]
+    if Path(owner).resolve() == Path(config_file).resolve() or known == given:
+        return
+    differs = ", ".join(key for key in {**known, **given} if known.get(key) != given.get(key))
+    raise ValueError(
+        f"{display_path(config_file)}: study: {Path(results).name!r} is not allowed: {results} has the results of "
+        f"{owner}, which differs ({differs}); another name, or remove "
+        f"{Path(results, NAME)} for this config to go on there"
+    )
+
+
 def remake_command(study_file: str | Path, *paths: str | Path) -> str:
     """Return the command that makes files again, and all that depends on them.
 

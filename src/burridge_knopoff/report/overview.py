@@ -34,6 +34,7 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
     transient, window = config["transient"], config["window"]
     models = {law: study.model(law, values[0]) for law in study.laws}
     chain = next(iter(models.values())).chain
+    without = [("Left out by the config", ", ".join(study.left_out))] if study.left_out else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
         ("Chain", chain_text(chain)),
@@ -49,6 +50,7 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
         ),
         ("Synchronized", f"where ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
         ("Runs", str(len(all_points(study)))),
+        *without,
     ]
 
 

@@ -33,19 +33,20 @@ SCRIPTS = ("data", "theme", "charts", "runs", "curves", "orbits", "maps", "agree
 #: Figures that stand in a section of their own; all others come together.
 PLACED = ("mean_distance", "bifurcation", "lyapunov", "orbits", "basins", "basin_fractions", "agreement", "chains")
 
-#: Summaries without which there is no report; basins, chains and two_blocks may be missing.
-NEEDED = ("mean_distance", "bifurcation", "lyapunov", "attractors", "agreement", "orbits")
+#: Summaries without which there is no report; all others may be missing.
+NEEDED = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits")
 
 
 @dataclass(frozen=True)
 class Sources:
     """The files that a report is made of.
 
-    claims : the verdicts; summaries, figures : {name: path} of netCDF files and of PNG pictures
+    claims : the verdicts, None if the study has none
+    summaries, figures : {name: path} of netCDF files and of PNG pictures
     benchmarks : folder of Snakemake's benchmark files, which need not exist
     """
 
-    claims: Path
+    claims: Path | None
     summaries: Mapping[str, Path]
     figures: Mapping[str, Path]
     benchmarks: Path = field(default=Path("benchmarks"))
@@ -67,9 +68,9 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
             raise ValueError(f"{name}.nc: not among the summaries of the report; it needs {', '.join(NEEDED)}")
     verdicts = read_verdicts(sources.claims)
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
-    pictures = {name: read_picture(path) for name, path in sources.figures.items()}
+    pictures = {name: read_picture(path, list(summaries)) for name, path in sources.figures.items()}
     commands = Commands(study, configfile)
-    chains = summaries.get("chains")
+    attractors, chains = summaries.get("attractors"), summaries.get("chains")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -96,8 +97,8 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
         pictures=pictures,
         further=[picture for name, picture in pictures.items() if name not in PLACED],
         exponents=bool(summaries["lyapunov"]["lyapunov_exponent"].notnull().any()),
-        branches=tables.branch_table(summaries["attractors"]),
-        attractors=summaries["attractors"].attrs,
+        branches=[] if attractors is None else tables.branch_table(attractors),
+        attractors=None if attractors is None else attractors.attrs,
         transitions=tables.transition_table(summaries["orbits"]),
         maps=_map_table(summaries.get("basins")),
         agreement=digest(summaries["agreement"]).splitlines(),
@@ -116,18 +117,20 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
 
 def _data(study: Study, commands: Commands, summaries: Mapping[str, xarray.Dataset]) -> Markup:
     """Return all numbers of the charts as JSON."""
-    attractors, basins, chains = summaries["attractors"], summaries.get("basins"), summaries.get("chains")
+    attractors, basins, chains = (summaries.get(name) for name in ("attractors", "basins", "chains"))
     return embedded_json(
         {
             "runs": embedded_runs(commands, *(summaries[name] for name in ("mean_distance", "lyapunov", "agreement"))),
             "kinds": curves.kinds(),
-            "branches": curves.branches(attractors),
-            "attractors": curves.attractor_points(attractors),
-            "fractions": curves.basin_fractions(attractors),
-            "conventions": curves.conventions(attractors),
+            "branches": [] if attractors is None else curves.branches(attractors),
+            "attractors": [] if attractors is None else curves.attractor_points(attractors),
+            "fractions": [] if attractors is None else curves.basin_fractions(attractors),
+            "conventions": None if attractors is None else curves.conventions(attractors),
             "sections": section_counts(summaries["bifurcation"]),
             "orbits": curves.orbit_curves(summaries["orbits"]),
-            "basins": None if basins is None else basin_maps(basins, attractors, study.marked_states),
+            "basins": None
+            if basins is None or attractors is None
+            else basin_maps(basins, attractors, study.marked_states),
             "agreement": curves.agreement_curves(summaries["agreement"]),
             "chains": None if chains is None else curves.chain_fractions(chains),
         }

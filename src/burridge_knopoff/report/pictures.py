@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,8 +32,10 @@ class Picture:
     thumbnail_height: int
 
 
-def read_picture(path: str | Path) -> Picture:
+def read_picture(path: str | Path, summaries: Collection[str] = ()) -> Picture:
     """Read a figure; its pixels are kept, in a format that takes a third of the room of PNG.
+
+    summaries : names of those that the study has
 
     Raises BadFile if it is not a picture, ValueError if no figure of that name is known.
     """
@@ -44,7 +47,7 @@ def read_picture(path: str | Path) -> Picture:
         raise BadFile(path, f"is not a readable picture ({error})") from None
     small = shown.copy()
     small.thumbnail((THUMBNAIL_WIDTH, shown.height), Image.Resampling.LANCZOS)
-    title, caption = described_picture(name)
+    title, caption = described_picture(name, summaries)
     return Picture(name, title, caption, _uri(shown, lossless=True), *shown.size, _uri(small, quality=80), *small.size)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, content_digest, one_reason
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, content_digest
 from burridge_knopoff.provenance.seal import BadFile
 
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
@@ -19,26 +19,28 @@ class Verdicts:
     """The judged statements of the paper.
 
     counts : {verdict: number of statements}, every verdict in the order of SIGNS
-    topics : {topic: its claims}, each claim a mapping as in the file
+    topics : {topic: its claims}, each claim a mapping as in the file, without those that cannot be judged
+    untestable : {reason: claims that cannot be judged for it}
     setting : v, contact and start for which they were judged, with the provenance
-    one_reason : why none can be judged, where that is the same for all; else empty
     """
 
     counts: dict[str, int]
     topics: dict[str, list[dict[str, Any]]]
+    untestable: dict[str, list[dict[str, Any]]]
     setting: dict[str, Any]
-    one_reason: str = ""
 
 
 _TEXTS = ("name", "topic", "statement", "place", "verdict", "reason")
 
 
-def read_verdicts(path: str | Path) -> Verdicts:
-    """Read the verdicts.
+def read_verdicts(path: str | Path | None) -> Verdicts:
+    """Read the verdicts; a study that judges nothing has no file of them.
 
     Raises BadFile if it is not such a file, and ValueError, one line that names the file, if its counts are not those
     of its claims.
     """
+    if path is None:
+        return Verdicts({}, {}, {}, {})
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         if content["digest"] != content_digest(content):
@@ -53,10 +55,12 @@ def read_verdicts(path: str | Path) -> Verdicts:
     if counts != stated:
         raise ValueError(f"{path}: counts: {stated} is not allowed: the claims have {counts}")
     topics: dict[str, list[dict[str, Any]]] = {}
+    untestable: dict[str, list[dict[str, Any]]] = {}
     for claim in claims:
-        topics.setdefault(claim["topic"], []).append(claim)
+        judged = claim["verdict"] != NOT_TESTABLE
+        (topics if judged else untestable).setdefault(claim["topic" if judged else "reason"], []).append(claim)
     setting = {key: value for key, value in content.items() if key not in ("claims", "counts", "digest")}
-    return Verdicts(counts, topics, setting, one_reason(claims) if len(claims) > 1 else "")
+    return Verdicts(counts, topics, untestable, setting)
 
 
 def _claim(claim: dict[str, Any]) -> dict[str, Any]:

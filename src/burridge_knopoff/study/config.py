@@ -31,6 +31,7 @@ from burridge_knopoff.stability.settings import (
     Watch,
 )
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
+from burridge_knopoff.study.stages import OPTIONAL
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
@@ -150,6 +151,11 @@ CONFIG = Keys(
             Named(STATE_NAME, Keys(_STATE), 1),
             "named initial states, each with position U(0) and velocity U'(0), one number a block, for 2 to "
             f"{MAXIMUM_BLOCKS} blocks; minus: {{}} and plus: {{}} are the paper's and need no numbers",
+        ),
+        "without": Field(
+            Several(OneOf(tuple(OPTIONAL)), distinct=True),
+            "stages that are left out, and with them what takes their results",
+            [],
         ),
         "laws": Field(
             Named(LAW_NAME, LawKeys(), 1), "friction laws by name; see below", {law: {} for law in PAPER_LAWS}

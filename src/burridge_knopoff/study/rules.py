@@ -5,7 +5,7 @@ Every function raises ValueError, one line, for what is not allowed: key, value,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -161,6 +161,14 @@ def fill_chains(config: Mapping[str, Any]) -> None:
     chains = config["chains"]
     chains["a"] = values_of(chains["a"], "chains.a")
     chains["two_blocks"]["a"] = values_of(chains["two_blocks"]["a"], "chains.two_blocks.a")
+
+
+def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
+    """Take away the values of a of stages that are left out."""
+    for name in {"solvers", "phases"} & set(stages):
+        config[name]["a"] = []
+    if "basins" in stages:
+        config["basins"]["a"] = {law: [] for law in config["laws"]}
 
 
 def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:

@@ -13,7 +13,7 @@ from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.stability.settings import BasinSettings, Sample
-from burridge_knopoff.study import rules
+from burridge_knopoff.study import rules, stages
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.grid import grid_of
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
@@ -100,6 +100,27 @@ class Study:
         return [law for law in self.laws if is_covered(self.model(law, self.shown_a))]
 
     @property
+    def left_out(self) -> tuple[str, ...]:
+        """Stages that the config leaves out, and those that take their results."""
+        return stages.left_out(self.config["without"])
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Stages of the study, of those that not every study has."""
+        there = {
+            "basins": self.basin_maps,
+            "phases": self.has_phases,
+            "two_blocks": self.has_several_laws and self.has_other_lengths,
+            "proof": self.proved_laws,
+        }
+        return tuple(stage for stage in stages.OPTIONAL if stage not in self.left_out and there.get(stage, True))
+
+    @property
+    def stage_summaries(self) -> tuple[str, ...]:
+        """Names of the netCDF summaries that these stages make."""
+        return stages.summaries_of(self.stages)
+
+    @property
     def basin_maps(self) -> list[tuple[str, float]]:
         """Law and a of every map of basins."""
         return [(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
@@ -144,7 +165,9 @@ class Study:
     def value(self, a: str) -> float:
         """Return the value of a by its name in file names; raises ConfigError if it is not in the grid."""
         if a not in self.grid:
-            raise ConfigError(f"a{a}: not a point of study {self.name}: a is not in its grid")
+            meant = next((name for name, value in self.grid.items() if value == float(a)), "")
+            reason = f"the name of this a is a{meant}" if meant else "a is not in its grid"
+            raise ConfigError(f"a{a}: not a point of study {self.name}: {reason}")
         return self.grid[a]
 
     def settings(self, law: str, solver: str | None = None) -> Settings:
@@ -223,6 +246,7 @@ def _study(config: Mapping[str, Any]) -> Study:
     rules.fill_phases(filled, set(values), study.blocks)
     rules.fill_compared(filled, set(values), study.shown_a)
     rules.check_size(filled, len(grid), study.blocks)
+    rules.leave_out(filled, study.left_out)
     return study
 
 

@@ -62,14 +62,15 @@ _READ = [
 def summarize(
     grid: Grid,
     lyapunov: xarray.Dataset,
-    attractors: xarray.Dataset,
+    attractors: xarray.Dataset | None = None,
+    *,
     synchronization_threshold: float,
     agreement: Mapping[str, Any],
 ) -> xarray.Dataset:
     """Compare each law with the first one at every grid point.
 
     lyapunov : the summary of that name, for the kinds of motion
-    attractors : the summary of that name, for what the initial states reach
+    attractors : the summary of that name, for what the initial states reach; without it nobody knows which runs settled
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
     sizes = dict(zip(_POINT, grid.shape, strict=True), other_law=len(grid.laws) - 1)
@@ -86,7 +87,9 @@ def summarize(
                 values["event_order_count"][i, j, k] = count
                 values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
     values["kind"][...] = lyapunov["kind"].sel(law=list(grid.laws)).values
-    _fill_settled(values, attractors, agreement["standard_errors"], synchronization_threshold)
+    values["settled"][...] = Answer.UNDETERMINED
+    if attractors is not None:
+        _fill_settled(values, attractors, agreement["standard_errors"], synchronization_threshold)
     for i in range(sizes["other_law"]):
         pair = {name: values[name][[0, i + 1]] for name in POINT_VARIABLES}
         compared = {name: values[name][i] for name in PAIR_VARIABLES}

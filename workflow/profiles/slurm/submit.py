@@ -2,12 +2,15 @@
 """Submits a job script of Snakemake to Slurm and prints `<Slurm's number>:<name>`; makes nothing twice.
 
     BK_RESULTS=results/STUDY submit.py JOBSCRIPT
+    submit.py --probe
 
 A job of an earlier run that makes the same files from the same study, and runs or has ended well without a Snakemake
 to take note, is returned instead. One that would make some of the files from something else is cancelled, and the new
 job begins when it has ended.
 
-Exit code 1, with one line on stderr, if Slurm refuses the job.
+With --probe nothing is submitted, and Slurm asked once whether it answers.
+
+Exit code 1, with one line on stderr, if Slurm refuses the job or does not answer.
 """
 
 import hashlib
@@ -45,6 +48,8 @@ exit "${{ended:-$code}}"
 
 def main():
     """Find or submit the job; return the exit code."""
+    if sys.argv[1:] == ["--probe"]:
+        return probe()
     script = Path(sys.argv[1]).read_text()
     properties = json.loads(re.search("^# properties = (.*)$", script, re.MULTILINE).group(1))
     options = read_options(script)
@@ -70,6 +75,18 @@ def main():
         return 1
     print(f"{number}:{job.name}")
     return 0
+
+
+def probe():
+    """Ask Slurm once; return the exit code."""
+    try:
+        answer = ask("squeue", "--me", "--noheader")
+        reason = one_line(answer.stderr) if answer.returncode else ""
+    except OSError as error:
+        reason = error.strerror
+    if reason:
+        print(f"squeue: {reason}", file=sys.stderr)
+    return 1 if reason else 0
 
 
 def read_options(script):

@@ -1,0 +1,45 @@
+"""Stages that a config leaves out take with them what needs their results."""
+
+import pytest
+
+from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.study import load_study
+
+STATES = {"minus": {}, "plus": {}}
+CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
+ALL = ("attractors", "edges", "basins", "phases", "solvers", "two_blocks", "proof", "claims")
+
+
+@pytest.mark.parametrize(
+    ("config", "missing"),
+    [
+        ({}, set()),
+        ({"without": ["solvers", "claims"]}, {"solvers", "claims"}),
+        ({"without": ["attractors"]}, {"attractors", "edges", "basins", "phases"}),
+        ({"laws": {"linearized": {}}}, {"two_blocks"}),
+        ({"a": [0.31]}, {"basins", "phases"}),
+        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof"}),
+        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases"}),
+    ],
+)
+def test_the_stages_of_a_study(config, missing):
+    assert load_study({**CONFIG, **config}, "some.yaml").stages == tuple(name for name in ALL if name not in missing)
+
+
+def test_what_is_left_out_has_no_values_of_a():
+    """So that nobody who looks at the section alone takes it for wanted."""
+    study = load_study({**CONFIG, "without": ["attractors", "solvers"]}, "some.yaml")
+    assert (study.basin_maps, study.has_phases, study.config["solvers"]["a"]) == ([], False, [])
+    assert study.left_out == ("attractors", "edges", "basins", "phases", "solvers")
+    assert study.stage_summaries == ("two_blocks", "proof")
+
+
+def test_figures_of_a_study_without_attractors():
+    figures = {figure.name: figure for figure in figure_descriptions()}
+    some = ["mean_distance", "bifurcation"]
+    assert figures["edges"].in_study(some) is figures["bifurcation"].in_study(["mean_distance"]) is None
+    assert figures["distance"].in_study([]) == figures["distance"]
+    plain, whole = (figures["mean_distance"].in_study(names) for names in (some, [*some, "attractors"]))
+    assert (plain.inputs, whole.inputs) == (("mean_distance",), ("mean_distance", "attractors"))
+    assert "by branch" in whole.caption_of({})
+    assert "by branch" not in plain.caption_of({})
