@@ -1,0 +1,104 @@
+"""The site, built by Sphinx of the README, the pages beside it and the docstrings of the library: `make site`."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+import shutil
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+import burridge_knopoff as library
+from burridge_knopoff.model.fields import REQUIRED, fields_of
+
+project = "burridge-knopoff"
+release = library.__version__
+html_title = f"{project} {release}"
+html_theme = "furo"
+html_copy_source = False
+html_show_copyright = False
+
+# The pages stay where a code host shows them: a relative link is right in both places.
+root_doc = "README"
+include_patterns = ["*.md", "config/*.md", "docs/*.md"]
+exclude_patterns = [".*", "build", "results"]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+myst_heading_anchors = 4
+
+add_module_names = False
+autodoc_default_options = {"members": True}
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+# The types of settings have ranges and descriptions in them; `lay_out` makes a list of these.
+autodoc_typehints = "none"
+default_role = "py:obj"
+
+BOX = re.compile(r'^ *(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
+ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
+
+
+def setup(app: Sphinx) -> None:
+    """Register what Sphinx calls."""
+    app.connect("source-read", complete)
+    app.connect("autodoc-process-docstring", lay_out)
+    app.connect("build-finished", add_index)
+
+
+def complete(app: Sphinx, page: str, source: list[str]) -> None:
+    """Add the contents to the README, in the order of its links, and every public name to docs/api.md."""
+    text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
+    if page == root_doc:
+        pages = dict.fromkeys(re.findall(r"\]\(([\w/]+)\.md\)", text.split("## More")[1]))
+        text += "\n```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+    elif page == "docs/api":
+        for name in library.__all__:
+            kind = "class" if inspect.isclass(getattr(library, name)) else "function"
+            text += f"\n```{{eval-rst}}\n.. auto{kind}:: burridge_knopoff.{name}\n```\n"
+    source[0] = text
+
+
+def table(chart: str) -> str:
+    """Return a Mermaid chart as a table: to draw it, a browser would need a program from elsewhere."""
+    boxes = BOX.findall(chart)
+    number = {name: count for count, (name, _) in enumerate(boxes, start=1)}
+    rows = ["| step | what is done | next step |", "| ---: | --- | --- |"]
+    for name, text in boxes:
+        arrows = [arrow for arrow in ARROW.findall(BOX.sub("", chart)) if arrow[0] == name]
+        following = "<br>".join(f"{condition} → {number[to]}" for _, condition, to in arrows)
+        rows.append(f"| {number[name]} | {text} | {following} |")
+    return "\n".join(rows)
+
+
+def lay_out(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
+    """Make a list of the lines `name : what it is` of a docstring, and add the settings of a class to it."""
+    laid: list[str] = []
+    for line in lines:
+        if item := re.fullmatch(r"([a-zA-Z_][\w, ]*) : (.+)", line):
+            laid += entry(item[1], item[2])
+        elif laid and laid[-1].startswith("    ") and line.strip():
+            laid += [f"    {line.strip()}"] if line.startswith("    ") else ["", line]
+        else:
+            laid.append(line)
+    if inspect.isclass(value) and dataclasses.is_dataclass(value):
+        for key, field in fields_of(value).items():
+            default = "" if field.default is REQUIRED else f"; default {field.default!r}"
+            laid += entry(key, plain(f"{field.description}: {field.range}{default}"))
+    lines[:] = [*laid, ""]
+
+
+def entry(names: str, text: str) -> list[str]:
+    """Return the lines of an entry of a list."""
+    return ["", f"**{plain(names)}**", f"    {text}"]
+
+
+def plain(text: str) -> str:
+    """Return text in which nothing is markup."""
+    return re.sub(r"([*|_`\\<>])", r"\\\1", text)
+
+
+def add_index(app: Sphinx, error: Exception | None) -> None:
+    """Give the first page the name that servers look for."""
+    if error is None:
+        shutil.copy(Path(app.outdir, f"{root_doc}.html"), Path(app.outdir, "index.html"))
