@@ -52,6 +52,8 @@ def setup(app: Sphinx) -> None:
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
     """Add the contents to the README, in the order of its links, and every public name to docs/api.md."""
     text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
+    # A block that is a file has its path after the language, where no page shows it.
+    text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
     if page == root_doc:
         pages = dict.fromkeys(re.findall(r"\]\(([\w/]+)\.md\)", text.split("## More")[1]))
         text += "\n```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
