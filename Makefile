@@ -1,6 +1,7 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
 # `make kernel`: compile the kernel again.  `make test-oldest`: the workflow with the oldest Snakemake that is allowed.
 # `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
+# `make site`: the documentation, with all docstrings, as a site in build/site.
 # `make faults`, `make fuzz`, `make size`: a study killed 20 times and more; 250,000 broken inputs; 10,000 points.
 # `make mutants`: 300 random changes of the sources, do the tests notice? (up to two hours)
 
@@ -10,7 +11,7 @@ KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kerne
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup kernel test test-oldest benchmark faults fuzz mutants size docs lock clean
+.PHONY: study setup kernel test test-oldest benchmark faults fuzz mutants size docs site lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -98,18 +99,29 @@ fuzz: .venv/kernel .venv/test
 mutants: .venv/kernel .venv/test .venv-mutants/ready
 	.venv-mutants/bin/python benchmarks/mutants.py
 
-# The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains; the tables of keys.
-docs: setup
+.venv/site: requirements/site.lock .venv/study
+	$(PIP) install --require-hashes --requirement $<
+	@touch $@
+
+# Its pages open offline, also without a server.
+site: .venv/kernel .venv/site
+	$(BIN)/sphinx-build --fail-on-warning --fresh-env --quiet -c docs -d build/doctrees . build/site
+	@echo build/site/index.html
+
+# The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains; the tables of keys; the
+# tutorial as a notebook.
+docs: setup .venv/site
 	$(BIN)/snakemake -c2 chains
 	$(BIN)/snakemake -c2
 	$(BIN)/python docs/refresh.py results/paper
 	$(BIN)/python docs/keys.py
+	$(BIN)/python docs/notebook.py
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:
 	cd requirements && uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 		--no-emit-find-links --no-annotate --no-header study.in -o study.lock
-	cd requirements && for name in test benchmark mutants; do uv pip compile --universal --python-version 3.11 \
+	cd requirements && for name in site test benchmark mutants; do uv pip compile --universal --python-version 3.11 \
 		--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header -c study.lock \
 		$$name.in -o $$name.lock; done
 

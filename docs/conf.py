@@ -1,0 +1,129 @@
+"""The site, built by Sphinx of the README, the pages beside it and the docstrings of the library: `make site`."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+import shutil
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+import burridge_knopoff as library
+from burridge_knopoff.model.fields import REQUIRED, fields_of
+
+project = "burridge-knopoff"
+release = library.__version__
+html_title = f"{project} {release}"
+html_theme = "furo"
+html_copy_source = False
+html_show_copyright = False
+# The prime of a velocity is no quotation mark.
+smartquotes = False
+
+# The pages stay where a code host shows them: a relative link is right in both places.
+root_doc = "README"
+include_patterns = ["*.md", "config/*.md", "docs/*.md"]
+exclude_patterns = [".*", "build", "results"]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+myst_heading_anchors = 4
+
+add_module_names = False
+autodoc_default_options = {"members": True}
+autodoc_member_order = "bysource"
+# The types of settings have ranges and descriptions in them; `lay_out` makes a list of these.
+autodoc_typehints = "none"
+default_role = "py:obj"
+
+BOX = re.compile(r'^ *(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
+ITEM = r"[a-zA-Z_][\w, ]* : "
+ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
+
+
+def setup(app: Sphinx) -> None:
+    """Register what Sphinx calls."""
+    app.connect("source-read", complete)
+    app.connect("autodoc-process-signature", shorten)
+    app.connect("autodoc-process-docstring", lay_out)
+    app.connect("build-finished", add_index)
+
+
+def complete(app: Sphinx, page: str, source: list[str]) -> None:
+    """Add the contents to the README, in the order of its links, and every public name to docs/api.md."""
+    text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
+    # A block that is a file has its path after the language, where no page shows it.
+    text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
+    if page == root_doc:
+        pages = dict.fromkeys(re.findall(r"\]\(([\w/]+)\.md\)", text.split("## More")[1]))
+        text += "\n```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+    elif page == "docs/api":
+        for name in library.__all__:
+            kind = "class" if inspect.isclass(getattr(library, name)) else "function"
+            text += f"\n```{{eval-rst}}\n.. auto{kind}:: burridge_knopoff.{name}\n```\n"
+    source[0] = text
+
+
+def table(chart: str) -> str:
+    """Return a Mermaid chart as a table: to draw it, a browser would need a program from elsewhere."""
+    for line in chart.splitlines()[1:]:
+        if not (BOX.match(line) or ARROW.search(line)):
+            raise ValueError(f"{line.strip()}: neither a box nor an arrow of a chart")
+    boxes = BOX.findall(chart)
+    number = {name: count for count, (name, _) in enumerate(boxes, start=1)}
+    rows = ["| step | what is done | next step |", "| ---: | --- | --- |"]
+    for name, text in boxes:
+        arrows = [arrow for arrow in ARROW.findall(BOX.sub("", chart)) if arrow[0] == name]
+        following = "<br>".join(f"{condition} → {number[to]}" for _, condition, to in arrows)
+        rows.append(f"| {number[name]} | {text} | {following} |")
+    return "\n".join(rows)
+
+
+def shorten(
+    app: Sphinx, what: str, name: str, value: object, options: object, arguments: str | None, returned: str | None
+) -> tuple[str | None, str | None]:
+    """Return a signature without the fields of settings that are a default."""
+    return arguments and re.sub(r"=(\w+)\((?:[^()]|\([^()]*\))*\)", r"=\1()", arguments), returned
+
+
+def lay_out(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
+    """Turn a docstring into markup; its lines `name : what it is` become a list, which has all settings of a class."""
+    laid: list[str] = []
+    example = False
+    for line in lines:
+        example = line.startswith(">>>") or (example and bool(line))
+        first, *others = [line] if example else re.split(rf"; (?={ITEM})", line)
+        if example:
+            laid.append(first)
+        elif re.match(ITEM, first):
+            laid += entry(*first.split(" : ", 1))
+        elif laid and laid[-1].startswith("    ") and first:
+            laid += [f"    {markup(first.strip())}"] if first.startswith("    ") else ["", markup(first)]
+        else:
+            laid.append(markup(first))
+        for other in others:
+            laid += entry(*other.split(" : ", 1))
+    if inspect.isclass(value) and dataclasses.is_dataclass(value):
+        for key, field in fields_of(value).items():
+            default = "" if field.default is REQUIRED else f"; default {field.default!r}"
+            laid += entry(key, f"{field.description}: {field.range}{default}")
+    lines[:] = [*laid, ""]
+
+
+def entry(names: str, text: str) -> list[str]:
+    """Return the lines of an entry of a list."""
+    return ["", f"**{markup(names)}**", f"    {markup(text)}"]
+
+
+def markup(text: str) -> str:
+    """Return markup that shows a text: in backquotes names, which become links, or code; all else as it stands."""
+    parts = re.split(r"`([^`]+)`", text)
+    parts[::2] = [re.sub(r"([*|_`\\])", r"\\\1", part) for part in parts[::2]]
+    parts[1::2] = [f"`{part}`" if re.fullmatch(r"[\w.]+", part) else f"``{part}``" for part in parts[1::2]]
+    return "".join(parts)
+
+
+def add_index(app: Sphinx, error: Exception | None) -> None:
+    """Give the first page the name that servers look for."""
+    if error is None and app.builder.format == "html":
+        shutil.copy(Path(app.outdir, f"{root_doc}.html"), Path(app.outdir, "index.html"))

@@ -1,0 +1,70 @@
+"""Make docs/tutorial.ipynb of docs/tutorial.md: python docs/notebook.py.
+
+Nothing is run: a cell has the output and the picture that the page has, and tests hold the page to those.
+"""
+
+from __future__ import annotations
+
+import base64
+import re
+from pathlib import Path
+
+import nbformat
+from nbformat import v4
+
+PAGE = Path(__file__).parent / "tutorial.md"
+NOTEBOOK = PAGE.with_suffix(".ipynb")
+
+# A block of code with what it prints, or a picture.
+CELL = re.compile(
+    r"^```python\n(?P<code>.*?)\n```\n(?:\n```text\n(?P<printed>.*?)^```\n)?|^!\[(?P<title>[^\n]*)\]\((?P<picture>[^\n]*)\)\n",
+    re.MULTILINE | re.DOTALL,
+)
+START = """\
+# Everything runs in the root of the checkout.
+import os
+from pathlib import Path
+
+from IPython.display import Image
+
+os.chdir(next(folder for folder in (Path.cwd(), *Path.cwd().parents) if (folder / "docs" / "tutorial.md").exists()))"""
+
+
+def notebook() -> str:
+    """Return the text of the notebook."""
+    page = PAGE.read_text(encoding="utf-8")
+    made = v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
+    end = 0
+    for match in CELL.finditer(page):
+        if text := page[end : match.start()].strip():
+            made.cells.append(v4.new_markdown_cell(text))
+        if end == 0:
+            made.cells.append(v4.new_code_cell(START))
+        made.cells.append(picture(match) if match["picture"] else block(match))
+        end = match.end()
+    for number, cell in enumerate(made.cells, start=1):
+        # Those that nbformat gives are random.
+        cell.id = f"cell-{number}"
+    for count, cell in enumerate((cell for cell in made.cells if cell.cell_type == "code"), start=1):
+        for part in (cell, *cell.outputs):
+            if "execution_count" in part:
+                part.execution_count = count
+    return nbformat.writes(made) + "\n"
+
+
+def block(match: re.Match[str]) -> nbformat.NotebookNode:
+    """Return a cell of code with what it prints."""
+    printed = [v4.new_output("stream", text=match["printed"])] if match["printed"] else []
+    return v4.new_code_cell(match["code"], outputs=printed)
+
+
+def picture(match: re.Match[str]) -> nbformat.NotebookNode:
+    """Return a cell that shows a picture file."""
+    path = PAGE.parent / match["picture"]
+    shown = {"image/png": base64.b64encode(path.read_bytes()).decode(), "text/plain": match["title"]}
+    code = f'Image("{path.relative_to(PAGE.parents[1])}")'
+    return v4.new_code_cell(code, outputs=[v4.new_output("execute_result", data=shown, execution_count=1)])
+
+
+if __name__ == "__main__":
+    NOTEBOOK.write_text(notebook(), encoding="utf-8")
