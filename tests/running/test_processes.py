@@ -2,7 +2,11 @@
 
 import logging
 import os
+import signal
+import subprocess
+import sys
 
+import psutil
 import pytest
 
 from burridge_knopoff.running.processes import shared_out
@@ -30,3 +34,24 @@ def test_results_come_in_order(processes, caplog):
 def test_an_error_is_that_of_the_call(processes):
     with shared_out(processes) as each, pytest.raises(ValueError, match="7: not allowed"):
         each("refused", refused, [7])
+
+
+KILLED = """
+import os, time
+from burridge_knopoff.running.processes import shared_out
+
+def slow(number):
+    print(os.getpid(), flush=True)
+    time.sleep(600)
+
+with shared_out(3) as each:
+    each("slow", slow, range(3))
+"""
+
+
+def test_no_process_outlives_the_one_that_is_killed():
+    with subprocess.Popen([sys.executable, "-c", KILLED], stdout=subprocess.PIPE, text=True) as killed:
+        children = [psutil.Process(int(killed.stdout.readline())) for _ in range(3)]
+        killed.send_signal(signal.SIGKILL)
+        gone, left = psutil.wait_procs(children, timeout=60)
+    assert (len(gone), left) == (3, [])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import logging
+import os
+import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from typing import Any
 
 _LOG = logging.getLogger(__name__)
@@ -25,8 +27,19 @@ def shared_out(processes: int) -> Iterator[Callable[..., list[Any]]]:
         yield partial(_each, map)
         return
     # A fresh interpreter would run the script of the caller once more.
-    with ProcessPoolExecutor(processes, get_context("fork")) as pool:
+    with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
         yield partial(_each, pool.map)
+
+
+def _end_with_parent() -> None:
+    """Let a process not outlive the one that shares out the work, if that is killed."""
+
+    def end() -> None:
+        if (parent := parent_process()) is not None:
+            parent.join()
+        os._exit(1)
+
+    threading.Thread(target=end, daemon=True).start()
 
 
 def _each(call: Callable[..., Any], what: str, function: Callable[..., Any], *items: Any) -> list[Any]:
