@@ -1,0 +1,3 @@
+# Made by `python -m tests.kernel.stubs`.
+class Bounds:
+    def __init__(self, columns: int) -> None: ...

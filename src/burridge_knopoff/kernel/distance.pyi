@@ -1,0 +1,3 @@
+# Made by `python -m tests.kernel.stubs`.
+class Distance:
+    def __init__(self, order: int, apart: float) -> None: ...

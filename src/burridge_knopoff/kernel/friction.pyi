@@ -1,0 +1,39 @@
+# Made by `python -m tests.kernel.stubs`.
+import numpy as np
+
+HYPERBOLIC: list
+
+class Friction:
+    @property
+    def value(self) -> int: ...
+    @property
+    def slope(self) -> int: ...
+    @property
+    def linear(self) -> bool: ...
+    @property
+    def hyperbolic(self) -> bool: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def rate(self) -> float: ...
+    @property
+    def steepest(self) -> float: ...
+    @property
+    def at_rest(self) -> float: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def length(self) -> int: ...
+    def __init__(
+        self,
+        operations: np.ndarray,
+        constants: np.ndarray,
+        value: int,
+        slope: int,
+        linear: bool,
+        rate: float,
+        steepest: float,
+        columns: int,
+        order: int,
+    ) -> None: ...
+    def series(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]: ...
