@@ -28,7 +28,7 @@ RATIO_LIMIT = 1.5
 #: All that the default study makes from its point files, but figures.
 TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
 POINT_RULE = "workflow/rules/simulate.smk"
-POINT_COMMAND = '"{params.command} --out {output} 2> {log}"'
+POINT_COMMAND = '"{params.command} --out {output} > /dev/null 2> {log}"'
 PLANNED = re.compile(r"^(\d+) jobs: ", re.MULTILINE)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.check import check_study
+from burridge_knopoff.check.study import check_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
@@ -59,7 +59,7 @@ def results(whole, tmp_path, monkeypatch):
     shutil.copytree(whole.parent.parent, tmp_path / "study")
     record = tmp_path / "study/results/small/study.json"
     content = json.loads(record.read_text())
-    record.write_text(json.dumps({**content, "config_file": str(tmp_path / "study/small.yaml")}))
+    record.write_text(json.dumps({**content, "config_file": "small.yaml"}))
     monkeypatch.chdir(tmp_path / "study")
     return tmp_path.joinpath("study/results/small").relative_to(tmp_path / "study")
 
@@ -75,7 +75,7 @@ def point(results, law="linearized", a="0.0500"):
 def test_a_sound_study(results, capsys):
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out
-    assert said == f"{results}: 7 points and 1 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+    assert said == f"{results}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
 
 
 @pytest.mark.parametrize(
@@ -175,7 +175,90 @@ def test_a_changed_config_and_points_of_no_grid(results, capsys):
     assert main(["check", str(results)]) == 1
     said = capsys.readouterr().out
     assert "small.yaml: has changed since the last run, whose config is checked" in said
-    assert "1 point files belong to no point of the study" in said
+    left = point(results, a="0.0600")
+    assert f"leftover {left}: belongs to no point of the study\n" in said
+    assert f"left over, with logs and benchmarks: 1 file; delete: bk prune {results}\n" in said
+    assert main(["check", "--paths", str(results)]) == 1
+    assert capsys.readouterr().out == ""
+
+
+def test_a_study_is_checked_from_anywhere(results, capsys, monkeypatch, tmp_path):
+    whole, damaged = results.absolute(), results.with_name("other").absolute()
+    shutil.copytree(whole, damaged)
+    point(damaged).unlink()
+    monkeypatch.chdir(tmp_path)
+    assert main(["check", str(whole)]) == 0
+    capsys.readouterr()
+    assert main(["check", str(whole), str(damaged)]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == f"{whole}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed"
+    remake = "snakemake -c2 --configfile small.yaml -R results/other/points/linearized/minus/a0.0500.nc"
+    assert said[-1] == f"remake: cd {tmp_path / 'study'} && {remake}"
+    (tmp_path / "study/small.yaml").unlink()
+    assert main(["check", str(whole)]) == 0
+    assert "note     small.yaml: is not there; what is checked is the config" in capsys.readouterr().out
+
+
+def test_solvers_that_nobody_asked_for_are_not_missing(results, capsys):
+    shutil.rmtree(results / "solvers")
+    assert main(["check", str(results)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith(f"{results}: 4 points and 1 other file: 0 missing")
+    assert said[1] == "not counted: 3 runs of other solvers, none of which was asked for yet"
+
+
+#: Of another state, law or a than those of the study, or where none is computed.
+LEFT_OVER = """
+points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc
+solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc attractors/other.nc edges/other.nc
+basins/nonlinear/a0.0500/tile0.nc basins/other/a0.0800/pairs.nc basins/linearized/a0.0800/tile2.nc
+figures/motion_wave.pdf figures/motion_wave.png
+logs/simulate/linearized/wave/a0.0500.log benchmarks/simulate/linearized/wave/a0.0500.tsv
+logs/simulate_solver/rk4/other/minus/a0.0800.log logs/figure_motion_wave.log
+"""
+#: Of the study, or of a name that no rule writes.
+NOT_LEFT_OVER = """
+attractors/nonlinear.nc basins/linearized/a0.0800/tile1.nc figures/motion_minus.png figures/mine.png summary/other.nc
+points/notes.txt points/linearized/minus/a0.0500_copy.nc
+logs/simulate/linearized/minus/a0.0500.log logs/attractors.log report.html
+"""
+
+
+def test_what_belongs_to_no_point_is_pruned_and_nothing_else(results, capsys):
+    gone, kept = LEFT_OVER.split(), NOT_LEFT_OVER.split()
+    before = {path for path in results.rglob("*") if path.is_file()}
+    for name in (*gone, *kept):
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).write_text("")
+    outside = results.parent / "outside"
+    (outside / "minus").mkdir(parents=True)
+    (outside / "minus/a0.0500.nc").write_text("")
+    (results / "points/linked").symlink_to("../../outside")
+    (results / "points/linearized/minus/a0.0700.nc").symlink_to("a0.0500.nc")
+    for arguments, left in ((["--dry-run"], gone), ([], [])):
+        assert main(["prune", *arguments, str(results)]) == 0
+        *listed, last = capsys.readouterr().out.splitlines()
+        assert sorted(listed) == sorted(str(results / name) for name in gone)
+        assert last == f"{results}: {len(gone)} files {'would be ' * bool(arguments)}deleted"
+        files = {path for path in results.rglob("*") if path.is_file() and not path.is_symlink()}
+        assert files == before | {results / name for name in (*kept, *left)}
+    assert not (results / "points/linearized/wave").exists()
+    assert (outside / "minus/a0.0500.nc").exists()
+    assert main(["prune", str(results)]) == 0
+    assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
+    main(["check", str(results)])
+    said = capsys.readouterr().out
+    assert f"unknown  {results}/points/linearized/minus/a0.0500_copy.nc: no point of a study has that name" in said
+
+
+def test_a_study_of_another_version_is_refused_in_a_line(results, capsys):
+    record = results / "study.json"
+    content = json.loads(record.read_text())
+    del content["config"]["solvers"]
+    record.write_text(json.dumps(content))
+    for command in ("check", "prune"):
+        assert main([command, str(results)]) == 2
+        assert "study.json: not a study of this version" in capsys.readouterr().err
 
 
 DEEP = b"[" * 100_000 + b"]" * 100_000

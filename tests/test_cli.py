@@ -26,10 +26,14 @@ def bk(*arguments, cwd=None):
 
 
 def test_a_point_is_what_python_simulates(tmp_path):
-    out = tmp_path / "new folder" / "point.nc"
+    out = tmp_path / "a folder" / "point.nc"
+    out.parent.mkdir()
     run = bk(*RUN, "--initial", "plus", "--out", str(out))
-    assert (run.returncode, run.stdout, run.stderr) == (0, "", "")
+    assert (run.returncode, run.stderr) == (0, "")
     expected = simulate("linearized", 0.08, "plus", transient=10.0, window=20.0, batches=2)
+    mean, error = expected.mean_distance, expected.mean_distance_error
+    assert run.stdout.startswith(f"{out}: <J> = {mean:.6g} +- {error:.2g}, largest Lyapunov exponent ")
+    assert run.stdout.endswith(f", {expected.event_count} stops and starts until tau = 30\n")
     with netCDF4.Dataset(out) as dataset:
         assert dataset["mean_distance"][...] == expected.mean_distance
         assert (dataset["event_time"][:] == expected.event_time).all()
@@ -86,6 +90,26 @@ def test_numbers_and_another_name_of_a_law_that_is_built_in(tmp_path):
         assert dataset.history.startswith(
             "bk simulate --law carlson_langer --law-name drop --number sigma=0.02 --a 0.08 "
         )
+
+
+@pytest.mark.parametrize(
+    ("given", "position"),
+    [(["--position", "-0.9,-1,-1"], [-0.9, -1.0, -1.0]), (["--velocity", "0.1,0.1,0.1"], [-0.989, -0.993, -0.991])],
+)
+def test_numbers_without_a_name_are_not_those_of_the_paper(tmp_path, given, position):
+    assert main([*RUN, *given, "--out", str(tmp_path / "x.nc")]) == 0
+    with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
+        assert dataset.initial == "own"
+        assert dataset["initial_position"][:].tolist() == position
+
+
+def test_what_is_longer_than_the_run_is_said(tmp_path, capsys):
+    assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
+    said = capsys.readouterr().err.splitlines()
+    assert said == [
+        "bk simulate: trajectory: 5000 is longer than the run: 30 were kept",
+        "bk simulate: event_window: 25 is longer than the window: 20 were kept",
+    ]
 
 
 def test_no_events(tmp_path):
@@ -179,6 +203,22 @@ def test_no_events(tmp_path):
         ([*RUN, "--out", "/dev/null"], "/dev/null: cannot be written: it is not a regular file"),
         ([*RUN, "--initial", "two words", "--out", "x.nc"], "'two words' is not allowed"),
         ([*RUN, "--position", "", "--out", "x.nc"], "numbers with commas"),
+        ([*RUN, "--out", "no/folder/x.nc"], "no/folder/x.nc: cannot be written: there is no folder no/folder"),
+        (
+            [*RUN, "--initial", "plus", "--position", "1,1,1", "--out", "x.nc"],
+            "initial: 'plus' is not allowed",
+        ),
+        (["attractors", "--law", "linearized", "--a", "0.08", "--samples", "-1"], "samples: -1 is not allowed"),
+        (["attractors", "--law", "linearized", "--a", "0.08", "--position-box", "1,0"], "position: (1.0, 0.0) is not"),
+        (["basins", "--law", "linearized", "--a", "0.08", "--pixels", "0"], "pixels: 0 is not allowed"),
+        (["basins", "--law", "linearized", "--a", "0", "--samples", "1", "--pixels", "1"], "no attractor was found"),
+        (["orbit", "--law", "linearized", "--a", "0.08", "--blocks", "4"], "4 blocks are not allowed"),
+        (["orbit", "--law", "linearized", "--a", "0.08", "--settling", "-1"], "settling: -1.0 is not allowed"),
+        (["exponents", "--law", "linearized", "--a", "0.08", "--lyapunov-exponents", "7"], "at most 6"),
+        (["exponents", "--law", "linearized", "--a", "0.08", "--longest-period", "0"], "longest_period: 0 is not"),
+        (["show", "x.nc"], "x.nc: is missing"),
+        (["prune", "."], "not the results of a study"),
+        (["completion", "csh"], "'csh'"),
     ],
 )
 def test_bad_input(tmp_path, arguments, words):
@@ -194,7 +234,7 @@ def test_a_run_that_ends_early_says_so(tmp_path):
     run = bk(
         *RUN[:4], "1.9", "--contact", "symmetric", "--transient", "0", "--window", "1000", "--out", "x.nc", cwd=tmp_path
     )
-    assert run.returncode == 0
+    assert (run.returncode, run.stdout) == (0, "")
     assert run.stderr.count("\n") == 1
     assert "status diverged" in run.stderr
     with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
@@ -236,12 +276,16 @@ def test_help_names_every_setting():
 
 
 def test_start_up_imports_no_heavy_library(tmp_path):
-    """A point job pays for the interpreter, numpy and netCDF4 only."""
+    """A point job pays for the interpreter, numpy and netCDF4 only, and for no other command."""
     code = (
         "import sys; from burridge_knopoff.cli import main; "
         f"main({[*RUN, '--out', str(tmp_path / 'x.nc')]!r}); "
         "print(sorted({'xarray', 'pandas', 'scipy', 'matplotlib', 'jsonschema', 'snakemake', 'yaml', 'cython'} "
-        "& set(sys.modules)))"
+        "& set(sys.modules))); "
+        "print(sorted(name for name in sys.modules if name.startswith('burridge_knopoff.cli.'))); "
+        "print({'check', 'figures', 'show', 'stability', 'study', 'summaries'} "
+        "& {name.split('.')[1] for name in sys.modules if name.startswith('burridge_knopoff.')})"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout == "[]\n"
+    own = ["burridge_knopoff.cli.options", "burridge_knopoff.cli.simulate"]
+    assert run.stdout.splitlines()[1:] == ["[]", f"{own}", "set()"]

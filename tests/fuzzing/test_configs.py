@@ -15,7 +15,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.cli import build_parser, simulated_law
+from burridge_knopoff.cli import build_parser
+from burridge_knopoff.cli.options import simulated_law
 from burridge_knopoff.model.fields import Keys
 from burridge_knopoff.study import ConfigError, load_study, read_config
 from burridge_knopoff.study.config import CONFIG

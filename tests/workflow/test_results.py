@@ -9,10 +9,13 @@ import xarray as xr
 from matplotlib.image import imread
 
 from burridge_knopoff import simulate
+from burridge_knopoff.check.leftovers import leftovers
+from burridge_knopoff.check.study import recorded_study
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.family import Family
+from burridge_knopoff.study import Study
 
 GRID = [0.05, 0.08, 0.2, 0.22]
 NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]
@@ -219,6 +222,20 @@ def test_logs_and_benchmarks(results):
         assert {f"{rule}{suffix}" for rule in ("mean_distance", "agreement", "figure_bifurcation")} <= names
         assert len(list((results / folder / "simulate").rglob(f"*{suffix}"))) == 16
     assert all(path.read_text() == "" for path in (results / "logs" / "simulate").rglob("*.log"))
+
+
+@pytest.mark.parametrize(("key", "name"), [("initial", "plus"), ("laws", "nonlinear"), ("grid", "0.0800")])
+def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, name):
+    """`bk prune` knows all that the rules have written of a state, a law or an a that is no more."""
+    record, study = recorded_study(results)
+    assert leftovers(results, study) == ([], [])
+    config, grid = record["config"], record["grid"]
+    del (grid if key == "grid" else config[key])[name]
+    maps = config["basins"].pop("a")
+    config["basins"]["a"] = {law: [a for a in maps[law] if a in grid.values()] for law in maps if law != name}
+    named = re.compile(rf".*(/a?|motion_){name}(/.*|\.[a-z]+)")
+    found, logs = leftovers(results, Study(config, grid))
+    assert {*found, *logs} == {path for path in results.rglob("*") if path.is_file() and named.fullmatch(str(path))}
 
 
 def test_the_data_dictionary_names_every_variable(results, repository):

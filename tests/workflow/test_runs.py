@@ -48,7 +48,7 @@ def test_one_point_by_its_path_and_by_hand(finished, study):
     assert list(study.files("points")) == ["points/linearized/plus/a0.0800.nc"]
     made = (study.folder / target).read_bytes()
     assert made == (finished.folder / target).read_bytes()
-    command = re.search(r"bk simulate .*", output)[0].split(" 2> ")[0].split()
+    command = re.search(r"bk simulate .*", output)[0].split(" > ")[0].split()
     (study.folder / target).unlink()
     command[0] = os.path.join(os.path.dirname(study.command()[0]), "bk")
     subprocess.run(command, check=True, cwd=study.folder)

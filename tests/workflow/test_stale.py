@@ -92,7 +92,7 @@ NOTHING = (
     ("kernel/series.pxd", COMMENT),
     ("stability/attractors.py", DOCSTRING),
     ("figures/style.py", COMMENT),
-    ("cli.py", CODE),
+    ("cli/simulate.py", CODE),
     ("provenance/files.py", CODE),
     ("../../workflow/scripts/attractors_of_law.py", COMMENT),
     ("../../workflow/rules/simulate.smk", COMMENT),

@@ -32,4 +32,4 @@ rule simulate:
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, a = {wildcards.a}"
     shell:
-        "{params.command} --out {output} 2> {log}"
+        "{params.command} --out {output} > /dev/null 2> {log}"

@@ -42,7 +42,7 @@ rule simulate_solver:
     message:
         "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
     shell:
-        "{params.command} --out {output} 2> {log}"
+        "{params.command} --out {output} > /dev/null 2> {log}"
 
 
 rule solvers:

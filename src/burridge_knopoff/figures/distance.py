@@ -38,7 +38,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
             distance = point["distance"].values
             panel.plot(point["time"], np.maximum(distance, FLOOR) if row else distance, color=color(0), linewidth=0.5)
             if row == 0:
-                panel.set_ylim(0.0, _top(distance))
+                panel.set_ylim(0.0, settled_top(distance))
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
         panel.set_xlabel(r"$\tau$")
         titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")
@@ -51,7 +51,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     return figure
 
 
-def _top(distance: np.ndarray) -> float | None:
+def settled_top(distance: np.ndarray) -> float | None:
     """Return the upper end of a linear axis for J after its first relaxation; None if there is no value."""
     settled = distance[len(distance) // 100 :]
     settled = settled[np.isfinite(settled)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
@@ -32,17 +33,8 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the one run."""
     (point,) = runs.values()
     figure, panels = new_figure(PAGE, 4.0, rows=2)
-    time = point["trajectory_time"].values
     for panel, name in zip(panels, ("velocity", "position"), strict=True):
-        for index, block in enumerate(point["block"].values):
-            panel.plot(
-                time,
-                point[name].sel(block=block),
-                linestyle=DASHES[index % len(DASHES)],
-                linewidth=WIDTHS[index % len(WIDTHS)],
-                color=SHADES[index] if index < len(SHADES) else color(index),
-                label=f"block {block}",
-            )
+        draw_blocks(panel, point, name)
     panels[0].set_ylabel("$U_i'$")
     panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
     blocks = len(point["block"])
@@ -53,3 +45,17 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
     label_panels(panels, [f"velocities: {run}", f"positions relative to the driver: {run}"])
     return figure
+
+
+def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
+    """Draw velocity or position of every block over the kept last part of a run into a panel."""
+    time = point["trajectory_time"].values
+    for index, block in enumerate(point["block"].values):
+        panel.plot(
+            time,
+            point[name].sel(block=block),
+            linestyle=DASHES[index % len(DASHES)],
+            linewidth=WIDTHS[index % len(WIDTHS)],
+            color=SHADES[index] if index < len(SHADES) else color(index),
+            label=f"block {block}",
+        )

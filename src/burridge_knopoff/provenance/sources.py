@@ -15,7 +15,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parents[1]
 
 #: Moves bytes, reads arguments and names sources: it decides no number, so that a change of it remakes nothing.
-PLUMBING = ("__init__.py", "cli.py", "kernel/__init__.py", "provenance/")
+PLUMBING = ("__init__.py", "cli/", "kernel/__init__.py", "provenance/")
 #: How the kernel is compiled decides its numbers.
 COMPILATION = PACKAGE / "provenance/compilation.py"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
     SECTION,
     MotionKind,
@@ -49,6 +49,46 @@ VARIABLES = {
 _COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
 
 
+@dataclass(frozen=True)
+class MotionOfRun:
+    """The kind of motion that a run ended in.
+
+    section_period : upward section points after which the state repeats, 0 if it does not
+    unstable : whether it has stayed on a closed orbit that repels
+    """
+
+    kind: MotionKind
+    section_period: int
+    unstable: bool
+
+    @property
+    def words(self) -> str:
+        """The kind as a sentence has it."""
+        period = f", section points repeat after {self.section_period}" if self.section_period else ""
+        return f"{'unstable ' if self.unstable else ''}{self.kind.words}{period}"
+
+
+def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSettings) -> MotionOfRun:
+    """Return the kind of motion of a run; undetermined if it did not complete.
+
+    run : variables of its point file, or `vars` of its trajectory
+    symmetric : whether its chain is its own mirror image
+    """
+    exponent, error = run["lyapunov_exponent"], run["lyapunov_error"]
+    period = section_period(run, settings)
+    kind = MotionKind.UNDETERMINED
+    mean = float(run["mean_distance"])
+    # That of a run that did not complete is NaN.
+    if not math.isnan(mean):
+        # End blocks that are not each other's mirror images do not synchronize.
+        kind = motion_kind(mean if symmetric else math.inf, period, exponent, error, settings)
+        upward = run["crossing_velocity"][run["crossing_direction"] > 0]
+        if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
+            # A weakly attracting orbit of a long period.
+            kind = MotionKind.PERIODIC
+    return MotionOfRun(kind, period, is_unstable(period, exponent, error, settings))
+
+
 def summarize(
     grid: Grid, lyapunov_exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
 ) -> xarray.Dataset:
@@ -67,21 +107,11 @@ def summarize(
         read = read_point(grid, *point, [*_COPIED, *SECTION])
         for name in _COPIED:
             values[name][index] = read[name]
-        exponent, error = read["lyapunov_exponent"], read["lyapunov_error"]
-        upward = read["crossing_velocity"][read["crossing_direction"] > 0]
-        period = section_period(read, settings)
-        kind = MotionKind.UNDETERMINED
-        if read["status"] == Status.COMPLETED:
-            # End blocks that are not each other's mirror images do not synchronize.
-            mean = float(read["mean_distance"]) if symmetric else math.inf
-            kind = motion_kind(mean, period, exponent, error, settings)
-            if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
-                # A weakly attracting orbit of a long period.
-                kind = MotionKind.PERIODIC
-        values["kind"][index] = kind
-        values["section_period"][index] = period
-        values["unstable"][index] = is_unstable(period, exponent, error, settings)
-        values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(exponent, error, settings))
+        found = motion_of_run(read, symmetric, settings)
+        values["kind"][index], values["section_period"][index] = found.kind, found.section_period
+        values["unstable"][index] = found.unstable
+        exponents = read["lyapunov_exponent"], read["lyapunov_error"]
+        values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(*exponents, settings))
     return summary(
         "Lyapunov exponents and kinds of motion",
         VARIABLES,

@@ -1,0 +1,194 @@
+"""Which files of a study are missing, corrupt, stale, or of a run that failed: `bk check`."""
+
+from __future__ import annotations
+
+import shlex
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from burridge_knopoff.check.leftovers import leftovers
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
+from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.study import ConfigError, Study, all_points
+from burridge_knopoff.study.job_log import last_words
+from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.yaml_file import read_yaml
+from burridge_knopoff.summaries.points import check_run
+
+KINDS = ("missing", "corrupt", "stale", "failed")
+#: Files that a command is printed with; more are left to --paths.
+MOST_IN_COMMAND = 8
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A file that is not as it should be: what it is, and why, in a line."""
+
+    kind: str
+    path: Path
+    reason: str
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was found in the results of a study.
+
+    points, summaries : numbers of point files that should be there, and of other netCDF files that are
+    unasked : number of runs of other solvers, none of which has been asked for
+    leftovers, leftover_logs : files that belong to no point of the study; see `leftovers`
+    unknown : netCDF files among the points that have no name of one
+    changed : what has changed in the config since the last run, in a line, or nothing
+    note : what could not be compared, in a line, or nothing
+    """
+
+    results: Path
+    points: int
+    summaries: int
+    findings: tuple[Finding, ...]
+    unasked: int
+    leftovers: tuple[Path, ...]
+    leftover_logs: int
+    unknown: tuple[Path, ...]
+    changed: str
+    note: str
+
+    @property
+    def exit_code(self) -> int:
+        """0 if there is nothing to list, 3 if runs have failed only, else 1."""
+        return 1 if self.changed or self.paths else 3 if self.findings else 0
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of the files that are to be made again."""
+        return [str(finding.path) for finding in self.findings if finding.kind != "failed"]
+
+    def lines(self) -> list[str]:
+        """Return all findings and their sum, a line each."""
+        counts = Counter(finding.kind for finding in self.findings)
+        lines = [f"{finding.kind:8} {finding.path}: {finding.reason}" for finding in self.findings]
+        lines += [f"leftover {path}: belongs to no point of the study" for path in self.leftovers]
+        lines += [f"unknown  {path}: no point of a study has that name" for path in self.unknown]
+        lines += [line for line in (self.changed, self.note) if line]
+        sums = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
+        lines.append(f"{self.results}: {_many(self.points, 'point')} and {_many(self.summaries, 'other file')}: {sums}")
+        if self.unasked:
+            lines.append(f"not counted: {_many(self.unasked, 'run')} of other solvers, none of which was asked for yet")
+        if self.leftovers or self.leftover_logs:
+            files = _many(len(self.leftovers) + self.leftover_logs, "file")
+            lines.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {self.results}")
+        if self.paths:
+            lines.append(f"remake: {self._remake()}")
+        return lines
+
+    def _remake(self) -> str:
+        """Return the command that makes what is listed again, from wherever it is called."""
+        root, here = root_of(self.results), self.results.absolute()
+        place = "" if root.resolve() == Path.cwd() else f"cd {shlex.quote(str(root))} && "
+        below = here.relative_to(root)
+        named: list[str] = [f"$(bk check --paths {below})"]
+        if len(self.paths) <= MOST_IN_COMMAND:
+            named = [str(Path(path).absolute().relative_to(root)) for path in self.paths]
+        return place + remake_command(self.results / NAME, *named)
+
+
+def root_of(results: Path) -> Path:
+    """Return the folder in which `snakemake` was called for results/<study>."""
+    return results.absolute().parents[1]
+
+
+def _many(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def check_study(results: str | Path) -> Check:
+    """Hold every point and every other netCDF file of a study against its config and the sources of now.
+
+    Raises ValueError, one line, if the folder holds no study.
+    """
+    results = Path(results)
+    record, study = recorded_study(results)
+    runs = list(_runs(study))
+    # Nobody who asks for points only asks for them by other solvers.
+    asked = (results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()
+    wanted = [run for run in runs if asked or not run[0].startswith("solvers/")]
+    points = {results / place: (results / log, command) for place, log, command in wanted}
+    left, logs = leftovers(results, study)
+    files = sorted(path for path in results.rglob("*.nc") if not path.name.startswith("."))
+    others = [path for path in files if path not in points and path not in left]
+    unknown = [path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")]
+    summaries = [path for path in others if path not in unknown]
+    found = [*(_look(path, command, log) for path, (log, command) in points.items()), *map(_look, summaries)]
+    findings = sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path))
+    return Check(
+        results,
+        len(points),
+        len(summaries),
+        tuple(findings),
+        len(runs) - len(wanted),
+        tuple(left),
+        len(logs),
+        tuple(unknown),
+        *_changed(results, record),
+    )
+
+
+def recorded_study(results: Path) -> tuple[dict[str, Any], Study]:
+    """Return the record of a folder of results and the study that it describes.
+
+    Raises ValueError, one line, if the folder holds no study, or one that this version cannot read.
+    """
+    record = read_study_record(results)
+    study = Study(record["config"], record["grid"])
+    try:
+        # All of the config that matters here is looked at.
+        list(_runs(study))
+    except (LookupError, TypeError, AttributeError, ValueError) as error:
+        raise ValueError(f"{results / NAME}: not a study of this version ({error}); run snakemake again") from None
+    return record, study
+
+
+def _runs(study: Study) -> Iterator[tuple[str, str, str]]:
+    """Yield file, log and command of every run of a study, the paths below its results."""
+    for law, initial, a in all_points(study):
+        place = POINT.format(law=law, initial=initial, a=a)
+        solvers = study.other_solvers(law) if study.grid[a] in study.config["solvers"]["a"] else []
+        for solver, folder, rule in (
+            (None, "points", "simulate"),
+            *((name, f"solvers/{name}", f"simulate_solver/{name}") for name in solvers),
+        ):
+            log = f"logs/{rule}/{place.removesuffix('.nc')}.log"
+            yield f"{folder}/{place}", log, study.command(law, initial, a, solver)
+
+
+def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
+    """Return what is wrong with the point file of a run, or with a summary if there is no command, or None."""
+    try:
+        if not command:
+            open_summary(path)
+        elif (status := check_run(path, command).status) != "completed":
+            return Finding("failed", path, f"ended with status {status}")
+    except BadFile as error:
+        reason = error.reason
+        if error.kind == "missing":
+            words = last_words(log)
+            reason = f"its job failed: {words} (log {log})" if words else "not made yet"
+        return Finding(error.kind, path, reason)
+    return None
+
+
+def _changed(results: Path, record: dict[str, Any]) -> tuple[str, str]:
+    """Return what has changed in the config file since the last run, and what is to be said if that is not known."""
+    file = record["config_file"]
+    path = root_of(results) / file
+    # Which file it was can be told from where it lay only.
+    if not path.exists():
+        return "", f"note     {file}: is not there; what is checked is the config of the last run"
+    try:
+        same = read_yaml(path) == record["given"]
+    except ConfigError as error:
+        return f"stale    {error}; what is checked is the config of the last run", ""
+    return "" if same else f"stale    {file}: has changed since the last run, whose config is checked", ""

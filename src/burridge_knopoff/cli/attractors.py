@@ -1,0 +1,76 @@
+"""`bk attractors`: the attractors of one model."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+
+from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.simulate import check_out
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+
+DESCRIPTION = """Look for all attractors of a model from initial states drawn in a box, and say what each is.
+What no drawn state reaches is not found; docs/attractors.md tells how the search works."""
+
+EXAMPLES = """  bk attractors --law linearized --a 0.08 --samples 100 --fraction-samples 500 --out attractors.nc
+  bk attractors --law nonlinear --a 0.05 --samples 20 --fraction-samples 100 --lifetime 1000 --initial plus
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a search."""
+    add_model(parser)
+    add_state(parser, "drawn states only")
+    add_search(parser, "fraction_samples")
+    parser.add_argument("--out", metavar="FILE", help="write them as netCDF as well, in the form of attractors.nc")
+
+
+def add_search(parser: argparse.ArgumentParser, *more: str) -> None:
+    """Add the settings of a search and of kinds of motion, and the convention of start.
+
+    more : settings of the search besides the usual ones
+    """
+    search = parser.add_argument_group("search")
+    add(search, Settings, "start")
+    add(search, SearchSettings, "samples", *more, "seed", "transient", "window", "time_limit", "resolution")
+    add(search, SearchSettings, "pushes", "lifetime")
+    add(search, SearchSettings, "position", "velocity", suffix="_box")
+    add(parser.add_argument_group("kinds of motion"), MotionSettings)
+
+
+def search_of(options: argparse.Namespace) -> SearchSettings:
+    """Return the settings of a search; raises ValueError as they do."""
+    return settings_of(SearchSettings, options, position=options.position_box, velocity=options.velocity_box)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look for attractors, and print a line for each."""
+    from burridge_knopoff.dataset.summary import write_summary
+    from burridge_knopoff.show.attractors import attractor_table, called
+    from burridge_knopoff.summaries.coexisting import coexisting_attractors
+
+    if options.out:
+        check_out(options.out)
+    state, search = state_of(options), search_of(options)
+    model, motion = model_of(options, state), settings_of(MotionSettings, options)
+    starts = [] if state is None else [state]
+    found = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
+    count, drawn = int((found["branch"] >= 0).sum()), search.fraction_samples
+    print(f"{said_of(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
+    names = ("", "_low", "_high")
+    shares = np.stack([100.0 * found[f"basin_fraction{name}"].values[0, 0][:count] for name in names], axis=1)
+    column = [f"{share:.1f} ({low:.1f} to {high:.1f}) %" for share, low, high in shares]
+    print("\n".join(attractor_table(found, {f"of {drawn} states (95 % interval)": column} if drawn else {})))
+    if drawn:
+        print(f"\nundetermined: {int(found['undetermined_count'].sum())} of {drawn} states")
+    if state is not None:
+        reached = found.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)
+        branch = reached["initial_branch"].item()
+        name = called(found, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
+        print(f"{state.name} reaches: {name}")
+    if options.out:
+        write_summary(found, options.out)
+        print(f"written: {options.out}")
+    return 0

@@ -1,0 +1,68 @@
+"""`bk basins`: a map of basins of attraction of one model."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import asdict
+
+from burridge_knopoff.cli.attractors import add_search, search_of
+from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.simulate import check_out
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.stability.settings import BasinSettings, MotionSettings
+
+DESCRIPTION = """Map which attractor each state of a plane of initial states reaches, over U_1(0) and U_N(0).
+The initial state gives all other positions and velocities. Attractors are looked for first, as by `bk attractors`."""
+
+EXAMPLES = """  bk basins --law linearized --a 0.08 --pixels 32 --out basins.nc --attractors-out attractors.nc
+  bk basins --law linearized --a 0.08 --pixels 16 --first-position -1,0 --last-position -1,0 --samples 40
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a map."""
+    add_model(parser)
+    add_state(parser, "minus")
+    plane = parser.add_argument_group("map")
+    # Those of basin_map, which is for a look, and not those of a study.
+    add(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
+    add_search(parser)
+    parser.set_defaults(samples=100)
+    out = parser.add_argument_group("files")
+    out.add_argument("--out", metavar="FILE", help="write the map as netCDF, in the form of basins.nc")
+    out.add_argument(
+        "--attractors-out",
+        metavar="FILE",
+        help="write the attractors too; `bk show --plot` finds them as attractors.nc beside the map",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make a map, and print the share of each attractor."""
+    import burridge_knopoff
+    from burridge_knopoff.dataset.summary import write_summary
+    from burridge_knopoff.show.attractors import attractor_table
+
+    files = [path for path in (options.out, options.attractors_out) if path]
+    for path in files:
+        check_out(path)
+    state = state_of(options) or PAPER_STATES["minus"]
+    model = model_of(options, state)
+    plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}
+    search = asdict(search_of(options)) | {"fraction_samples": options.samples}
+    motion = settings_of(MotionSettings, options)
+    basins, attractors = burridge_knopoff.basin_map(model, None, state, **plane, **search, motion=motion)
+    branch, side = (basins[name].values[0] for name in ("branch", "side"))
+    found = attractors.isel(law=0, a=0)
+    reached = zip(found["branch"].values.tolist(), found["side"].values.tolist(), strict=True)
+    shares = [f"{100 * ((branch == number) & (side == of)).mean():.2f} %" for number, of in reached]
+    first, last = ("{:g} to {:g}".format(*getattr(options, f"{end}_position")) for end in ("first", "last"))
+    pixels = options.pixels
+    print(f"{said_of(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}\n")
+    print("\n".join(attractor_table(attractors, {"of the plane": shares})))
+    print(f"\nundetermined: {100 * (branch < 0).mean():.2f} % of the plane")
+    for path, dataset in ((options.out, basins), (options.attractors_out, attractors)):
+        if path:
+            write_summary(dataset, path)
+            print(f"written: {path}")
+    return 0

@@ -1,0 +1,32 @@
+"""`bk check`: is a study what its config and the sources of now would make?"""
+
+from __future__ import annotations
+
+import argparse
+
+DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, and results
+that belong to no point. Exit code: 0 nothing to list, 1 something is missing, corrupt or stale, 3 runs have failed but
+nothing else is wrong."""
+
+EXAMPLES = """  bk check results/paper
+  bk check --paths results/*
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a check."""
+    parser.add_argument("results", metavar="FOLDER", nargs="+", help="results of a study: results/<study>")
+    parser.add_argument("--paths", action="store_true", help="print only the paths of the files to be remade")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check studies, and print what is found."""
+    from burridge_knopoff.check.study import check_study
+
+    codes = set()
+    for results in options.results:
+        found = check_study(results)
+        for line in found.paths if options.paths else found.lines():
+            print(line)
+        codes.add(found.exit_code)
+    return 1 if 1 in codes else max(codes)

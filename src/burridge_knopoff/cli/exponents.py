@@ -1,0 +1,61 @@
+"""`bk exponents`: Lyapunov exponents of a run, and the transverse exponent of the synchronous motion beside it."""
+
+from __future__ import annotations
+
+import argparse
+
+from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.simulate import check_out
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.stability.settings import MotionSettings
+
+DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and tell its kind. In a chain that is
+its own mirror image also the transverse exponent: mirror blocks near each other synchronize where it is negative."""
+
+EXAMPLES = """  bk exponents --law linearized --a 0.08 --initial plus
+  bk exponents --law nonlinear --a 0.22 --transient 3000 --window 20000 --lyapunov-exponents 6 --out chaos.nc
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a run and of kinds of motion."""
+    add_model(parser)
+    add_state(parser, "minus")
+    run = parser.add_argument_group("run")
+    add(run, Settings, "start", "transient", "window", "batches", "event_window")
+    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
+    add(parser.add_argument_group("kinds of motion"), MotionSettings)
+    parser.add_argument("--out", metavar="FILE", help="write the run as a point file as well (netCDF)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run, and print the exponents."""
+    from burridge_knopoff.dataset.point import write_point
+    from burridge_knopoff.running import simulation
+    from burridge_knopoff.show.words import table
+    from burridge_knopoff.stability.chains import ALIGNMENT, transverse_exponent
+    from burridge_knopoff.summaries.lyapunov import motion_of_run
+
+    if options.out:
+        check_out(options.out)
+    state = state_of(options) or PAPER_STATES["minus"]
+    model, motion = model_of(options, state), settings_of(MotionSettings, options)
+    trajectory = simulation.run(model, state, settings_of(Settings, options))
+    print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
+    exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
+    rows = [(str(k), f"{value + 0.0:.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
+    print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
+    if trajectory.lyapunov_infinite_count > 0:
+        print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
+    found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
+    print(f"\nmotion: {found.words}")
+    print(f"<J> = {trajectory.mean_distance:.6g} +- {trajectory.mean_distance_error:.2g}")
+    if model.chain.is_mirror_symmetric:
+        start = model.begin(state, options.start)
+        value, error = transverse_exponent(model, start, max(options.transient, ALIGNMENT), options.window)
+        print(f"transverse exponent of the symmetric motion beside it: {value:.6f} +- {error:.6f}")
+    if options.out:
+        write_point(trajectory, options.out)
+        print(f"written: {options.out}")
+    return 0

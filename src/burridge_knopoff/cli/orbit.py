@@ -1,0 +1,101 @@
+"""`bk orbit`: a periodic orbit of one model, stable or not, and its Floquet multipliers."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from burridge_knopoff.cli.options import add, add_model, add_state, count, model_of, number, said_of, state_of
+from burridge_knopoff.model.ranges import Number
+from burridge_knopoff.running.settings import LONGEST, Settings
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from burridge_knopoff.model.initial import InitialState
+    from burridge_knopoff.model.model import Model
+    from burridge_knopoff.stability.periodic import PeriodicOrbit
+
+DESCRIPTION = """Compute the synchronized orbit, stable or not; or, from an initial state, the periodic orbit that its
+motion comes to, of any chain. An orbit is stable where all multipliers but that of the flow are below 1 in modulus."""
+
+EXAMPLES = """  bk orbit --law linearized --a 0.08
+  bk orbit --law linearized --a 0.08 --initial plus
+  bk orbit --law linearized --a 0.1 --position -0.9,-1.1 --velocity 0.1,0.1
+"""
+
+SETTLING = Number(0.0, LONGEST)
+
+# Multipliers below this are those of blocks that stop.
+ZERO = 1e-7
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of an orbit."""
+    add_model(parser)
+    add_state(parser, "none: the synchronized orbit of three blocks")
+    motion = parser.add_argument_group("motion from that state")
+    add(motion, Settings, "start")
+    parser.add_argument(
+        "--events", type=count, default=20, metavar="N", help="stops and starts to print (default: %(default)s)"
+    )
+    motion.add_argument(
+        "--settling", type=number, default=3000.0, help="time that it is left to settle first (default: %(default)g)"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Find an orbit, and print its period, its multipliers, and its stops and starts."""
+    settling = SETTLING.form(options.settling, "settling")
+    state = state_of(options)
+    model = model_of(options, state)
+    orbit = _synchronized(model) if state is None else _reached(model, state, options.start, settling)
+    print("\n".join([said_of(model), "", *_lines(orbit, options.events)]))
+    return 0
+
+
+def _synchronized(model: Model) -> PeriodicOrbit:
+    from burridge_knopoff.stability.attractor import Symmetry
+    from burridge_knopoff.stability.family import synchronized_orbit
+    from burridge_knopoff.stability.periodic import orbit_of
+
+    found = synchronized_orbit(model)
+    return orbit_of(model, found.reference, found.period, Symmetry.SYNCHRONIZED)
+
+
+def _reached(model: Model, state: InitialState, start: str, settling: float) -> PeriodicOrbit:
+    from burridge_knopoff.stability.closed_motion import closed_motion
+
+    return closed_motion(model, model.begin(state, start), settling)
+
+
+def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
+    """Return an orbit in lines, at most so many of its events among them."""
+    from burridge_knopoff.show.words import table
+    from burridge_knopoff.stability.floquet import multipliers
+
+    found = multipliers(orbit)
+    lines = [
+        f"symmetry     {orbit.symmetry.name.lower()}",
+        f"period       {orbit.period:.9f}",
+        f"stability    {f'unstable: {found.unstable}' if found.unstable else 'stable: no'} multiplier"
+        f"{'s' if found.unstable > 1 else ''} outside the unit circle",
+        f"multipliers  1 (the flow), {_complex(found.whole)}; the others are 0",
+    ]
+    if len(found.breaking):
+        lines.append(f"             of perturbations that part mirror blocks: {_complex(found.breaking**found.power)}")
+    lines += [
+        f"stops        {' '.join(map(str, orbit.signature))} of each block in a period",
+        f"residual     {orbit.residual:.1e} after a return",
+        "",
+    ]
+    events = [(f"{time:.9f}", f"block {block + 1}", ("stops", "starts")[kind]) for time, block, kind in orbit.events]
+    lines += table(("time", "", ""), events[:most])
+    return lines + [f"and {len(events) - most} more: --events {len(events)}"] * (len(events) > most)
+
+
+def _complex(values: np.ndarray) -> str:
+    """Return multipliers in words: conjugate pairs as one, without those that are 0."""
+    shown = [value for value in values.tolist() if abs(value) > ZERO and value.imag >= 0.0]
+    words = [f"{value.real:.6g} +- {value.imag:.6g}i" if value.imag else f"{value.real:.6g}" for value in shown]
+    return ", ".join(words) or "0"

@@ -1,0 +1,37 @@
+"""`bk prune`: delete results that belong to no point of a study."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+DESCRIPTION = """Delete the files of studies that belong to a law, an initial state or a value of a that is not in the
+config of the last run, with their logs and benchmarks, and say which. Files of any other name stay."""
+
+EXAMPLES = """  bk prune --dry-run results/paper
+  bk prune results/paper
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of what is to be deleted."""
+    parser.add_argument("results", metavar="FOLDER", nargs="+", help="results of a study: results/<study>")
+    parser.add_argument("-n", "--dry-run", action="store_true", help="only say what would be deleted")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Delete what is left over, and print it."""
+    from burridge_knopoff.check.leftovers import delete, leftovers
+    from burridge_knopoff.check.study import recorded_study
+
+    studies = [(folder, recorded_study(folder)[1]) for folder in map(Path, options.results)]
+    for folder, study in studies:
+        results, logs = leftovers(folder, study)
+        for path in (*results, *logs):
+            print(path)
+        if not options.dry_run:
+            delete(folder, [*results, *logs])
+        count = len(results) + len(logs)
+        done = "would be deleted" if options.dry_run else "deleted"
+        print(f"{folder}: {count} file{'' if count == 1 else 's'} {done}")
+    return 0

@@ -1,0 +1,86 @@
+"""`bk simulate`: one run, as a point file."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from burridge_knopoff.cli.options import add, add_model, add_state, model_of, settings_of, state_of
+from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.settings import Settings
+
+if TYPE_CHECKING:
+    from burridge_knopoff.running.trajectory import Trajectory
+
+DESCRIPTION = """Run one simulation and write it as a netCDF point file.
+All quantities are dimensionless: times in 1/omega, U = k X / F(0), as in the paper."""
+
+EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.nc
+  bk simulate --law nonlinear --a 0.08 --initial minus --transient 0 --window 100 --events all --out start.nc
+  bk simulate --law linearized --a 0.1 --blocks 2 --position -0.9,-1.1 --velocity 0.1,0.1 --initial pair --out pair.nc
+  bk simulate --law carlson_langer --number sigma=0.02 --a 0.5 --threshold 1,1.2,1 --out drop.nc
+  bk simulate --formula "1 - c*tanh(a*u/c)" --number c=0.1 --a 0.5 --out own.nc
+"""
+
+#: Settings that may ask for a longer time than there is: which one it is, in words.
+_PARTS = {"trajectory": "run", "event_window": "window"}
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a run."""
+    add_model(parser)
+    add_state(parser, "minus")
+    run = parser.add_argument_group("run")
+    add(run, Settings, "start", "solver", "step", "transient", "window", "batches")
+    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
+    kept = parser.add_argument_group("what is kept")
+    kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
+    add(kept, Settings, "sampling", "events", "event_window", "trajectory", "trajectory_sampling")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run a simulation, write its file, and say in a line what came out."""
+    from burridge_knopoff.dataset.point import write_point
+    from burridge_knopoff.running import simulation
+
+    check_out(options.out)
+    state = state_of(options) or PAPER_STATES["minus"]
+    settings = settings_of(Settings, options)
+    trajectory = simulation.run(model_of(options, state), state, settings)
+    write_point(trajectory, options.out)
+    for key, part in _PARTS.items():
+        asked, there = getattr(settings, key), settings.duration if part == "run" else settings.window
+        if asked > there and asked != fields_of(Settings)[key].default:
+            print(f"bk simulate: {key}: {asked:g} is longer than the {part}: {there:g} were kept", file=sys.stderr)
+    if trajectory.status == "completed":
+        print(f"{options.out}: {outcome(trajectory)}")
+    else:
+        print(
+            f"bk simulate: {options.out}: the run ended at tau = {trajectory.end_time:g} with status "
+            f"{trajectory.status}; its averages are NaN",
+            file=sys.stderr,
+        )
+    return 0
+
+
+def check_out(path: str) -> None:
+    """Raise OSError, one line, if a file could not be written: better before the work than after."""
+    from burridge_knopoff.provenance.files import check_target
+
+    folder = Path(path).parent
+    if not folder.exists():
+        raise OSError(f"{path}: cannot be written: there is no folder {folder}")
+    check_target(path)
+
+
+def outcome(trajectory: Trajectory) -> str:
+    """Return in a line what came out of a run that completed."""
+    words = f"<J> = {trajectory.mean_distance:.6g} +- {trajectory.mean_distance_error:.2g}"
+    for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
+        if not math.isnan(error):
+            words += f", largest Lyapunov exponent {exponent:.5f} +- {error:.5f}"
+    return f"{words}, {trajectory.event_count} stops and starts until tau = {trajectory.end_time:g}"

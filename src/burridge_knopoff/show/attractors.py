@@ -1,0 +1,36 @@
+"""The attractors of one law at one a in a table."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.show.words import table
+from burridge_knopoff.stability.motion import MotionKind
+
+
+def called(found: xarray.Dataset, branch: int, side: int) -> str:
+    """Return what a branch is called, with + or - for the side of it where it has two."""
+    names = dict(zip(found["branch_number"].values.tolist(), found["branch_name"].values, strict=True))
+    return f"{names[branch]} {' +-'[side]}".rstrip()
+
+
+def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> list[str]:
+    """Return the lines of a table of the attractors of one law and one a.
+
+    columns : {head: a text for each attractor} to be added
+    """
+    rows = []
+    for slot in np.flatnonzero(found["branch"].values[0, 0] >= 0):
+        one = found.isel(law=0, a=0, attractor=slot)
+        period, kind = one["section_period"].item(), MotionKind(one["kind"].item())
+        rows.append(
+            (
+                called(found, one["branch"].item(), one["side"].item()),
+                f"{kind.words} {period}" if period else kind.words,
+                f"{one['mean_distance'].item():.6f} +- {one['mean_distance_error'].item():.1g}",
+                " ".join(f"{value:7.4f}" for value in one["lyapunov_exponent"].values + 0.0),
+                *(column[slot] for column in columns.values()),
+            )
+        )
+    return table(("attractor", "motion, period", "<J>", "Lyapunov exponents", *columns), rows)

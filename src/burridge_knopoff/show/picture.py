@@ -1,0 +1,110 @@
+"""A file of results as a picture: J, section and velocities of a run; the figure of a summary."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.description import Description, figure_descriptions
+from burridge_knopoff.figures.distance import FLOOR, settled_top
+from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
+from burridge_knopoff.show.result import Result, open_result
+from burridge_knopoff.study import Study
+
+FORMATS = (".png", ".pdf", ".svg")
+
+#: What a figure takes from the study, for a file that belongs to none.
+WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
+
+
+def check_format(path: str | Path) -> None:
+    """Raise ValueError, one line, if the name of a picture has no suffix that can be drawn."""
+    if Path(path).suffix not in FORMATS:
+        raise ValueError(f"{path}: {Path(path).suffix!r} is not allowed: {' | '.join(FORMATS)}")
+
+
+def write_picture(result: Result, path: str | Path) -> str:
+    """Draw a file of results into a picture, and return in a line what it shows.
+
+    Raises ValueError, one line, where no figure shows such a file, or one of those that it takes besides is not there.
+    """
+    check_format(path)
+    if result.is_point:
+        write_figure(draw_point(result.data), path)
+        return f"{path}: J, section points and velocities"
+    figure = _figure_of(result)
+    others = [_beside(result, name) for name in figure.inputs if name != result.name]
+    data = iter(others)
+    inputs = [result.data if name == result.name else next(data) for name in figure.inputs]
+    module = import_module(f"burridge_knopoff.figures.{figure.name}")
+    try:
+        drawn = module.draw(*inputs, **_from_study(result, figure))
+    except (AttributeError, KeyError, IndexError, ValueError) as error:
+        # Made by other sources, or a part of a summary.
+        raise ValueError(f"{result.path}: the figure {figure.name} cannot show it ({error})") from None
+    write_figure(drawn, path)
+    return f"{path}: {figure.caption_of({})}"
+
+
+def _figure_of(result: Result) -> Description:
+    """Return the figure of a summary: the one of its name if there is one, else one that takes the fewest others."""
+    figures = [
+        figure
+        for figure in figure_descriptions()
+        if result.name in figure.inputs and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
+    ]
+    if not figures:
+        raise ValueError(f"{result.path}: no figure shows a file of {result.name}")
+    return min(figures, key=lambda figure: (figure.name != result.name, len(figure.inputs)))
+
+
+def _beside(result: Result, name: str) -> xarray.Dataset:
+    """Return another summary that a figure takes, from the same folder."""
+    try:
+        return open_result(result.path.with_name(f"{name}.nc")).data
+    except ValueError as error:
+        raise ValueError(f"{result.path}: its figure takes {name}.nc besides: {error}") from None
+
+
+def _from_study(result: Result, figure: Description) -> dict[str, Any]:
+    if not result.study:
+        return {name: WITHOUT_STUDY[name] for name in figure.from_study}
+    study = Study(result.record["config"], result.record["grid"])
+    return {name: getattr(study, name) for name in figure.from_study}
+
+
+@styled
+def draw_point(point: xarray.Dataset) -> Figure:
+    """Draw J(τ), linear and logarithmic, W' at each upward section point against the one before, and velocities.
+
+    The linear panel leaves out the first relaxation.
+    """
+    figure, panels = new_figure(PAGE, 5.2, rows=2, columns=2, share_rows=False, share_columns=False)
+    distance, time = point["distance"].values, point["time"].values
+    for panel, logarithmic in zip(panels[:2], (False, True), strict=True):
+        panel.plot(time, np.maximum(distance, FLOOR) if logarithmic else distance, color=color(0), linewidth=0.5)
+        panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
+        panel.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$")
+    panels[0].set_ylim(0.0, settled_top(distance))
+    panels[1].set(yscale="log", ylim=(FLOOR, 10.0))
+    panels[1].legend(loc="lower right", handlelength=1.2)
+    upward = point["crossing_velocity"].values[point["crossing_direction"].values > 0]
+    if len(upward) > 1:
+        panels[2].plot(upward[:-1], upward[1:], ".", markersize=2.5, markeredgewidth=0, color=color(0), rasterized=True)
+        panels[2].set(xlabel="$W'$ at an upward crossing of $W=0$", ylabel="$W'$ at the next")
+    else:
+        say_nothing(panels[2], "W crosses 0 less than twice in the window")
+    draw_blocks(panels[3], point, "velocity")
+    panels[3].set(xlabel=r"$\tau$", ylabel="$U_i'$")
+    if point.sizes["block"] <= MOST_NAMED:
+        figure.legend(*panels[3].get_legend_handles_labels(), ncols=6, loc="outside lower center")
+    run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
+    titles = (f"{run}: distance of the end blocks", "logarithmic", "section points", "velocities at the end")
+    label_panels(panels, titles)
+    return figure

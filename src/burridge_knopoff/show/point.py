@@ -1,0 +1,115 @@
+"""A point file in a page of words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.provenance.command import CHAIN_OPTIONS
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.show.result import Result
+from burridge_knopoff.show.words import listed, paragraph
+from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.summaries.lyapunov import motion_of_run
+
+
+def point_lines(result: Result) -> list[str]:
+    """Return what is in a point file, a line a thing."""
+    point, attributes = result.data, result.data.attrs
+    head = f"{result.path}: a run from {attributes['initial']}, {attributes['law']} law, a = {point['a'].item()!r}"
+    rows = [
+        *_model(point),
+        *_run(point),
+        ("", ""),
+        *_outcome(point, result.motion),
+        ("", ""),
+        *_kept(point),
+        ("", ""),
+        ("made by", result.made_by),
+        ("made again by", f"{attributes['history']} --out FILE"),
+    ]
+    return [head, "", *paragraph(rows)]
+
+
+def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
+    attributes = point.attrs
+    chain = ", ".join(f"{key} {_text(attributes[f'chain_{key}'])}" for key in CHAIN_OPTIONS if key != "ends")
+    yield "chain", f"{point.sizes['block']} blocks, {attributes['chain_ends']}: {chain}"
+    numbers = [
+        f"{key.removeprefix('law_')} = {value:g}"
+        for key, value in attributes.items()
+        if key.startswith("law_") and key != "law_formula"
+    ]
+    yield "law", ", ".join([f"{attributes['law']}: Phi = {attributes['law_formula']}", *numbers])
+    yield "", f"a = {point['a'].item():g}"
+    yield "driver", f"v = {point['v'].item():g}; contact {attributes['contact']}"
+    yield "initial state", f"{attributes['initial']} (start {attributes['start']})"
+    yield "", f"U(0)  = {listed(point['initial_position'].values)}"
+    yield "", f"U'(0) = {listed(point['initial_velocity'].values)}"
+
+
+def _text(value: object) -> str:
+    return value if isinstance(value, str) else listed(value)  # type: ignore[arg-type]
+
+
+def _run(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
+    attributes = point.attrs
+    step = f", step {attributes['step']:g}" if "step" in attributes else ""
+    yield "solver", f"{attributes['solver']}{step}; {point['step_count'].item()} steps"
+    yield (
+        "time",
+        f"transient {attributes['transient']:g}, window {attributes['window']:g} in {point.sizes['batch']} batches",
+    )
+
+
+def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[str, str]]:
+    run = {str(name): variable.values for name, variable in point.variables.items()}
+    chain = Chain(point.sizes["block"], **{key: _given(point.attrs[f"chain_{key}"]) for key in CHAIN_OPTIONS})
+    status = Status(point["status"].item()).name.lower()
+    yield "status", f"{status} at tau = {point['end_time'].item():g}"
+    yield "<J>", f"{point['mean_distance'].item():.9g} +- {point['mean_distance_error'].item():.2g}"
+    yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion).words
+    exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
+    if exponents and not np.isnan(run["lyapunov_exponent"]).all():
+        words = (f"{value:.6f} +- {error:.6f}" if np.isfinite(value) else "-infinity" for value, error in exponents)
+        yield "exponents", ", ".join(words)
+        if run["lyapunov_infinite_count"] > 0:
+            yield "", f"at least {run['lyapunov_infinite_count']} of all {2 * chain.blocks} are -infinity"
+    else:
+        yield "exponents", "none"
+    yield "events", f"{point['event_count'].item()} stops and starts in the whole run"
+    yield (
+        "least",
+        f"friction Phi of a slipping block {run['least_friction']:.4g}, spring force on a stuck block "
+        f"{run['least_spring_force']:.4g}",
+    )
+
+
+def _given(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+
+
+def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
+    yield "J(tau)", f"{point.sizes['sample']} samples{_span(point['time'].values)}"
+    direction = point["crossing_direction"].values
+    up, down = int((direction > 0).sum()), int((direction < 0).sum())
+    yield "section W = 0", f"{up} upward and {down} downward crossings{_span(point['crossing_time'].values)}"
+    blocks = range(1, point.sizes["block"] + 1)
+    for name, words in (("event", "with the states of all blocks"), ("earlier_event", "before them, without states")):
+        moved = point[f"{name}_block"].values[point[f"{name}_kind"].values == 0]
+        stops = f"; stops of each block: {listed([(moved == block).sum() for block in blocks])}" if len(moved) else ""
+        if name == "event" or point.sizes[name]:
+            yield (
+                "stops and starts" if name == "event" else "",
+                f"{point.sizes[name]} {words}{_span(point[f'{name}_time'].values)}{stops}",
+            )
+    time = point["trajectory_time"].values
+    yield "trajectory", f"positions and velocities at {len(time)} times{_span(time)}"
+
+
+def _span(time: np.ndarray) -> str:
+    return f", tau = {time[0]:g} to {time[-1]:g}" if len(time) else ""

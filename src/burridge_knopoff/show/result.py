@@ -1,0 +1,77 @@
+"""A file of results, opened whatever it is: a point, or a summary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import xarray
+
+from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.provenance.record import NAME, read_study_record
+from burridge_knopoff.provenance.seal import BadFile, read_seal
+from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.stability.settings import MOTION, MotionSettings
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A file that this software has written, whole.
+
+    study : folder of results that it lies in, or None; record : of that study, or nothing
+    """
+
+    path: Path
+    data: xarray.Dataset
+    study: Path | None
+    record: dict[str, Any]
+
+    @property
+    def is_point(self) -> bool:
+        """Whether it is the point file of a run."""
+        return set(POINT_VARIABLES) <= {str(name) for name in self.data.variables}
+
+    @property
+    def name(self) -> str:
+        """Name of the module that made it: that of a summary."""
+        return self.data.attrs["source_module"].rpartition(".")[2]
+
+    @property
+    def motion(self) -> MotionSettings:
+        """How kinds of motion are told: by its study, or by the defaults."""
+        config = self.record.get("config", {})
+        if "motion" not in config:
+            return MOTION
+        return MotionSettings(**config["motion"], synchronization_threshold=config["synchronization_threshold"])
+
+    @property
+    def made_by(self) -> str:
+        """What made the file, and whether the sources of now are the same, in a line."""
+        attributes = self.data.attrs
+        try:
+            same = source_fingerprint(attributes["source_module"]) == attributes["source_fingerprint"]
+        except OSError:
+            same = False
+        words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"
+        return words if same else f"{words} (other sources than those of now)"
+
+
+def open_result(path: str | Path) -> Result:
+    """Return what is in a point file or a summary, of these sources or of others.
+
+    Raises ValueError, one line, if it is not there, damaged, or of another program.
+    """
+    path = Path(path)
+    study = next((folder for folder in path.absolute().parents if (folder / NAME).is_file()), None)
+    try:
+        read_seal(path)
+        data = xarray.load_dataset(path, engine="netcdf4")
+        if missing := {"software", "source_module", "source_fingerprint"} - data.attrs.keys():
+            raise ValueError(f"no attribute {min(missing)}")
+    except BadFile as error:
+        # What makes it again is known of the files of a study only.
+        raise error if study else ValueError(f"{path}: {error.reason}") from None
+    except (OSError, RuntimeError, ValueError) as error:
+        raise ValueError(f"{path}: is not a file of this software ({error})") from None
+    return Result(path, data, study, read_study_record(study) if study else {})

@@ -1,0 +1,39 @@
+"""The attractors of one model in one call, in the form of `attractors.nc`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import xarray
+
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.stability.continuation import continue_attractors
+from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
+from burridge_knopoff.summaries.attractors import branch_numbers, merge, one_law
+
+
+def coexisting_attractors(
+    model: Model,
+    settings: SearchSettings = SEARCH,
+    motion: MotionSettings = MOTION,
+    *,
+    starts: Sequence[InitialState] = (),
+    start: str = "moving",
+) -> xarray.Dataset:
+    """Return the attractors of a model with the fractions of drawn states that reach them, as `attractors.nc` has them.
+
+    settings, motion, starts, start : see `find_attractors`
+
+    Raises ValueError if an initial state does not fit the model, and where no attractor is found.
+    """
+    found = continue_attractors([model], settings, motion, starts=starts, start=start)
+    if not found.attractors[0]:
+        raise ValueError(
+            f"a: {model.a!r} is not allowed: no attractor was found, from {settings.samples} sampled states "
+            "(none is at 0)"
+        )
+    parts = [one_law(found, starts, settings, motion, start)]
+    dataset = merge(parts, branch_numbers(parts, [model], settings))
+    dataset.attrs["history"] = "burridge_knopoff, from sampled initial states"
+    return dataset

@@ -1,0 +1,108 @@
+"""`bk attractors`, `basins`, `orbit`, `exponents`: what they print and write is what the library gives."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import burridge_knopoff
+from burridge_knopoff.cli import main
+from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.stability.closed_motion import closed_motion
+from burridge_knopoff.stability.family import synchronized_orbit
+from burridge_knopoff.stability.orbit import transverse_multiplier
+from burridge_knopoff.stability.settings import MOTION, SearchSettings
+from burridge_knopoff.summaries.lyapunov import motion_of_run
+
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
+GIVEN = ["--law", "linearized", "--a", "0.08"]
+#: Little of a search, in settings and as options.
+SHORT = {"samples": 12, "lifetime": 1000.0, "transient": 500.0, "window": 500.0, "time_limit": 5000.0, "pushes": 4}
+OPTIONS = [word for key, value in SHORT.items() for word in (f"--{key.replace('_', '-')}", f"{value:g}")]
+
+
+def said(capsys, *arguments):
+    assert main(arguments) == 0
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    return printed.out
+
+
+def test_attractors(capsys, tmp_path):
+    out = tmp_path / "attractors.nc"
+    printed = said(
+        capsys, "attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus", "--out", str(out)
+    )
+    found, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
+    written = open_summary(out)
+    assert written.sizes["attractor"] == len(found)
+    means = sorted(attractor.motion.mean_distance for attractor in found)
+    assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)
+    rows = printed.splitlines()
+    assert rows[0] == f"linearized law, a = 0.08, v = 0.1, 3 blocks: {len(found)} attractors"
+    for slot, name in enumerate(written["branch_name"].values):
+        row = next(line for line in rows if line.startswith(f"{name}  "))
+        assert f"  {written['mean_distance'].values[0, 0, slot]:.6f} +- " in row
+        assert f"  {100 * written['basin_fraction'].values[0, 0, slot]:.1f} (" in row
+    reached = found[labels[-1]].motion.mean_distance
+    name = written["branch_name"].values[np.abs(written["mean_distance"].values[0, 0] - reached).argmin()]
+    assert f"plus reaches: {name}\n" in printed
+    assert said(capsys, "show", str(out)).count(f"\n{name}  ") == 1
+
+
+def test_basins(capsys, tmp_path):
+    files = [tmp_path / name for name in ("basins.nc", "attractors.nc")]
+    plane = ["--pixels", "6", "--first-position", "-1.2,1", "--threads", "2"]
+    out = ["--out", str(files[0]), "--attractors-out", str(files[1])]
+    printed = said(capsys, "basins", *GIVEN, *OPTIONS, *plane, *out)
+    expected = burridge_knopoff.basin_map(MODEL, pixels=6, first_position=(-1.2, 1.0), **SHORT)
+    for path, dataset in zip(files, expected, strict=True):
+        xr.testing.assert_identical(open_summary(path).drop_attrs(), dataset.drop_attrs())
+    branch = expected[0]["branch"].values
+    for number, name in zip(*(expected[1][f"branch_{key}"].values for key in ("number", "name")), strict=True):
+        row = next(line for line in printed.splitlines() if line.startswith(f"{name}  "))
+        assert row.endswith(f"  {100 * (branch == number).mean():.2f} %")
+    picture = tmp_path / "basins.png"
+    assert f"{picture}: Maps over the initial positions" in said(capsys, "show", str(files[0]), "--plot", str(picture))
+    assert picture.stat().st_size > 10_000
+
+
+def test_the_synchronized_orbit(capsys):
+    for a, words in ((0.08, "stable: no multiplier outside"), (0.12, "unstable: 1 multiplier outside")):
+        orbit = synchronized_orbit(MODEL.at(a))
+        printed = said(capsys, "orbit", "--law", "linearized", "--a", str(a))
+        assert f"period       {orbit.period:.9f}\n" in printed
+        assert f"part mirror blocks: {transverse_multiplier(orbit):.6g}\n" in printed
+        assert f"stability    {words} the unit circle\n" in printed
+        assert printed.count(" stops\n") == printed.count(" starts\n") == 3
+
+
+def test_the_orbit_that_a_state_comes_to(capsys):
+    orbit = closed_motion(MODEL, MODEL.begin(PAPER_STATES["plus"]), 3000.0)
+    printed = said(capsys, "orbit", *GIVEN, "--initial", "plus", "--events", "4")
+    assert f"period       {orbit.period:.9f}\n" in printed
+    assert "symmetry     symmetric\n" in printed
+    assert f"stops        {' '.join(map(str, orbit.signature))} of each block" in printed
+    assert printed.endswith(f"and {len(orbit.events) - 4} more: --events {len(orbit.events)}\n")
+
+
+def test_exponents(capsys, tmp_path):
+    out = tmp_path / "run.nc"
+    settings = Settings(transient=500.0, window=500.0, batches=2, lyapunov_exponents=2)
+    options = ["--transient", "500", "--window", "500", "--batches", "2", "--lyapunov-exponents", "2"]
+    printed = said(capsys, "exponents", *GIVEN, *options, "--out", str(out))
+    trajectory = run(MODEL, PAPER_STATES["minus"], settings)
+    for number, value in enumerate(trajectory.lyapunov_exponent, 1):
+        assert f"\n{number}  {value + 0.0:.6f}" in printed
+    assert f"motion: {motion_of_run(vars(trajectory), True, MOTION).words}\n" in printed
+    value, error = map(float, printed.split("beside it: ")[1].splitlines()[0].split(" +- "))
+    orbit = synchronized_orbit(MODEL)
+    assert value == pytest.approx(np.log(transverse_multiplier(orbit)) / orbit.period, abs=4.0 * error)
+    assert error < 0.003
+    with xr.open_dataset(out) as point:
+        assert point["mean_distance"].item() == trajectory.mean_distance

@@ -1,0 +1,139 @@
+"""`bk show`: points and summaries in words and as pictures; what is no file of ours is refused in a line."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import netCDF4
+import pytest
+from matplotlib.image import imread
+
+from burridge_knopoff.cli import READER_GONE, main
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.running.simulation import simulate
+from burridge_knopoff.show.result import open_result
+from burridge_knopoff.show.summary import summary_lines
+
+BK = str(Path(sys.executable).parent / "bk")
+
+
+@pytest.fixture(scope="module")
+def point(tmp_path_factory):
+    path = tmp_path_factory.mktemp("point") / "plus.nc"
+    write_point(simulate("linearized", 0.08, "plus", transient=3000.0, window=1000.0, batches=4), path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def study(small_studies, tmp_path_factory):
+    """The summaries of a small study with its record."""
+    small = small_studies("paper")
+    results = tmp_path_factory.mktemp("show") / "results" / "paper"
+    for name, dataset in small.found.items():
+        write_summary(dataset, results / f"summary/{name}.nc")
+    write_study_record(results, small.study, "paper.yaml", {}, "")
+    return results
+
+
+def test_a_point_in_words(point, capsys):
+    assert main(["show", str(point)]) == 0
+    said = capsys.readouterr().out
+    for words in (
+        f"{point}: a run from plus, linearized law, a = 0.08\n",
+        "3 blocks, open: coupling 1, pulling neighbours, threshold 1\n",
+        "linearized: Phi = 1 - a*u\n",
+        "U(0)  = 0.989, -0.993, -0.991\n",
+        "transient 3000, window 1000 in 4 batches\n",
+        "completed at tau = 4000\n",
+        "periodic, section points repeat after 48\n",
+        " of all 6 are -infinity\n",
+    ):
+        assert words in said
+    with netCDF4.Dataset(point) as dataset:
+        mean, error = dataset["mean_distance"][...], dataset["mean_distance_error"][...]
+        assert f"<J>               {mean:.9g} +- {error:.2g}\n" in said
+        assert f"{dataset['event_count'][...]} stops and starts in the whole run\n" in said
+        assert f"{dataset.history} --out FILE\n" in said
+    assert "other sources" not in said
+
+
+def test_a_point_as_a_picture(point, tmp_path, capsys):
+    assert main(["show", str(point), "--plot", str(tmp_path / "plus.png")]) == 0
+    assert capsys.readouterr().out.endswith("plus.png: J, section points and velocities\n")
+    picture = imread(tmp_path / "plus.png")[..., :3].min(axis=2)
+    rows, columns = picture.shape
+    # There is ink in each of the four panels.
+    for half in (slice(0, rows // 2), slice(rows // 2, rows)):
+        for side in (slice(0, columns // 2), slice(columns // 2, columns)):
+            assert (picture[half, side] < 0.9).mean() > 0.01
+
+
+def test_every_summary_in_words(study):
+    files = sorted(study.glob("summary/*.nc"))
+    assert len(files) > 12
+    for path in files:
+        result = open_result(path)
+        lines = summary_lines(result)
+        assert lines[0] == f"{path}: {result.data.attrs['title']}"
+        assert lines[1].strip()
+        for name in result.data.data_vars:
+            assert sum(line.startswith(f"  {name} ") for line in lines) >= 1, (path, name)
+        assert not any("other sources" in line for line in lines)
+
+
+@pytest.mark.parametrize("name", ["mean_distance", "basins"])
+def test_a_summary_as_its_figure(study, tmp_path, capsys, name):
+    """With the summaries and the properties of the study that the figure takes besides."""
+    assert main(["show", str(study / f"summary/{name}.nc"), "--plot", str(tmp_path / "x.pdf")]) == 0
+    assert (tmp_path / "x.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
+    alone = tmp_path / "mean_distance.nc"
+    shutil.copy(study / "summary/mean_distance.nc", alone)
+    for arguments, words in (
+        ([alone, "--plot", "x.png"], "its figure takes attractors.nc besides"),
+        ([alone, "--plot", "x.doc"], "x.doc: '.doc' is not allowed: .png | .pdf | .svg"),
+        ([alone, "--plot", "no/x.png"], "there is no folder no"),
+    ):
+        assert main(["show", *map(str, arguments)]) == 2
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1
+        assert words in said
+
+
+def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path, capsys):
+    whole, inside = point.read_bytes(), study / "summary/cut.nc"
+    (tmp_path / "cut.nc").write_bytes(whole[:-100])
+    (tmp_path / "changed.nc").write_bytes(whole.replace(b"1.0", b"1.1", 1))
+    (tmp_path / "text.nc").write_text("text\n")
+    with netCDF4.Dataset(tmp_path / "foreign.nc", "w") as dataset:
+        dataset.title = "of another program"
+    inside.write_bytes(whole[:-100])
+    for path, words in (
+        (tmp_path / "cut.nc", "has no seal at its end: it is cut off, or another program wrote it"),
+        (tmp_path / "changed.nc", "has other bytes than were written"),
+        (tmp_path / "text.nc", "has no seal"),
+        (tmp_path / "foreign.nc", "has no seal"),
+        (tmp_path / "none.nc", "is missing"),
+        (tmp_path, "cannot be read"),
+        (inside, f"remake it: snakemake -c2 -R {inside}"),
+    ):
+        assert main(["show", str(path)]) == 2
+        said = capsys.readouterr().err
+        assert said.startswith(f"bk show: {path}: ")
+        assert said.count("\n") == 1
+        assert words in said
+        assert ("remake" in said) == (path == inside)
+    inside.unlink()
+
+
+def test_a_reader_that_has_had_enough(point):
+    """`bk show FILE | head -1`, with a reader that is gone before the first line."""
+    command = f"{BK} show {point} | true; echo ${{PIPESTATUS[0]}}"
+    run = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
+    assert run.stderr == ""
+    assert run.stdout.strip() in ("0", str(READER_GONE))
