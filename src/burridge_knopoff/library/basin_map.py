@@ -60,10 +60,8 @@ def basin_map(
     >>> attractors.mean_distance.sel(law="linearized", a=0.08).values.round(3).tolist()
     [0.0, 0.141]
     """
-    from burridge_knopoff.stability.continuation import continue_attractors
-    from burridge_knopoff.summaries import all_laws
-    from burridge_knopoff.summaries import attractors as attractor_summary
     from burridge_knopoff.summaries import basins as basin_summary
+    from burridge_knopoff.summaries.coexisting import coexisting_attractors
 
     state = given_state(initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
@@ -79,13 +77,7 @@ def basin_map(
         threads=threads,
     )
     chosen = settings, motion, start
-    found = continue_attractors([model], settings, motion, starts=[state], start=start)
-    parts = [attractor_summary.one_law(found, [state], *chosen)]
-    attractors = all_laws.merge(parts, all_laws.branch_numbers(parts, [model], settings))
-    if not (attractors["branch"] >= 0).any():
-        raise ValueError(
-            f"a: {model.a!r} is not allowed: no attractor was found, from {samples} sampled states (none is at 0)"
-        )
+    attractors = coexisting_attractors(model, settings, motion, starts=[state], start=start)
     tile = basin_summary.tile(attractors, model, 0, plane, *chosen)
     pairs = basin_summary.pairs(attractors, model, plane, *chosen)
     basins = basin_summary.merge([(model, [tile], pairs)], [model.law.name], plane, settings.time_limit, start)

@@ -10,7 +10,8 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
-from burridge_knopoff.summaries.attractors import branch_numbers, merge, one_law
+from burridge_knopoff.summaries.all_laws import branch_numbers, merge
+from burridge_knopoff.summaries.attractors import one_law
 
 
 def coexisting_attractors(
