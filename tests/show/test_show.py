@@ -9,11 +9,11 @@ import netCDF4
 import pytest
 from matplotlib.image import imread
 
+from burridge_knopoff import simulate
 from burridge_knopoff.cli import READER_GONE, main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.running.simulation import simulate
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import summary_lines
 
