@@ -11,7 +11,7 @@ KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kerne
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup kernel test test-oldest benchmark faults fuzz mutants size docs site lock clean
+.PHONY: study setup kernel test test-oldest durations benchmark faults fuzz mutants size docs site lock clean
 
 study: setup
 	$(BIN)/snakemake -c2
@@ -68,6 +68,11 @@ test-oldest: .venv-oldest/ready
 	.venv-benchmark/bin/python -m pip --disable-pip-version-check --quiet install --require-hashes --requirement $<
 	.venv-benchmark/bin/python -m pip --disable-pip-version-check --quiet install --no-build-isolation --no-deps --editable .
 	@touch $@
+
+# After a run of these studies on a quiet machine: the durations by which others are estimated, and how honest they are.
+durations: .venv/kernel
+	$(BIN)/python benchmarks/durations.py results/paper results/smoke
+	$(BIN)/python benchmarks/progress.py results/paper results/smoke
 
 benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/kernel.py

@@ -10,6 +10,7 @@ import os
 import sys
 import threading
 import time
+from contextlib import suppress
 from logging import INFO, Formatter, LogRecord, makeLogRecord
 from pathlib import Path
 from typing import Any
@@ -20,10 +21,11 @@ from snakemake_interface_logger_plugins.common import LogEvent
 from burridge_knopoff.study import ConfigError
 from burridge_knopoff.study.job_log import failure
 from snakemake_logger_plugin_study.closing import closing_lines
+from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import check_command_line, reworded
+from snakemake_logger_plugin_study.refusal import check_command_line, given_cores, reworded
 from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Job, Rule, Tally, downstream
-from snakemake_logger_plugin_study.wording import job_name, jobs
+from snakemake_logger_plugin_study.wording import cost, job_name, jobs, time_left
 
 #: Events that the display does not replace; -p and --verbose bring the others back.
 _KEPT = (
@@ -48,6 +50,7 @@ class LogHandler(LogHandlerBase):
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
         self._whole_errors = self._everything or settings.show_failed_logs
         self._quiet = is_quiet_about(settings.quiet or set(), "progress")
+        self._dryrun = settings.dryrun
         self._begin = time.time()
         self._stopped = False
         self._tally = Tally()
@@ -119,7 +122,7 @@ class LogHandler(LogHandlerBase):
             name, message = job_name(record.rule_name, record.wildcards), record.rule_msg or ""
             files = tuple(record.output), tuple(record.log or ())
             job = Job(name, record.created, message, *files, timed=not record.indent)
-            self._tally.start(record.jobid, record.rule_name, job, record.threads)
+            self._tally.start(record.jobid, record.rule_name, job)
         elif event == LogEvent.JOB_FINISHED:
             self._tally.end(record.job_id, DONE, record.created)
         elif event == LogEvent.JOB_ERROR:
@@ -134,10 +137,13 @@ class LogHandler(LogHandlerBase):
                 if name in self._counts:
                     needs = frozenset(self._needs.get(name, ()))
                     stage = PLAN.stages.get(name, name)
-                    self._tally.rules[name] = Rule(stage, self._counts[name], PLAN.last_duration(name), needs)
+                    self._tally.rules[name] = Rule(stage, self._counts[name], needs)
             if PLAN.results:
+                self._tally.forecast = PLAN.forecast
                 *stages, total = self._tally.counts()
-                self._say(f"{jobs(total.total)}: {', '.join(f'{stage.name} {stage.total}' for stage in stages)}")
+                left = PLAN.forecast.time_left(0.0, self._tally.cores) if PLAN.forecast else None
+                words = ", ".join(f"{stage.name} {stage.total}" for stage in stages)
+                self._say("; ".join(filter(None, [f"{jobs(total.total)}: {words}", time_left(left)])))
         if self._quiet:
             return
         if self._text.can_color_tty():
@@ -167,6 +173,8 @@ class LogHandler(LogHandlerBase):
 
     def close(self) -> None:
         """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""
+        if self._dryrun:
+            self._foretell()
         display, self._display = self._display, None
         if display is not None:
             display.close()
@@ -185,7 +193,27 @@ class LogHandler(LogHandlerBase):
                 lines = [f"what the run left cannot be told: {error}"]
             for line in lines:
                 self._say(line)
+            self._remember(tally)
         super().close()
+
+    def _foretell(self) -> None:
+        """Say what the jobs of a dry run would cost."""
+        try:
+            forecast = PLAN.look_ahead()
+        except Exception as error:
+            self._say(f"the time of a run cannot be told: {error}")
+            return
+        if forecast and forecast.jobs:
+            cores = given_cores(sys.argv[1:]) or os.cpu_count() or 1
+            self._say(cost(forecast.cost(cores), cores))
+
+    def _remember(self, tally: Tally) -> None:
+        """Record what the jobs took; a folder that cannot be written to fails no run."""
+        if PLAN.forecast:
+            ran = [(number, job) for rule in tally.rules.values() for number, job in rule.jobs.items()]
+            options = {"cores": tally.cores, "speed": PLAN.speed, "begin": self._begin}
+            with suppress(OSError):
+                write_past(PLAN.results, PLAN.forecast.jobs, ran, **options)
 
 
 def _line(words: str, record: LogRecord | None = None) -> LogRecord:

@@ -45,6 +45,16 @@ def several_files(paths: Sequence[str | Path]) -> str:
     )
 
 
+def given_cores(arguments: Sequence[str]) -> int:
+    """Return the cores that a command line gives; 0 if it gives no number: Snakemake takes one for a dry run."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
+    parser.add_argument("--cores", "-c", "--jobs", "-j", type=int, default=0)
+    try:
+        return parser.parse_known_args(arguments)[0].cores
+    except (argparse.ArgumentError, SystemExit):
+        return 0
+
+
 def check_command_line(arguments: Sequence[str]) -> None:
     """Raise ConfigError, one line, for a config file that cannot be read and for what --config does not take.
 

@@ -1,10 +1,15 @@
-"""The state of a run: jobs of each stage, and an honest time left."""
+"""The state of a run: jobs of each stage, and the time left."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from typing import NamedTuple
+
+from snakemake_logger_plugin_study.forecast import Forecast
+
+#: Seconds for which a time left that was worked out is only counted down.
+FRESH = 1.0
 
 RUNNING, DONE, FAILED = "running", "done", "failed"
 #: The name of all stages together.
@@ -30,28 +35,18 @@ class Rule:
     """The jobs of one rule.
 
     total : number of jobs that are to run
-    last : mean duration of a job in the last run, in seconds; None if it is not known
     needs : rules whose jobs come before
-    threads : cores that a job takes
     jobs : {number: job} of those that have begun
     """
 
     stage: str
     total: int
-    last: float | None = None
     needs: frozenset[str] = frozenset()
-    threads: int = 1
     jobs: dict[int, Job] = field(default_factory=dict)
 
     def count(self, state: str) -> int:
         """Return the number of jobs in a state."""
         return sum(job.state == state for job in self.jobs.values())
-
-    @property
-    def duration(self) -> float | None:
-        """Mean duration of a job: of those finished in this run, else of the last run; None if unknown."""
-        seconds = [job.end - job.begin for job in self.jobs.values() if job.state == DONE and job.timed]
-        return sum(seconds) / len(seconds) if seconds else self.last
 
 
 class Count(NamedTuple):
@@ -63,13 +58,6 @@ class Count(NamedTuple):
     running: int
 
 
-class TimeLeft(NamedTuple):
-    """Seconds left; `complete` is False if rules of unknown duration come on top."""
-
-    seconds: float
-    complete: bool
-
-
 def downstream(names: Set[str], needs: Mapping[str, Set[str]]) -> set[str]:
     """Return the rules that come after some of these, given what each rule needs."""
     found: set[str] = set()
@@ -79,17 +67,20 @@ def downstream(names: Set[str], needs: Mapping[str, Set[str]]) -> set[str]:
 
 
 class Tally:
-    """Counts the jobs of a run and estimates how long it still takes; times are in seconds since any fixed moment."""
+    """Counts the jobs of a run and tells how long it still takes; times are in seconds since any fixed moment."""
 
-    def __init__(self, rules: Mapping[str, Rule] | None = None, cores: float = 1) -> None:
+    def __init__(
+        self, rules: Mapping[str, Rule] | None = None, cores: float = 1, forecast: Forecast | None = None
+    ) -> None:
         self.rules = dict(rules or {})
         self.cores = cores
+        self.forecast = forecast
+        self._told: tuple[float, float] | None = None
 
-    def start(self, number: int, rule: str, job: Job, threads: int = 1) -> None:
+    def start(self, number: int, rule: str, job: Job) -> None:
         """Count a job as running, also one that failed and is tried again; a rule that was not expected is added."""
         known = self.rules.setdefault(rule, Rule(rule, 0))
         known.jobs[number] = job
-        known.threads = threads
         known.total = max(known.total, len(known.jobs))
 
     def job(self, number: int) -> Job | None:
@@ -123,39 +114,19 @@ class Tally:
         after = downstream(failed, {name: rule.needs for name, rule in self.rules.items()})
         return {name: self.rules[name].total - len(self.rules[name].jobs) for name in after}
 
-    def time_left(self, now: float) -> TimeLeft | None:
-        """Return how long the run still takes, or None if no duration is known.
-
-        The larger of two lower bounds: all work spread over the cores, and the longest chain of rules that need each
-        other, one job each. The scheduler fills the cores, so the truth is near them.
-        """
-        blocked = self.blocked()
-        work, complete = 0.0, True
-        longest: dict[str, float] = {}
-        for name, rule in self.rules.items():
-            begins = [job.begin for job in rule.jobs.values() if job.state == RUNNING]
-            waiting = rule.total - len(rule.jobs) - blocked.get(name, 0)
-            if not (begins or waiting):
-                continue
-            duration = rule.duration
-            if duration is None:
-                complete = False
-                continue
-            begun = [max(duration - (now - begin), 0.0) for begin in begins]
-            work += min(rule.threads, self.cores) * (waiting * duration + sum(begun))
-            longest[name] = duration if waiting else max(begun)
-        if not longest:
+    def time_left(self, now: float) -> float | None:
+        """Return how long the run still takes, in seconds, or None if no forecast is known."""
+        if self.forecast is None:
             return None
-        chains: dict[str, float] = {}
-        for name in self.rules:
-            self._chain(name, longest, chains)
-        return TimeLeft(max(work / max(self.cores, 1), *chains.values()), complete)
-
-    def _chain(self, name: str, longest: Mapping[str, float], chains: dict[str, float]) -> float:
-        """Return the time of the longest chain of rules up to this one; `chains` keeps those found before."""
-        if name not in chains:
-            # In case that rules need each other in a circle.
-            chains[name] = 0.0
-            before = [self._chain(need, longest, chains) for need in self.rules[name].needs if need in self.rules]
-            chains[name] = longest.get(name, 0.0) + max(before, default=0.0)
-        return chains[name]
+        if self._told is None or not 0.0 <= now - self._told[0] < FRESH:
+            begun = {number: job for rule in self.rules.values() for number, job in rule.jobs.items()}
+            running = {number: job.begin for number, job in begun.items() if job.state == RUNNING}
+            done = {
+                number: job.end - job.begin if job.timed else float("inf")
+                for number, job in begun.items()
+                if job.state == DONE
+            }
+            failed = [number for number, job in begun.items() if job.state == FAILED]
+            self._told = now, self.forecast.time_left(now, self.cores, running, done, failed)
+        told, seconds = self._told
+        return max(seconds - (now - told), 0.0)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from snakemake_logger_plugin_study.tally import FAILED, Tally, TimeLeft
+from snakemake_logger_plugin_study.forecast import Cost
+from snakemake_logger_plugin_study.tally import FAILED, Tally
 
 
 def duration(seconds: float) -> str:
@@ -27,14 +28,31 @@ def elapsed(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def time_left(left: TimeLeft | None) -> str:
-    """Return how long a run still takes, or "" if nothing is known; "at least" if a part of it is unknown."""
-    if left is None:
+def time_left(seconds: float | None) -> str:
+    """Return how long a run still takes, or "" if it is not known."""
+    if seconds is None:
         return ""
-    words = f"{duration(left.seconds)} left"
-    if not left.complete:
-        return f"at least {words}"
-    return words if left.seconds < 10 else f"about {words}"
+    words = f"{duration(seconds)} left"
+    return words if seconds < 10 else f"about {words}"
+
+
+def about(seconds: float) -> str:
+    """Return an estimated duration: about 3 min, a few seconds."""
+    return duration(seconds) if seconds < 10 else f"about {duration(seconds)}"
+
+
+def cost(forecast: Cost, cores: float) -> str:
+    """Return what a run would cost in a line."""
+    on = f"{cores:g} core{'' if cores == 1 else 's'}"
+    return (
+        f"a run takes {about(forecast.seconds)} on {on}: {about(forecast.cpu)} of CPU time, and {size(forecast.size)} "
+        "of disk"
+    )
+
+
+def size(number: float) -> str:
+    """Return a number of bytes: 40 MB, 1.2 GB."""
+    return f"{number / 1e9:.1f} GB" if number >= 1e9 else f"{max(round(number / 1e6), 1)} MB"
 
 
 def failures(tally: Tally) -> str:

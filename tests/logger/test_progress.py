@@ -13,12 +13,16 @@ from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
+from burridge_knopoff.study import load_study
 from burridge_knopoff.study.job_log import SILENT
+from snakemake_logger_plugin_study.durations import shipped
+from snakemake_logger_plugin_study.forecast import Cost, PlannedJob
+from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plain import PlainDisplay
 from snakemake_logger_plugin_study.plan import Plan
 from snakemake_logger_plugin_study.refusal import reworded
-from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally, TimeLeft
-from snakemake_logger_plugin_study.wording import duration, progress_line, time_left
+from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally
+from snakemake_logger_plugin_study.wording import cost, duration, progress_line, time_left
 
 
 def tally(*done, cores=2, running=(), failed=(), **rules):
@@ -32,80 +36,37 @@ def tally(*done, cores=2, running=(), failed=(), **rules):
     return made
 
 
-def needing(stage, total, *needs, last=None):
-    return Rule(stage, total, last, frozenset(needs))
+def needing(stage, total, *needs):
+    return Rule(stage, total, frozenset(needs))
 
 
-@pytest.mark.parametrize(
-    ("made", "now", "left"),
-    [
-        # Nothing is said while no duration is known.
-        (tally(running=[("simulate", 0.0)], simulate=Rule("points", 10)), 5.0, None),
-        (tally(simulate=Rule("points", 10, 100.0)), 0.0, (500.0, True)),
-        # Jobs of this run count more than those of the last.
-        (
-            tally(("simulate", 0.0, 2.0), ("simulate", 0.0, 4.0), simulate=Rule("points", 10, 100.0)),
-            4.0,
-            (8 * 3.0 / 2, True),
-        ),
-        # A running job counts with what is left of it.
-        (tally(running=[("simulate", 100.0), ("simulate", 104.0)], simulate=Rule("points", 2, 10.0)), 106.0, (8, True)),
-        (tally(running=[("simulate", 100.0), ("simulate", 104.0)], simulate=Rule("points", 2, 10.0)), 200.0, (0, True)),
-        # Rules differ by a factor of a thousand: the mean over all jobs would say 242 jobs of 0.9 s each, 109 s.
-        (
-            tally(
-                *[("simulate", 1.0, 1.25)] * 242,
-                simulate=Rule("points", 484, 0.2),
-                attractors_of_law=Rule("attractors", 2, 170.0),
-            ),
-            100.0,
-            ((242 * 0.25 + 2 * 170.0) / 2, True),
-        ),
-        # A rule of unknown duration makes it a lower bound.
-        (tally(simulate=Rule("points", 4, 1.0), basins=Rule("basins", 1)), 0.0, (2.0, False)),
-        (tally(("basins", 0.0, 1.0), simulate=Rule("points", 4, 1.0), basins=Rule("basins", 1)), 1.0, (2.0, True)),
-        # Rules that need each other take their sum on any number of cores.
-        (
-            tally(
-                cores=8,
-                simulate=Rule("points", 8, 1.0),
-                attractors=Rule("attractors", 1, 30.0),
-                basins=needing("basins", 4, "attractors", last=5.0),
-                figure=needing("figures", 1, "basins", "simulate", last=2.0),
-            ),
-            0.0,
-            (37.0, True),
-        ),
-        # Threads take their cores, as far as there are so many.
-        (tally(simulate=Rule("points", 4, 1.0, threads=2)), 0.0, (4.0, True)),
-        (tally(simulate=Rule("points", 4, 1.0, threads=16)), 0.0, (4.0, True)),
-    ],
-)
-def test_time_left(made, now, left):
-    assert made.time_left(now) == left
-
-
-def test_jobs_of_a_group_tell_no_duration():
-    made = tally(simulate=Rule("points", 4))
-    made.start(0, "simulate", Job("simulate", 0.0, timed=False))
-    made.end(0, DONE, 100.0)
-    assert made.time_left(100.0) is None
-    assert made.counts()[-1].done == 1
+def test_the_time_left_is_told_from_the_state_of_all_jobs():
+    made = tally(("simulate", 0.0, 2.0), running=[("simulate", 2.0)], simulate=Rule("points", 3))
+    assert made.time_left(3.0) is None
+    asked = []
+    made.forecast = SimpleNamespace(time_left=lambda *state: asked.append(state) or 30.0)
+    made.start(2, "simulate", Job("simulate", 2.5, timed=False))
+    made.end(2, DONE, 2.6)
+    assert made.time_left(3.0) == 30.0
+    assert asked == [(3.0, 2, {1: 2.0}, {0: 2.0, 2: float("inf")}, [])]
+    # It is counted down until it is worked out again.
+    assert made.time_left(3.5) == 29.5
+    made.end(1, FAILED)
+    assert made.time_left(4.5) == 30.0
+    assert asked[1:] == [(4.5, 2, {}, {0: 2.0, 2: float("inf")}, [1])]
 
 
 def test_what_a_failed_job_blocks_is_not_waited_for():
     rules = {
-        "simulate": Rule("points", 2, 10.0),
-        "mean_distance": needing("summary", 1, "simulate", last=10.0),
-        "figure": needing("figures", 1, "mean_distance", last=10.0),
+        "simulate": Rule("points", 2),
+        "mean_distance": needing("summary", 1, "simulate"),
+        "figure": needing("figures", 1, "mean_distance"),
         "orbits": Rule("orbits", 1),
     }
     made = tally(failed=["simulate"], running=[("simulate", 0.0)], **rules)
     assert made.blocked() == {"mean_distance": 1, "figure": 1}
-    assert made.time_left(0.0) == TimeLeft(10.0, False)
     made.end(0, FAILED)
     assert len(made.jobs(FAILED)) == 2
-    assert made.time_left(0.0) is None
     # Tried again, as on a cluster; and a job that needed none of the failed ones.
     for number in (0, 1):
         made.start(number, "simulate", Job("simulate", 20.0))
@@ -136,18 +97,25 @@ def test_durations_in_words(seconds, words):
 
 
 def test_time_left_in_words():
-    assert time_left(None) == ""
-    assert time_left(TimeLeft(170.0, True)) == "about 3 min left"
-    assert time_left(TimeLeft(170.0, False)) == "at least 3 min left"
-    assert time_left(TimeLeft(3.0, True)) == "a few seconds left"
+    assert [time_left(seconds) for seconds in (None, 170.0, 3.0)] == ["", "about 3 min left", "a few seconds left"]
+
+
+def test_a_cost_in_words():
+    told = "a run takes about 3 min on 2 cores: about 5 min of CPU time, and 41 MB of disk"
+    assert cost(Cost(170.0, 300.0, 4.1e7), 2) == told
+    assert (
+        cost(Cost(3.0, 3.0, 2.5e9), 1)
+        == "a run takes a few seconds on 1 core: a few seconds of CPU time, and 2.5 GB of disk"
+    )
 
 
 def test_a_progress_line():
-    rules = {"simulate": Rule("points", 484), "mean_distance": needing("summary", 46, "simulate", last=1.0)}
+    rules = {"simulate": Rule("points", 484), "mean_distance": needing("summary", 46, "simulate")}
     done = [("simulate", 0.0, 1.0)] * 120
     made = tally(*done, running=[("simulate", 0.0)], **rules)
-    assert progress_line(made, 1.0) == "points 120 of 484, all 120 of 530 (22 %), about 3 min left"
+    assert progress_line(made, 1.0) == "points 120 of 484, all 120 of 530 (22 %)"
     made = tally(*done, failed=["simulate"], **rules)
+    made.forecast = SimpleNamespace(time_left=lambda *state: 180.0)
     assert progress_line(made, 1.0) == "all 120 of 530 (22 %), 1 failed, 46 cannot run, about 3 min left"
 
 
@@ -166,25 +134,61 @@ def test_the_pace_of_plain_lines():
 
 def test_a_defect_of_the_plan_is_only_told(caplog):
     plan = Plan()
-    plan.announce("results/x", [SimpleNamespace(name="simulate")])
-    assert (plan.results, plan.stages, plan.last_duration("simulate")) == ("results/x", {}, None)
-    assert caplog.messages[0].startswith("the stages of this run cannot be told: ")
+    plan.describe("results/x", SimpleNamespace(rules=[SimpleNamespace(name="simulate")]), None)
+    plan.announce()
+    assert (plan.results, plan.stages, plan.forecast) == ("results/x", {}, None)
+    assert caplog.messages[0].startswith("the stages of this run, and its time, cannot be told: ")
 
 
-def test_what_the_snakefile_announces(tmp_path):
-    """Stages are files of rules; durations are means over benchmark files, as far as they can be read."""
+STUDY = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
 
-    def rule(name, file, *output, benchmark=None):
-        return SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=output, benchmark=benchmark)
 
-    for name, content in {"a1": "s\th:m:s\n1.5\t0:00:01\n", "a2": "s\n2.5\n", "a3": "s\n", "a4": "s\nNA\n"}.items():
-        (tmp_path / f"{name}.tsv").write_text(content)
+class Dag:
+    """Two jobs, the second after the first; a third that makes no file."""
+
+    def __init__(self):
+        self.made = [job("simulate", "x.nc", a="0.05"), job("orbits", "y.nc"), job("points")]
+        self.dependencies = {self.made[0]: [], self.made[1]: [self.made[0]], self.made[2]: self.made[:1]}
+
+    def needrun_jobs(self, exclude_finished):
+        assert not exclude_finished
+        return iter(self.made)
+
+    def jobid(self, job):
+        return 7 + self.made.index(job)
+
+
+class AJob(SimpleNamespace):
+    __hash__ = object.__hash__
+
+
+def job(name, *output, **wildcards):
+    return AJob(rule=SimpleNamespace(name=name), output=output, wildcards_dict=wildcards, threads=1, priority=0)
+
+
+def test_what_the_snakefile_announces(tmp_path, monkeypatch):
+    """Stages are files of rules; jobs are those that make files, with what they need."""
+
+    def rule(name, file, *output):
+        return SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=output)
+
+    rules = [rule("points", "simulate"), rule("simulate", "simulate", "x.nc"), rule("orbits", "stability", "y.nc")]
+    monkeypatch.setattr("snakemake_logger_plugin_study.plan.calibrate", lambda: 3.0 * shipped().calibration)
     plan = Plan()
-    simulate = rule("simulate", "simulate", "x.nc", benchmark=f"{tmp_path}/a{{a}}.tsv")
-    orbits = rule("orbits", "stability", "y.nc", benchmark=f"{tmp_path}/a3.tsv")
-    plan.announce("results/x", [rule("points", "simulate"), simulate, orbits, rule("all", "Snakefile")])
-    assert (plan.results, plan.stages) == ("results/x", {"simulate": "points", "orbits": "stability"})
-    assert [plan.last_duration(name) for name in ("simulate", "orbits", "other")] == [2.0, None, None]
+    plan.describe(str(tmp_path), SimpleNamespace(rules=[*rules, rule("all", "Snakefile")], dag=Dag()), STUDY)
+    plan.announce()
+    assert plan.stages == {"simulate": "points", "orbits": "stability"}
+    assert plan.speed == pytest.approx(3.0)
+    assert plan.forecast.jobs == {
+        7: PlannedJob("simulate a=0.05", "simulate", 30000.0),
+        8: PlannedJob("orbits", "orbits", 4.0, needs=frozenset({7})),
+    }
+    # The second time the machine is known.
+    done = [(number, Job("", 1.0, state=DONE, end=3.0)) for number in (7, 8)]
+    write_past(tmp_path, plan.forecast.jobs, done, cores=2, speed=3.0, begin=1.0)
+    plan.speed = 1.0
+    assert 2.0 < plan.look_ahead().cost(2).seconds < 5.0
+    assert plan.speed == 1.0
 
 
 SETTINGS = {

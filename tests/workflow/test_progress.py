@@ -56,7 +56,7 @@ def test_a_terminal_shows_stages_and_time_left(study):
     assert re.search(r"^points +[━╸╺ ]+ +\d+ of 16 +\d running", text, re.MULTILINE)
     assert re.search(r"^all +[━╸╺ ]+ +\d+ of 16", text, re.MULTILINE)
     assert re.search(r"^(a few seconds left|about .* left), (\d+ min )?\d+ s so far", text, re.MULTILINE)
-    assert "16 jobs: points 16" in text
+    assert re.search(r"^16 jobs: points 16; (about .*|a few seconds) left$", text, re.MULTILINE)
     assert "files made in results/tiny: points 16" in text
     assert "Select jobs to execute" not in text
     # The cursor is given back.
@@ -77,7 +77,9 @@ def test_without_a_terminal(finished):
     begin, end = (
         next(n for n, line in enumerate(lines) if words in line) for words in ("jobs: points 16", "study tiny: done")
     )
-    total, stages = re.fullmatch(r"(\d+) jobs: (.*)", lines[begin]).groups()
+    total, stages, time = re.fullmatch(r"(\d+) jobs: (.*); (.*)", lines[begin]).groups()
+    assert re.fullmatch("(about .*|a few seconds) left", time)
+    assert "at least" not in finished.output
     assert {"points 16", "attractors 3", "basins 10", "phases 3", "claims 1", "report 1"} <= set(stages.split(", "))
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
     progress = [line for line in lines if re.search(rf"all \d+ of {total} \(\d+ %\)", line)]

@@ -82,6 +82,8 @@ if CONFIG_ARGUMENT:
 if OVERRIDES:
     ARGUMENTS += ["--config", *(f"{key}={value}" for key, value in OVERRIDES.items())]
 
+PLAN.describe(RESULTS, workflow, STUDY)
+
 # Programs that submit jobs tell the studies of a folder apart by it.
 os.environ.update(BK_RESULTS=RESULTS)
 
@@ -106,7 +108,7 @@ def prepare_results():
         write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
     except OSError as error:
         sys.exit(f"{error}")
-    PLAN.announce(RESULTS, workflow.rules)
+    PLAN.announce()
 
 
 def check_cluster():
