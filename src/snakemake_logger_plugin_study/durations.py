@@ -52,7 +52,7 @@ def shipped() -> Durations:
 
 def calibrate() -> float:
     """Return the seconds that a fixed simulation takes on this machine now; raises ImportError without a kernel."""
-    from burridge_knopoff.running.simulation import simulate
+    from burridge_knopoff import simulate
 
     seconds = []
     for _ in range(RUNS):
