@@ -69,7 +69,8 @@ def simulate(
     v, contact : see `Model`
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
-    ValueError, one line, for anything that the model or the solver does not allow.
+    ValueError, one line, for anything that the model or the solver does not allow. docs/model.md derives the equations
+    and the solvers, and shows why no event can be missed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=100, window=100, batches=2)
