@@ -51,6 +51,8 @@ def test_an_initial_state_with_a_name():
         ((POSITION, [0.1, "x", 0.1]), "initial.velocity[1]: 'x'"),
         ((POSITION, [0.1, float("nan"), 0.1]), "initial.velocity[1]: nan"),
         ((POSITION, [0.1, -0.1, 0.1]), "one_sided"),
+        ({"name": "plus", "position": POSITION, "velocity": VELOCITY}, "initial.name: 'plus'"),
+        (InitialState("minus", tuple(POSITION), tuple(VELOCITY)), "initial.name: 'minus'"),
     ],
 )
 def test_a_bad_initial_state_is_refused_in_one_line(given, words):
