@@ -51,6 +51,8 @@ def test_an_initial_state_with_a_name():
         ((POSITION, [0.1, "x", 0.1]), "initial.velocity[1]: 'x'"),
         ((POSITION, [0.1, float("nan"), 0.1]), "initial.velocity[1]: nan"),
         ((POSITION, [0.1, -0.1, 0.1]), "one_sided"),
+        ({"name": "plus", "position": POSITION, "velocity": VELOCITY}, "initial.name: 'plus'"),
+        (InitialState("minus", tuple(POSITION), tuple(VELOCITY)), "initial.name: 'minus'"),
     ],
 )
 def test_a_bad_initial_state_is_refused_in_one_line(given, words):
@@ -67,6 +69,7 @@ def test_settings_are_those_of_both_ways():
         simulate(model, "plus", settings),
         simulate(model, "plus", **SHORT, batches=3),
         simulate(model, initial="plus", settings=Settings(**SHORT), batches=3),
+        simulate(model, "plus", settings=settings),
         simulate("linearized", 0.08, "plus", settings),
         simulate("linearized", 0.08, "plus", **SHORT, batches=3),
     ]
@@ -74,16 +77,19 @@ def test_settings_are_those_of_both_ways():
     assert len({run.mean_distance for run in ways}) == 1
 
 
-@pytest.mark.parametrize("options", [{"v": 0.2}, {"chain": Chain(3)}, {"contact": "symmetric"}])
+@pytest.mark.parametrize("options", [{"v": 0.2}, {"chain": Chain(3)}, {"contact": "symmetric"}, {"a": 0.1}])
 def test_what_a_model_has_is_refused_beside_it(options):
     """It would have no effect."""
     with pytest.raises(ValueError, match="not allowed beside a model"):
-        simulate(Model(Chain(3), law_of("linearized", 0.08)), "plus", **options)
+        simulate(Model(Chain(3), law_of("linearized", 0.08)), initial="plus", **options)
 
 
 def test_other_things_in_the_place_of_settings_are_refused():
     with pytest.raises(ValueError, match="settings: 'plus' is not allowed"):
         simulate("linearized", 0.08, "minus", "plus")
+    model, settings = Model(Chain(3), law_of("linearized", 0.08)), Settings(**SHORT)
+    with pytest.raises(ValueError, match="settings: not allowed twice"):
+        simulate(model, "plus", settings, settings=settings)
 
 
 @pytest.mark.parametrize(

@@ -24,9 +24,17 @@ _FORMS = f"{' | '.join(PAPER_STATES)}, InitialState, {{'position': …, 'velocit
 
 
 def given_state(given: Initial) -> InitialState:
-    """Return an initial state from any of its forms; raises ValueError, one line, for anything else."""
-    if isinstance(given, InitialState):
-        return given
+    """Return an initial state from any of its forms.
+
+    Raises ValueError, one line, for anything else, and for other numbers under the name of one of the paper's states.
+    """
+    state = given if isinstance(given, InitialState) else _state(given)
+    if PAPER_STATES.get(state.name, state) != state:
+        raise ValueError(f"initial.name: {state.name!r} is not allowed: the paper's state of that name is another one")
+    return state
+
+
+def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray) -> InitialState:
     if isinstance(given, str):
         return initial_state(given)
     if not isinstance(given, Mapping):

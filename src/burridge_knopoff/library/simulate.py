@@ -16,7 +16,19 @@ from burridge_knopoff.running.trajectory import Trajectory
 
 @overload
 def simulate(
-    law: Model, initial: Initial = ..., settings: Settings | None = ..., /, **by_name: Unpack[RunSettings]
+    law: Model, initial: Initial, settings: Settings | None, /, **by_name: Unpack[RunSettings]
+) -> Trajectory: ...
+
+
+@overload
+def simulate(
+    law: Model, initial: Initial, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
+) -> Trajectory: ...
+
+
+@overload
+def simulate(
+    law: Model, *, initial: Initial = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
 ) -> Trajectory: ...
 
 
@@ -57,7 +69,8 @@ def simulate(
     v, contact : see `Model`
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
-    ValueError, one line, for anything that the model or the solver does not allow.
+    ValueError, one line, for anything that the model or the solver does not allow. docs/model.md derives the equations
+    and the solvers, and shows why no event can be missed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=100, window=100, batches=2)
@@ -67,12 +80,13 @@ def simulate(
     >>> simulate("nonlinear", 0.1, own, transient=0, window=50).model.blocks
     2
     """
-    if isinstance(law, Model):
-        if a is not None:
-            # By position: simulate(model, initial, settings).
-            a, initial, settings = None, a, settings if initial is None else initial
-    else:
+    if not isinstance(law, Model):
         a = 0.08 if a is None else a
+    elif not (a is None or isinstance(a, int | float)):
+        # By position: simulate(model, initial, settings).
+        if initial is not None and settings is not None:
+            raise ValueError("settings: not allowed twice")
+        a, initial, settings = None, a, settings if initial is None else initial
     if not (settings is None or isinstance(settings, Settings)):
         raise ValueError(f"settings: {settings!r} is not allowed: a Settings, or settings by name")
     state = given_state("minus" if initial is None else initial)

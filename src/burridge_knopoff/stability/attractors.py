@@ -53,6 +53,8 @@ def find_attractors(
     nothing that settles. What no state reaches is not found, nor is a motion on which the first block never stops:
     attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
 
+    Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
+
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> settings = SearchSettings(samples=12, transient=500, window=500)

@@ -90,6 +90,9 @@ def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
 
     branch : as `follow` returns it
 
+    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
+    docs/edges.md says how each kind is told.
+
     >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, locate_edges, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
     >>> orbit = closed_motion(model, synchronized_orbit(model).reference)

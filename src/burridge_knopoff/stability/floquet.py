@@ -66,6 +66,8 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 
     orbit : of any chain; that of the flow, which is 1, is left out
 
+    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
+
     >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, "plus", transient=0, window=10)

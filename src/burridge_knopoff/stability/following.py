@@ -61,6 +61,9 @@ def follow(
 
     Raises OrbitError if it cannot begin.
 
+    Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
+    docs/edges.md says how a branch goes on where its orbit grazes.
+
     >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
     >>> orbit = closed_motion(model, synchronized_orbit(model).reference)

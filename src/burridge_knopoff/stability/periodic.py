@@ -183,6 +183,8 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
 
     Raises OrbitError if none is found, ValueError if the chain has no mirror image and the symmetry needs one.
 
+    Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
+
     >>> from burridge_knopoff import Chain, Model, closed_motion, find_periodic_orbit, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, "plus", transient=0, window=10)
