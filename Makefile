@@ -11,10 +11,15 @@ KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kerne
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: study setup kernel test test-oldest durations benchmark faults fuzz mutants size docs site lock clean
+.PHONY: study announce setup kernel test test-oldest durations benchmark faults fuzz mutants size docs site lock clean
 
-study: setup
+study: announce setup
 	$(BIN)/snakemake -c2
+
+# Snakemake itself begins with the time that its jobs will take.
+announce:
+	@test -e .venv/kernel || echo "make: sets up .venv and compiles the kernel (a minute or two, once)," \
+		"then runs the default study on two cores (a quarter of an hour; results/paper/report.html)"
 
 setup: .venv/kernel
 
@@ -45,7 +50,7 @@ test: .venv/kernel .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/snakefmt --check workflow
 	$(BIN)/snakemake --lint
 	$(BIN)/python -m pytest
 

@@ -39,7 +39,15 @@ FILES_OF_A_POINT = 4
 
 def planned(folder: Path, target: str) -> tuple[float, float]:
     """Return CPU time in seconds and peak memory in MB of a dry run."""
-    command = [str(BIN / "snakemake"), "-n", "-s", str(REPOSITORY / "Snakefile"), "-d", str(folder), target]
+    command = [
+        str(BIN / "snakemake"),
+        "-n",
+        "-s",
+        str(REPOSITORY / "workflow/Snakefile"),
+        "-d",
+        str(folder),
+        target,
+    ]
     # A plan of many jobs is a long text.
     silent = ["sh", "-c", 'exec "$@" >/dev/null 2>&1', "sh"]
     used = run([*silent, *command, "--configfile", str(folder / "study.yaml")])

@@ -88,7 +88,14 @@ def run(command: list[str], folder: Path) -> Run:
 def measure(points: int, folder: Path, cores: int) -> tuple[list[object], dict[str, tuple[float, float]]]:
     """Run a study of that many points; return its row of the table and {rule: CPU s, largest MB}."""
     (folder / "size.yaml").write_text(config_of(points), encoding="utf-8")
-    command = [str(BIN / "snakemake"), f"-c{cores}", "-s", str(REPOSITORY / "Snakefile"), "--configfile", "size.yaml"]
+    command = [
+        str(BIN / "snakemake"),
+        f"-c{cores}",
+        "-s",
+        str(REPOSITORY / "workflow/Snakefile"),
+        "--configfile",
+        "size.yaml",
+    ]
     plan = run([*command, "-n", "--quiet"], folder)
     whole = run(command, folder)
     again = run(command, folder)

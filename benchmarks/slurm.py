@@ -36,7 +36,12 @@ def wall(options: list[str], config: str) -> float:
     """Return the wall time in seconds of all points of a config."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "study.yaml").write_text(config)
-        command = [str(Path(sys.executable).parent / "snakemake"), "-s", str(REPOSITORY / "Snakefile"), *options]
+        command = [
+            str(Path(sys.executable).parent / "snakemake"),
+            "-s",
+            str(REPOSITORY / "workflow/Snakefile"),
+            *options,
+        ]
         begin = time.perf_counter()
         run = subprocess.run(
             [*command, "--configfile", "study.yaml", "--", "points"], cwd=folder, capture_output=True, text=True

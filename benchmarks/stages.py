@@ -48,7 +48,7 @@ def main() -> None:
         str(Path(sys.executable).parent / "snakemake"),
         f"-c{options.cores}",
         "-s",
-        str(REPOSITORY / "Snakefile"),
+        str(REPOSITORY / "workflow/Snakefile"),
     ]
     with tempfile.TemporaryDirectory() as folder:
         # A target stands before --configfile, which takes all that follows.

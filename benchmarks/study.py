@@ -39,7 +39,6 @@ def make_baseline(folder: Path, made: Path) -> Path:
     """
     shutil.copytree(REPOSITORY / "workflow", folder / "workflow")
     shutil.copytree(REPOSITORY / "config", folder / "config")
-    shutil.copy(REPOSITORY / "Snakefile", folder)
     rule = folder / POINT_RULE
     text = rule.read_text(encoding="utf-8")
     if text.count(POINT_COMMAND) != 1:
@@ -47,7 +46,7 @@ def make_baseline(folder: Path, made: Path) -> Path:
     # A link costs next to nothing in the process that has imported already; `cp` would be one more process.
     script = f"{IMPORTS}, os; os.link('{made}/{{output}}', '{{output}}')"
     rule.write_text(text.replace(POINT_COMMAND, f'"python -c \\"{script}\\" 2> {{log}}"'), encoding="utf-8")
-    return folder / "Snakefile"
+    return folder / "workflow/Snakefile"
 
 
 def children_cpu() -> float:
@@ -63,7 +62,6 @@ def run_study(snakefile: Path, folder: Path, cores: int, environment: dict[str, 
     folder.mkdir()
     cpu = -children_cpu()
     begin = time.perf_counter()
-    # In the repository, for both: Snakemake looks for the profile of the workflow beside the Snakefile and here.
     result = subprocess.run(
         command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
@@ -89,7 +87,7 @@ def main() -> None:
         baseline = make_baseline(folder / "workflow_of_imports", folder / "study_0")
         for number in range(options.pairs):
             for name, snakefile, runs in (
-                ("study", REPOSITORY / "Snakefile", studies),
+                ("study", REPOSITORY / "workflow/Snakefile", studies),
                 ("imports", baseline, baselines),
             ):
                 target = folder / f"{name}_{number}"

@@ -94,8 +94,7 @@ def extended(tmp_path_factory):
     folder = tmp_path_factory.mktemp("extended")
     for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    for name in ("Snakefile", "pyproject.toml"):
-        shutil.copy(REPOSITORY / name, folder / name)
+    shutil.copy(REPOSITORY / "pyproject.toml", folder)
     assert len(apply(PAGE, folder)) == 9
     compiled = run(folder, sys.executable, "-c", COMPILE).split()
     assert "observe" in compiled
@@ -117,7 +116,16 @@ def study(extended, folder, config):
     """Run a study with the extended tree, to its report; return its results."""
     (folder / "study.yaml").write_text(config)
     snakemake = str(Path(sys.executable).parent / "snakemake")
-    run(extended, snakemake, "-c1", "-s", str(extended / "Snakefile"), "--configfile", "study.yaml", folder=folder)
+    run(
+        extended,
+        snakemake,
+        "-c1",
+        "-s",
+        str(extended / "workflow/Snakefile"),
+        "--configfile",
+        "study.yaml",
+        folder=folder,
+    )
     results = folder / "results" / "small"
     assert (results / "report.html").stat().st_size > 100_000
     return results

@@ -126,7 +126,7 @@ class Forecast:
                 taken = now - begin
                 ends[number] = max(self._duration(left[number], speed, factors) - taken, OVERDUE * taken)
         durations = {number: self._duration(job, speed, factors) for number, job in left.items() if number not in ends}
-        return _makespan(left, self._after, durations, ends, max(cores, 1))
+        return max(schedule(left, durations, max(cores, 1), ends).values(), default=0.0)
 
     def _duration(self, job: PlannedJob, speed: float, factors: Mapping[str, float]) -> float:
         factor = factors.get(job.kind, speed * self._relative.get(job.kind, 1.0))
@@ -143,35 +143,42 @@ class Forecast:
         return found
 
 
-def _makespan(
-    left: Mapping[int, PlannedJob],
-    after: Mapping[int, list[int]],
+def schedule(
+    jobs: Mapping[int, PlannedJob],
     durations: Mapping[int, float],
-    ends: Mapping[int, float],
     cores: float,
-) -> float:
-    """Return when the last job ends.
+    at_work: Mapping[int, float] | None = None,
+) -> dict[int, float]:
+    """Return {job: when it ends}, as a scheduler runs jobs that fills all cores: by priority, then in their order.
 
-    left : jobs that run or are to run; ends : {one that runs: when it ends}; durations : {one that is to run: seconds}
+    jobs : {number: job}; of what a job needs only these are waited for
+    durations : {number: seconds} of those that have not begun; at_work : {number: when it ends} of the others
     """
-    missing = {number: sum(need in left for need in job.needs) for number, job in left.items()}
-    order = {number: (-job.priority, place) for place, (number, job) in enumerate(left.items())}
+    after: dict[int, list[int]] = defaultdict(list)
+    missing = {}
+    for number, job in jobs.items():
+        needs = [need for need in job.needs if need in jobs]
+        missing[number] = len(needs)
+        for need in needs:
+            after[need].append(number)
+    order = {number: (-job.priority, place) for place, (number, job) in enumerate(jobs.items())}
     ready = [(order[number], number) for number in durations if not missing[number]]
     heapq.heapify(ready)
-    at_work = [(end, number) for number, end in ends.items()]
-    heapq.heapify(at_work)
-    free = cores - sum(min(left[number].threads, cores) for number in ends)
+    ends = dict(at_work or {})
+    running = [(end, number) for number, end in ends.items()]
+    heapq.heapify(running)
+    free = cores - sum(min(jobs[number].threads, cores) for number in ends)
     now = 0.0
-    while ready or at_work:
-        while ready and (free >= min(left[ready[0][1]].threads, cores) or not at_work):
+    while ready or running:
+        while ready and (free >= min(jobs[ready[0][1]].threads, cores) or not running):
             _, number = heapq.heappop(ready)
-            free -= min(left[number].threads, cores)
-            heapq.heappush(at_work, (now + durations[number], number))
-        now, number = heapq.heappop(at_work)
-        free += min(left[number].threads, cores)
-        for other in after.get(number, ()):
-            if other in missing:
-                missing[other] -= 1
-                if not missing[other] and other in durations:
-                    heapq.heappush(ready, (order[other], other))
-    return now
+            free -= min(jobs[number].threads, cores)
+            ends[number] = now + durations[number]
+            heapq.heappush(running, (ends[number], number))
+        now, number = heapq.heappop(running)
+        free += min(jobs[number].threads, cores)
+        for other in after[number]:
+            missing[other] -= 1
+            if not missing[other] and other in durations:
+                heapq.heappush(ready, (order[other], other))
+    return ends

@@ -21,8 +21,8 @@ def read_record(results: str | Path) -> dict[str, Any]:
     """Return the record of a folder of results; an empty one if there is none, or none that can be read.
 
     cores, speed : of the last run
-    begin, jobs : when it began, and its jobs as mappings: name, kind, work, threads, priority, needs (names), begin and
-        end in seconds since the run began, size in bytes of the files that it made
+    begin, jobs : when it began, and its jobs as mappings: name, kind, work, threads, priority, needs (their places in
+        this list), begin and end in seconds since the run began, size in bytes of the files that it made
     earlier : {name: {kind, work, seconds, size}} of the jobs of runs before
     """
     try:
@@ -66,7 +66,8 @@ def write_past(
     ran : numbers and jobs of all that began; raises OSError if the folder cannot be written to
     """
     done = {number: job for number, job in ran if job.state == DONE and job.timed and number in planned}
-    names = {number: planned[number].name for number in done}
+    places = {number: place for place, number in enumerate(done)}
+    names = {planned[number].name for number in done}
     jobs = [
         {
             "name": plan.name,
@@ -74,7 +75,7 @@ def write_past(
             "work": plan.work,
             "threads": plan.threads,
             "priority": plan.priority,
-            "needs": sorted(names[need] for need in plan.needs if need in names),
+            "needs": sorted(places[need] for need in plan.needs if need in places),
             "begin": round(job.begin - begin, 3),
             "end": round(job.end - begin, 3),
             "size": sum(Path(path).stat().st_size for path in job.output if Path(path).is_file()),
@@ -83,6 +84,6 @@ def write_past(
         if (plan := planned[number])
     ]
     if jobs:
-        earlier = {name: job for name, job in all_jobs(read_record(results)).items() if name not in names.values()}
+        earlier = {name: job for name, job in all_jobs(read_record(results)).items() if name not in names}
         record = {"cores": cores, "speed": speed, "begin": begin, "jobs": jobs, "earlier": earlier}
         write_text(Path(results, NAME), json.dumps(record) + "\n")

@@ -78,4 +78,5 @@ def check_command_line(arguments: Sequence[str]) -> None:
     for entry in options.config:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):
-            raise ConfigError(f"--config: {entry!r} is not allowed: key=value, the key of two letters or more")
+            short = f"; {name} has its place in the config file" if len(name) == 1 else ""
+            raise ConfigError(f"--config: {entry!r} is not allowed: key=value, the key of two letters or more{short}")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from snakemake_logger_plugin_study.forecast import Forecast
 
 #: Seconds for which a time left that was worked out is only counted down.
-FRESH = 1.0
+FRESH = 2.0
 
 RUNNING, DONE, FAILED = "running", "done", "failed"
 #: The name of all stages together.

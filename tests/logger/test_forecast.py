@@ -94,7 +94,7 @@ def test_a_run_is_recorded_beside_what_is_known(tmp_path):
     jobs += [(3, Job("", 12.0, state=FAILED)), (4, Job("", 12.0, state=DONE, end=13.0))]
     write_past(tmp_path, planned, jobs, cores=2, speed=1.5, begin=10.0)
     first, second = read_record(tmp_path)["jobs"]
-    assert (first["begin"], first["end"], first["size"], second["needs"]) == (0.0, 2.5, 5, ["short"])
+    assert (first["begin"], first["end"], first["size"], second["needs"]) == (0.0, 2.5, 5, [0])
     assert read_past(tmp_path) == [Known("short", 1.0, 2.5), Known("long", 2.0, 8.0)]
     write_past(tmp_path, planned, [(1, Job("", 0.0, state=DONE, end=1.0))], cores=2, speed=1.5, begin=0.0)
     assert sorted(read_past(tmp_path)) == [Known("long", 2.0, 8.0), Known("short", 1.0, 1.0)]

@@ -52,8 +52,8 @@ def test_the_time_left_is_told_from_the_state_of_all_jobs():
     # It is counted down until it is worked out again.
     assert made.time_left(3.5) == 29.5
     made.end(1, FAILED)
-    assert made.time_left(4.5) == 30.0
-    assert asked[1:] == [(4.5, 2, {}, {0: 2.0, 2: float("inf")}, [1])]
+    assert made.time_left(5.5) == 30.0
+    assert asked[1:] == [(5.5, 2, {}, {0: 2.0, 2: float("inf")}, [1])]
 
 
 def test_what_a_failed_job_blocks_is_not_waited_for():

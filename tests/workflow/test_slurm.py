@@ -205,7 +205,7 @@ def test_submit_finds_what_another_snakemake_submitted(cluster, tmp_path):
     script.write_text(
         '# properties = {"type": "single", "rule": "wait", "threads": 1, "resources": {"mem_mb": 10, "runtime": 1}}\n'
         "sh -c 'until [ -e ready ]; do sleep 0.1; done; exit $(cat ready)' --wait-for-files input.txt --attempt 1 "
-        f"--target-jobs wait:a=1 wait:a=2 --snakefile {REPOSITORY}/Snakefile"
+        f"--target-jobs wait:a=1 wait:a=2 --snakefile {REPOSITORY}/workflow/Snakefile"
     )
 
     def call(program: str, argument: object, study: str = "tiny") -> str:

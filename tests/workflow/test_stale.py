@@ -56,7 +56,7 @@ def planned(study, *roots):
 def studied(finished, tmp_path_factory):
     """The finished study with a copy of the tree that is to be edited and mended again."""
     folder = tmp_path_factory.mktemp("studied")
-    for name in ("config", "profiles", "src", "workflow", "Snakefile", "pyproject.toml", "Makefile"):
+    for name in ("config", "src", "workflow", "pyproject.toml", "Makefile"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(folder)], check=True)
     subprocess.run(["cp", "-a", str(finished.folder), str(folder / "study")], check=True)
     study = Study(folder / "study", finished.config.read_text(), folder)

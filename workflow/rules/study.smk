@@ -38,7 +38,9 @@ from burridge_knopoff.study.paths import POINT
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import several_files
 
-ROOT = Path(workflow.basedir)
+# Another Snakefile may import this one as a module; then it is the other that Snakemake calls the main one.
+ROOT = Path(f"{workflow.current_basedir}").parents[1]
+IMPORTED = Path(workflow.main_snakefile).resolve() != ROOT / "workflow/Snakefile"
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -48,15 +50,16 @@ if " " in sys.executable:
     sys.exit(
         f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
     )
-CONFIG_FILE = workflow.configfiles[0]
-OVERRIDES = workflow.config_settings.config
+CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
+# What imports the study hands its config over, with all that was given on the command line.
+OVERRIDES = {} if IMPORTED else workflow.config_settings.config
 
 try:
     CLAIMS_FILE = ROOT / "config/claims.yaml"
     read_claims(CLAIMS_FILE)
     CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
-    WRITTEN = read_config(CONFIG_FILE)
+    WRITTEN = config if IMPORTED else read_config(CONFIG_FILE)
     GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
@@ -72,7 +75,7 @@ SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
 
 # How the study is named to `snakemake`: its config file, empty for the default one, and all arguments.
 CONFIG_ARGUMENT = os.path.relpath(CONFIG_FILE)
-if Path(CONFIG_FILE).resolve() == (ROOT / "config/paper.yaml").resolve():
+if IMPORTED or Path(CONFIG_FILE).resolve() == (ROOT / "config/paper.yaml").resolve():
     CONFIG_ARGUMENT = ""
 ARGUMENTS = []
 if ROOT.resolve() != Path.cwd():

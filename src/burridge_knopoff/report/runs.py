@@ -21,7 +21,7 @@ STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status
 
 @dataclass(frozen=True)
 class Commands:
-    """What a person types in the folder of the Snakefile to make one run again.
+    """What a person types in the folder of the checkout to make one run again.
 
     configfile : path of the study's config, empty for the default study
     """

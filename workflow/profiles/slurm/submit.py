@@ -29,8 +29,8 @@ from jobs import FOLDER, NO_ANSWER, PATIENCE, PAUSE, Job, ask, known_jobs, live_
 STUDY_OPTIONS = ("", "--snakefile", "--configfiles", "--config")
 #: Options that name the files a job reads.
 WAIT_OPTIONS = ("--wait-for-files", "--wait-for-files-file")
-#: Below the folder of the Snakefile: what decides a result, given the config.
-SOURCES = ("Snakefile", "config/claims.yaml", "src", "workflow")
+#: In the checkout of the Snakefile: what decides a result, given the config.
+SOURCES = ("config/claims.yaml", "src", "workflow")
 DEFAULT_CONFIG = "config/paper.yaml"
 #: What the Snakemake inside a job takes beside the job: MB, and minutes to start on a slow file system.
 SNAKEMAKE_MB, SNAKEMAKE_MINUTES = 250, 5
@@ -106,7 +106,7 @@ def study_digest(options):
     """Return a digest of all that decides a result: sources, config, and the call of Snakemake."""
     digest = hashlib.sha256()
     digest.update(json.dumps([options.get(name) for name in STUDY_OPTIONS]).encode())
-    root = Path(options["--snakefile"][0]).parent
+    root = Path(options["--snakefile"][0]).parents[1]
     files = [Path(path) for path in options.get("--configfiles", [root / DEFAULT_CONFIG])]
     for name in SOURCES:
         path = root / name
