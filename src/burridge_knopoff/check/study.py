@@ -133,7 +133,7 @@ def check_study(results: str | Path) -> Check:
         tuple(left),
         len(logs),
         tuple(unknown),
-        *_changed(results, record),
+        *changed(results, record),
     )
 
 
@@ -181,7 +181,7 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
     return None
 
 
-def _changed(results: Path, record: dict[str, Any]) -> tuple[str, str]:
+def changed(results: Path, record: dict[str, Any]) -> tuple[str, str]:
     """Return what has changed in the config file since the last run, and what is to be said if that is not known."""
     file = record["config_file"]
     path = root_of(results) / file
