@@ -251,6 +251,17 @@ def test_what_belongs_to_no_point_is_pruned_and_nothing_else(results, capsys):
     assert f"unknown  {results}/points/linearized/minus/a0.0500_copy.nc: no point of a study has that name" in said
 
 
+def test_a_study_whose_config_has_changed_is_not_pruned(results, capsys):
+    """What its files belong to is not known until it has run."""
+    left = point(results, a="0.0600")
+    shutil.copy(point(results), left)
+    (results.parent.parent / "small.yaml").write_text(CONFIG.replace("[0.05, 0.08]", "[0.08]"))
+    assert main(["prune", str(results)]) == 2
+    words = "small.yaml has changed since the last run: run snakemake first"
+    assert capsys.readouterr() == ("", f"bk prune: {results}: {words}\n")
+    assert left.exists()
+
+
 def test_a_study_of_another_version_is_refused_in_a_line(results, capsys):
     record = results / "study.json"
     content = json.loads(record.read_text())

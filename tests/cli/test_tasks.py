@@ -1,5 +1,7 @@
 """`bk attractors`, `basins`, `orbit`, `exponents`: what they print and write is what the library gives."""
 
+import shlex
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -40,6 +42,9 @@ def test_attractors(capsys, tmp_path):
     )
     found, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
     written = open_summary(out)
+    assert written.attrs["history"] == shlex.join(
+        ["bk", "attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus"]
+    )
     assert written.sizes["attractor"] == len(found)
     means = sorted(attractor.motion.mean_distance for attractor in found)
     assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)

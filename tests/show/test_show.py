@@ -71,6 +71,16 @@ def test_a_point_as_a_picture(point, tmp_path, capsys):
             assert (picture[half, side] < 0.9).mean() > 0.01
 
 
+def test_a_run_that_failed(tmp_path, capsys):
+    path = tmp_path / "failed.nc"
+    write_point(simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0), path)
+    assert main(["show", str(path), "--plot", str(tmp_path / "failed.png")]) == 0
+    said = capsys.readouterr().out
+    for words in ("diverged at tau = 22.479\n", "undetermined\n", "5 samples, tau = 0 to 20\n", "at 0 times\n"):
+        assert words in said
+    assert (tmp_path / "failed.png").stat().st_size > 10_000
+
+
 def test_every_summary_in_words(study):
     files = sorted(study.glob("summary/*.nc"))
     assert len(files) > 12

@@ -27,14 +27,14 @@ _NAMED = (
 def leftovers(results: Path, study: Study) -> tuple[list[Path], list[Path]]:
     """Return the files of results that belong to no point of a study, and the logs and benchmarks that do not."""
     found: dict[bool, list[Path]] = {True: [], False: []}
-    patterns = list(_patterns())
-    # What a link leads to is not the study's own.
-    for path in sorted(path for path in results.rglob("*") if path.is_file() and not path.is_symlink()):
-        if not path.resolve().is_relative_to(results.resolve()):
-            continue
+    patterns, belongs = list(_patterns()), _Names(study).belong
+    whole = results.resolve()
+    for path in sorted(results.rglob("*")):
         name = path.relative_to(results).as_posix()
         for pattern, is_result in patterns:
-            if (match := pattern.fullmatch(name)) and not _belongs(study, match.groupdict()):
+            match = pattern.fullmatch(name)
+            # What a link leads to is not the study's own.
+            if match and not belongs(match.groupdict()) and path.resolve() == whole / name and path.is_file():
                 found[is_result].append(path)
     return found[True], found[False]
 
@@ -50,16 +50,28 @@ def _patterns() -> Iterator[tuple[re.Pattern[str], bool]]:
         yield re.compile(rf"benchmarks/{log}\.tsv"), False
 
 
-def _belongs(study: Study, named: Mapping[str, str | None]) -> bool:
-    """Tell whether what stands in the name of a file is of the study."""
-    a = study.grid.get(named.get("a") or "")
-    if (mapped := named.get("mapped")) is not None:
-        return (mapped, a) in study.basin_maps and int(named["tile"] or 0) < study.config["basins"]["tiles"]
-    if named.get("law", study.laws[0]) not in study.laws or named.get("initial", study.initial[0]) not in study.initial:
-        return False
-    if (solver := named.get("solver")) is not None:
-        return a in study.config["solvers"]["a"] and solver in study.other_solvers(str(named["law"]))
-    return "a" not in named or a is not None
+class _Names:
+    """What stands in the names of the files of a study."""
+
+    def __init__(self, study: Study) -> None:
+        self.laws, self.states, self.grid = set(study.laws), set(study.initial), set(study.grid)
+        names = {value: name for name, value in study.grid.items()}
+        compared = study.config["solvers"]["a"]
+        self.compared = {names.get(value) for value in compared}
+        self.solvers = {(law, solver) for law in study.laws if compared for solver in study.other_solvers(law)}
+        self.maps = {(law, names.get(a)) for law, a in study.basin_maps}
+        self.tiles = study.config["basins"]["tiles"]
+
+    def belong(self, named: Mapping[str, str | None]) -> bool:
+        """Tell whether what stands in a name is of the study."""
+        law, a = named.get("law"), named.get("a")
+        if (mapped := named.get("mapped")) is not None:
+            return (mapped, a) in self.maps and int(named["tile"] or 0) < self.tiles
+        if "solver" in named:
+            fits = (law, named["solver"]) in self.solvers and a in self.compared
+        else:
+            fits = (law is None or law in self.laws) and (a is None or a in self.grid)
+        return fits and ("initial" not in named or named["initial"] in self.states)
 
 
 def delete(results: Path, paths: list[Path]) -> None:

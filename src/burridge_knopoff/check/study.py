@@ -58,7 +58,7 @@ class Check:
 
     @property
     def exit_code(self) -> int:
-        """0 if there is nothing to list, 3 if runs have failed only, else 1."""
+        """0 if nothing is wrong, 3 if runs have failed only, else 1."""
         return 1 if self.changed or self.paths else 3 if self.findings else 0
 
     @property
@@ -117,8 +117,9 @@ def check_study(results: str | Path) -> Check:
     wanted = [run for run in runs if asked or not run[0].startswith("solvers/")]
     points = {results / place: (results / log, command) for place, log, command in wanted}
     left, logs = leftovers(results, study)
+    known = {*points, *left}
     files = sorted(path for path in results.rglob("*.nc") if not path.name.startswith("."))
-    others = [path for path in files if path not in points and path not in left]
+    others = [path for path in files if path not in known]
     unknown = [path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")]
     summaries = [path for path in others if path not in unknown]
     found = [*(_look(path, command, log) for path, (log, command) in points.items()), *map(_look, summaries)]
@@ -132,7 +133,7 @@ def check_study(results: str | Path) -> Check:
         tuple(left),
         len(logs),
         tuple(unknown),
-        *_changed(results, record),
+        *changed(results, record),
     )
 
 
@@ -180,7 +181,7 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
     return None
 
 
-def _changed(results: Path, record: dict[str, Any]) -> tuple[str, str]:
+def changed(results: Path, record: dict[str, Any]) -> tuple[str, str]:
     """Return what has changed in the config file since the last run, and what is to be said if that is not known."""
     file = record["config_file"]
     path = root_of(results) / file

@@ -70,6 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     name = next((word for word in given if not word.startswith("-")), "")
     parser = build_parser(name)
     options = parser.parse_args(join_signed(given))
+    options.given = given
     try:
         code = _module(options.command).run(options)
         sys.stdout.flush()

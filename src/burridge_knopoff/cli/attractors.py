@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
 from burridge_knopoff.cli.simulate import check_out
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
@@ -27,14 +28,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="FILE", help="write them as netCDF as well, in the form of attractors.nc")
 
 
-def add_search(parser: argparse.ArgumentParser, *more: str) -> None:
+def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> None:
     """Add the settings of a search and of kinds of motion, and the convention of start.
 
-    more : settings of the search besides the usual ones
+    more : settings of the search besides the usual ones; defaults : other ones than theirs
     """
     search = parser.add_argument_group("search")
     add(search, Settings, "start")
-    add(search, SearchSettings, "samples", *more, "seed", "transient", "window", "time_limit", "resolution")
+    names = ("samples", *more, "seed", "transient", "window", "time_limit", "resolution")
+    add(search, SearchSettings, *names, **defaults)
     add(search, SearchSettings, "pushes", "lifetime")
     add(search, SearchSettings, "position", "velocity", suffix="_box")
     add(parser.add_argument_group("kinds of motion"), MotionSettings)
@@ -71,6 +73,6 @@ def run(options: argparse.Namespace) -> int:
         name = called(found, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
         print(f"{state.name} reaches: {name}")
     if options.out:
-        write_summary(found, options.out)
+        write_summary(found.assign_attrs(history=command_of(options)), options.out)
         print(f"written: {options.out}")
     return 0

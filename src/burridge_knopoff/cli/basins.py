@@ -6,7 +6,7 @@ import argparse
 from dataclasses import asdict
 
 from burridge_knopoff.cli.attractors import add_search, search_of
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
 from burridge_knopoff.cli.simulate import check_out
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings
@@ -24,10 +24,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     plane = parser.add_argument_group("map")
-    # Those of basin_map, which is for a look, and not those of a study.
+    # Pixels and samples as in basin_map, for a look, and not as in a study.
     add(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
-    add_search(parser)
-    parser.set_defaults(samples=100)
+    add_search(parser, samples=100)
     out = parser.add_argument_group("files")
     out.add_argument("--out", metavar="FILE", help="write the map as netCDF, in the form of basins.nc")
     out.add_argument(
@@ -63,6 +62,6 @@ def run(options: argparse.Namespace) -> int:
     print(f"\nundetermined: {100 * (branch < 0).mean():.2f} % of the plane")
     for path, dataset in ((options.out, basins), (options.attractors_out, attractors)):
         if path:
-            write_summary(dataset, path)
+            write_summary(dataset.assign_attrs(history=command_of(options)), path)
             print(f"written: {path}")
     return 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -219,6 +220,16 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
         usual if options.blocks is None else options.blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS}
     )
     return Model(chain, simulated_law(options), options.v, options.contact)
+
+
+def command_of(options: argparse.Namespace) -> str:
+    """Return the command that was given, without the files that it was to write: what a file says that made it."""
+    words = [word for word in options.given if not re.match(r"--(attractors-)?out=", word)]
+    for option in ("--out", "--attractors-out"):
+        if option in words:
+            place = words.index(option)
+            del words[place : place + 2]
+    return shlex.join(["bk", *words])
 
 
 def said_of(model: Model) -> str:

@@ -22,9 +22,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Delete what is left over, and print it."""
     from burridge_knopoff.check.leftovers import delete, leftovers
-    from burridge_knopoff.check.study import recorded_study
+    from burridge_knopoff.check.study import changed, recorded_study
 
-    studies = [(folder, recorded_study(folder)[1]) for folder in map(Path, options.results)]
+    studies = []
+    for folder in map(Path, options.results):
+        record, study = recorded_study(folder)
+        if changed(folder, record)[0]:
+            raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
+        studies.append((folder, study))
     for folder, study in studies:
         results, logs = leftovers(folder, study)
         for path in (*results, *logs):

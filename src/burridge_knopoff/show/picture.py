@@ -19,6 +19,9 @@ from burridge_knopoff.study import Study
 
 FORMATS = (".png", ".pdf", ".svg")
 
+# Section points of a run that are drawn larger.
+FEW = 50
+
 #: What a figure takes from the study, for a file that belongs to none.
 WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 
@@ -92,17 +95,23 @@ def draw_point(point: xarray.Dataset) -> Figure:
         panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
         panel.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$")
     panels[0].set_ylim(0.0, settled_top(distance))
-    panels[1].set(yscale="log", ylim=(FLOOR, 10.0))
+    panels[1].set(yscale="log", ylim=(FLOOR, max(10.0, np.nanmax(distance, initial=0.0))))
     panels[1].legend(loc="lower right", handlelength=1.2)
     upward = point["crossing_velocity"].values[point["crossing_direction"].values > 0]
     if len(upward) > 1:
-        panels[2].plot(upward[:-1], upward[1:], ".", markersize=2.5, markeredgewidth=0, color=color(0), rasterized=True)
+        size = 2.5 if len(upward) > FEW else 5.0
+        panels[2].plot(
+            upward[:-1], upward[1:], ".", markersize=size, markeredgewidth=0, color=color(0), rasterized=True
+        )
         panels[2].set(xlabel="$W'$ at an upward crossing of $W=0$", ylabel="$W'$ at the next")
     else:
         say_nothing(panels[2], "W crosses 0 less than twice in the window")
-    draw_blocks(panels[3], point, "velocity")
-    panels[3].set(xlabel=r"$\tau$", ylabel="$U_i'$")
-    if point.sizes["block"] <= MOST_NAMED:
+    if np.isfinite(point["velocity"].values).any():
+        draw_blocks(panels[3], point, "velocity")
+        panels[3].set(xlabel=r"$\tau$", ylabel="$U_i'$")
+    else:
+        say_nothing(panels[3], "no velocities were kept")
+    if panels[3].lines and point.sizes["block"] <= MOST_NAMED:
         figure.legend(*panels[3].get_legend_handles_labels(), ncols=6, loc="outside lower center")
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
     titles = (f"{run}: distance of the end blocks", "logarithmic", "section points", "velocities at the end")

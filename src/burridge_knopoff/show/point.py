@@ -94,7 +94,8 @@ def _given(value: Any) -> Any:
 
 
 def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
-    yield "J(tau)", f"{point.sizes['sample']} samples{_span(point['time'].values)}"
+    sampled = point["time"].values[np.isfinite(point["distance"].values)]
+    yield "J(tau)", f"{len(sampled)} samples{_span(sampled)}"
     direction = point["crossing_direction"].values
     up, down = int((direction > 0).sum()), int((direction < 0).sum())
     yield "section W = 0", f"{up} upward and {down} downward crossings{_span(point['crossing_time'].values)}"
@@ -107,7 +108,8 @@ def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
                 "stops and starts" if name == "event" else "",
                 f"{point.sizes[name]} {words}{_span(point[f'{name}_time'].values)}{stops}",
             )
-    time = point["trajectory_time"].values
+    # A run that ended early did not come to its last part.
+    time = point["trajectory_time"].values[np.isfinite(point["velocity"].values).all(axis=1)]
     yield "trajectory", f"positions and velocities at {len(time)} times{_span(time)}"
 
 
