@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -16,7 +17,7 @@ from burridge_knopoff.stability.attractor import Attractor, Symmetry, close_retu
 from burridge_knopoff.stability.branch import leading_modulus
 from burridge_knopoff.stability.family import synchronized_orbit
 from burridge_knopoff.stability.labels import UNDETERMINED, label, label_together
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import MotionKind, closed_kind
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
 from burridge_knopoff.stability.sampling import sample_states, sampled_states
@@ -118,7 +119,7 @@ class Search:
         # Most states decide early: the first search is quick, and only the second gives every state its time. Only with
         # all attractors known are the labels those that another order of the states would give.
         undecided = list(range(len(starts)))
-        while True:
+        for _ in range(self.tuning.rounds):
             found, _ = label(
                 self.model, self.attractors, [starts[k] for k in undecided], self.tuning.quick * self.settings.transient
             )
@@ -252,13 +253,17 @@ class Search:
         motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, self.tuning)
         if motion is None:
             return False
-        if motion.kind == MotionKind.CHAOTIC and not closed:
+        mirror = self.model.chain.is_mirror_symmetric
+        if motion.kind == MotionKind.CHAOTIC and closed:
+            # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
+            mean = motion.mean_distance if mirror else math.inf
+            motion = replace(motion, kind=closed_kind(mean, self.motion_settings))
+        elif motion.kind == MotionKind.CHAOTIC:
             # Chaos may be a transient of any length: one trajectory has to last.
             lasting = visit(self.model, found.instant(), tuning.lasting * settings.transient, settings.window, tuning)
             if lasting is None or lasting.closed(self.tolerance):
                 return lasting is not None and self._add(lasting)
         index = len(self.attractors)
-        mirror = self.model.chain.is_mirror_symmetric
         synchronization_threshold = self.motion_settings.synchronization_threshold
         if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
             return self._add_slow_synchrony()
