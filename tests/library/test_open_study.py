@@ -109,3 +109,10 @@ def test_dask_is_not_needed(results):
     )
     run = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
     assert run.stdout == "True\n"
+
+
+def test_a_study_that_snakemake_has_made(finished):
+    results = finished.folder / "results" / "tiny"
+    study = open_study(results)
+    assert set(study["summary"].children) == {path.stem for path in (results / "summary").glob("*.nc")}
+    assert study["grid"].mean_distance.equals(study["summary/mean_distance"].mean_distance)

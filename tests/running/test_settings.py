@@ -28,6 +28,9 @@ from burridge_knopoff.model.initial import InitialState
         ({"initial": "middle"}, "minus | plus"),
         ({"law": "nonlinear", "solver": "map"}, "closed form"),
         ({"chain": Chain(4)}, "blocks: 4"),
+        ({"chain": 4}, "chain: 4 is not allowed: a Chain"),
+        ({"law": 3}, "law: 3 is not allowed"),
+        ({"a": "0.08"}, "a: '0.08'"),
         ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
     ],
 )

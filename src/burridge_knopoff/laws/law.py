@@ -152,7 +152,7 @@ class FormulaLaw(Law):
 
     Raises ValueError as `Law` does, and for a formula with anything in it that is not allowed there.
 
-    Allowed are numbers, + − * / **, brackets, and exp, log, sqrt and tanh; u is the speed U'.
+    Allowed are numbers, brackets, `+`, `-`, `*`, `/`, `**`, and exp, log, sqrt and tanh; u is the speed U'.
 
     >>> from burridge_knopoff import FormulaLaw
     >>> law = FormulaLaw(0.04, "1/(1 + a*u)**p", name="power", p=2.0)

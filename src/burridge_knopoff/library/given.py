@@ -71,4 +71,6 @@ def given_model(
     if a is None:
         raise ValueError("a: None is not allowed but beside a model: 0 or more")
     chain = Chain(blocks) if chain is None else chain
+    if not isinstance(chain, Chain):
+        raise ValueError(f"chain: {chain!r} is not allowed: a Chain")
     return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), v, contact)

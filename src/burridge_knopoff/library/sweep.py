@@ -47,7 +47,7 @@ def sweep(
 
     The variables are those of a point file (docs/data.md) with `a` as the first dimension, among them `mean_distance`,
     `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 where a run is complete. Raises ValueError, one
-    line, for anything that is not allowed, before the first run; what is not allowed at one a only is named with it.
+    line, for anything that is not allowed; what is not allowed at one a only is named with it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
