@@ -108,5 +108,7 @@ def test_what_the_tree_ships():
     assert {"simulate", "report", "attractors_of_law nonlinear", "figure_mean_distance"} <= durations.costs.keys()
     assert all(len(cost) == 4 and min(cost) >= 0.0 for cost in durations.costs.values())
     assert durations.seconds("nobody knows it", 5.0) > 0.0
+    other, known = (durations.seconds(f"attractors_of_law {law}", 1e8) for law in ("mine", "nonlinear"))
+    assert other == known
     assert calibrate() > 0.0
     assert FILE.name == "durations.json"
