@@ -173,10 +173,10 @@ class LogHandler(LogHandlerBase):
 
     def close(self) -> None:
         """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""
-        if self._dryrun:
-            # Snakemake may close its handlers more than once.
-            self._dryrun = False
+        if self._dryrun and self._counts and not self._stopped:
             self._foretell()
+        # Snakemake may close its handlers more than once.
+        self._dryrun = False
         display, self._display = self._display, None
         if display is not None:
             display.close()

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from snakemake_logger_plugin_study.durations import Durations
 
 #: Seconds of jobs for which what was known before counts as much as what has finished: of all kinds, and of one.
-WEIGHT, WEIGHT_OF_KIND = 10.0, 2.0
+WEIGHT, WEIGHT_OF_KIND = 5.0, 2.0
 #: Of a job that has run longer than was thought: what it still takes, as a share of what it has taken.
 OVERDUE = 0.2
 

@@ -90,6 +90,18 @@ def test_another_workflow_imports_the_study(tmp_path):
     assert (tmp_path / "mine.txt").is_file()
 
 
+def test_stages_that_the_config_leaves_out(tmp_path):
+    study = Study(tmp_path, f"{TINY}\nwithout: [attractors, proof, claims]\nlaws: {{linearized: {{}}}}")
+    output = study.ok("-n")
+    rules = set(jobs(output))
+    words = ("attractors", "basin", "edges", "phases", "proof", "claims", "two_blocks", "windows", "figure_agreement")
+    assert not [rule for rule in rules for word in words if word in rule]
+    assert {"simulate_solver", "agreement", "figure_mean_distance", "figure_orbits", "report"} <= rules
+    assert re.search(r"^a run takes .* on 2 cores: .* of CPU time, and \d+ MB of disk$", output, re.MULTILINE)
+    run = study.run("-n", "results/tiny/summary/attractors.nc")
+    assert "results/tiny/summary/attractors.nc: neither a rule nor a file of this study" in run.stdout
+
+
 def test_stage_targets(study):
     assert set(jobs(study.ok("points", "-n"))) == {"simulate", "points"}
     assert {"simulate", "mean_distance", "bifurcation", "agreement"} < set(jobs(study.ok("summary", "-n")))
