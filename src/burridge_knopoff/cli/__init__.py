@@ -103,7 +103,7 @@ def _how_to_install(module: str) -> str:
     package = module.partition(".")[0]
     with contextlib.suppress(metadata.PackageNotFoundError):
         for requirement in metadata.requires("burridge-knopoff") or ():
-            found = re.match(rf"{package}\b.*\bextra == .([\w-]+)", requirement, re.IGNORECASE)
+            found = re.match(rf"(?:py)?{package}\b.*\bextra == .([\w-]+)", requirement, re.IGNORECASE)
             if found:
                 return f"{package} is not installed: pip install 'burridge-knopoff[{found[1]}]' brings it"
     return f"{package} is not installed: pip install {package}"

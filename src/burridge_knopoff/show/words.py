@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from textwrap import shorten
 
 import numpy as np
 import xarray
+
+#: Letters of a list of names, at most.
+LONGEST = 70
 
 
 def listed(values: Iterable[float], most: int = 8) -> str:
@@ -36,7 +40,7 @@ def values_in_words(variable: xarray.DataArray) -> str:
         counts = [(name, int((values == number).sum())) for number, name in names]
         return ", ".join(f"{name} {number}" for name, number in counts if number)
     if values.dtype == object or values.dtype.kind in "US":
-        return ", ".join(dict.fromkeys(map(str, values.ravel())))
+        return shorten(", ".join(dict.fromkeys(map(str, values.ravel()))), LONGEST, placeholder=" ...")
     known = values[~np.isnan(values)] if values.dtype.kind == "f" else values
     without = f", NaN at {values.size - known.size} of {values.size}" if known.size < values.size else ""
     if not known.size:
