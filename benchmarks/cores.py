@@ -2,16 +2,47 @@
 
     python benchmarks/cores.py results/paper
 
-Printed: cores, seconds, how many times faster than one core; then the longest chain of jobs that need each other. What
-Snakemake itself takes, and what jobs on one machine take from each other, is not in it.
+The long jobs of a law share their parts out among processes, the cores divided by the laws; what each part took stands
+in their logs. Printed: cores, seconds, how many times faster than one core; then the longest chain of jobs that need
+each other. What Snakemake itself takes, and what jobs on one machine take from each other, is not in it.
 """
 
+import re
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 from progress import planned
 
 from snakemake_logger_plugin_study.forecast import schedule
 from snakemake_logger_plugin_study.past import read_record
+
+LONG = re.compile("(.+)_of_law (.+)")
+PART = re.compile(r"^.+: \d+, ([\d.]+) s, the longest ([\d.]+) s$", re.MULTILINE)
+
+
+def parts_of(results, job):
+    """Return (sum, longest) in seconds of what the processes of a job share, from its log."""
+    long = LONG.fullmatch(job.kind)
+    log = Path(results, "logs", long[1], f"{long[2]}.log") if long else None
+    text = log.read_text(encoding="utf-8") if log and log.is_file() else ""
+    return [(float(total), float(longest)) for total, longest in PART.findall(text)]
+
+
+def on(cores, jobs, seconds, parts):
+    """Return the jobs and their seconds on so many cores.
+
+    A part that is shared among k processes takes at most its sum / k and, of its longest piece, the rest.
+    """
+    laws = sum(job.kind.startswith("attractors_of_law") for job in jobs.values())
+    processes = max(1, cores // max(1, laws))
+    shared = {number: found for number, found in parts.items() if found}
+    wide = {number: replace(job, threads=processes if number in shared else 1) for number, job in jobs.items()}
+    took = dict(seconds)
+    for number, found in shared.items():
+        spared = sum((total - longest) * (1.0 - 1.0 / processes) for total, longest in found)
+        took[number] = max(0.0, seconds[number] - spared)
+    return wide, took
 
 
 def main():
@@ -21,16 +52,21 @@ def main():
         if not record:
             sys.exit(f"{results}: no record of a run in it; snakemake writes it")
         jobs, seconds = planned(record)
+        if any(job.threads > 1 for job in jobs.values()):
+            sys.exit(f"{results}: its long jobs have shared their work already: run it with -c2 or less")
+        parts = {number: parts_of(results, job) for number, job in jobs.items()}
         alone = sum(seconds.values())
         print(f"{results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")
         for cores in (2**power for power in range(9)):
-            took = max(schedule(jobs, seconds, cores).values())
+            took = max(schedule(*on(cores, jobs, seconds, parts), cores).values())
             print(f"| {cores:5d} | {took:7.1f} | {alone / took:6.1f} |")
         print("\nthe longest chain:")
-        ends = schedule(jobs, seconds, len(jobs))
+        many = 1000 * len(jobs)
+        wide, least = on(many, jobs, seconds, parts)
+        ends = schedule(wide, least, many)
         number = max(ends, key=ends.get)
         while number is not None:
-            print(f"{seconds[number]:8.1f} s  {jobs[number].name}")
+            print(f"{least[number]:8.1f} s  {jobs[number].name}")
             number = max(jobs[number].needs, key=ends.get, default=None)
 
 

@@ -33,7 +33,7 @@ class PlannedJob:
 
 
 class Known(NamedTuple):
-    """A job whose duration is known, in seconds."""
+    """A job whose duration is known, in seconds of all its threads together."""
 
     kind: str
     work: float
@@ -108,7 +108,7 @@ class Forecast:
         """
         running, done = dict(running or {}), dict(done or {})
         known = [
-            Known(job.kind, job.work, seconds)
+            Known(job.kind, job.work, seconds * job.threads)
             for number, seconds in done.items()
             if (job := self.jobs.get(number)) and seconds < float("inf")
         ]
@@ -116,7 +116,7 @@ class Forecast:
         for number, begin in running.items():
             job = self.jobs.get(number)
             if job and now - begin > self._duration(job, self._speed, {}):
-                known.append(Known(job.kind, job.work, now - begin))
+                known.append(Known(job.kind, job.work, (now - begin) * job.threads))
         speed, factors = self._factors(self._speed, self._relative, known)
         gone = {*done, *failed, *self._blocked(failed)}
         left = {number: job for number, job in self.jobs.items() if number not in gone}
@@ -130,7 +130,7 @@ class Forecast:
 
     def _duration(self, job: PlannedJob, speed: float, factors: Mapping[str, float]) -> float:
         factor = factors.get(job.kind, speed * self._relative.get(job.kind, 1.0))
-        return self._durations.seconds(job.kind, job.work) * factor
+        return self._durations.seconds(job.kind, job.work) * factor / job.threads
 
     def _blocked(self, failed: Iterable[int]) -> set[int]:
         """Return the jobs that cannot run because some have failed."""

@@ -41,11 +41,11 @@ def read_past(results: str | Path) -> list[Known]:
 
 
 def all_jobs(record: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return {name: kind, work, seconds and size} of all jobs of a record, of each the last time that it ran."""
+    """Return {name: kind, work, seconds of all threads and size} of all jobs of a record, each as it last ran."""
     last = {
         job["name"]: {
             **{key: job[key] for key in ("kind", "work", "size")},
-            "seconds": job["end"] - job["begin"],
+            "seconds": (job["end"] - job["begin"]) * job["threads"],
         }
         for job in record.get("jobs", [])
     }

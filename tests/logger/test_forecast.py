@@ -35,9 +35,9 @@ def long(work, *needs, **other):
         ([*[short()] * 4, long(1.0, priority=1.0)], 2, 10.0),
         # One after the other, whatever the number of cores.
         ([short(), short(0), short(1)], 8, 3.0),
-        # Threads take their cores, as far as there are so many.
-        ([short(threads=2)] * 3, 2, 3.0),
-        ([short(threads=16)] * 3, 2, 3.0),
+        # Threads take their cores, and share the work.
+        ([short(threads=2)] * 3, 2, 1.5),
+        ([short(threads=2)] * 3, 4, 1.0),
         ([], 2, 0.0),
     ],
 )
@@ -48,7 +48,7 @@ def test_a_schedule_fills_all_cores(jobs, cores, seconds):
 
 def test_the_cost_of_all_jobs():
     cost = forecast(short(), long(2.0, threads=2)).cost(4)
-    assert cost == (20.0, 41.0, 200.0)
+    assert cost == (10.0, 21.0, 200.0)
 
 
 def test_what_has_finished_corrects_what_is_left():
