@@ -87,6 +87,7 @@ def test_every_summary_in_words(study):
     for path in files:
         result = open_result(path)
         lines = summary_lines(result)
+        assert result.name == path.stem
         assert lines[0] == f"{path}: {result.data.attrs['title']}"
         assert lines[1].strip()
         for name in result.data.data_vars:

@@ -14,6 +14,9 @@ from burridge_knopoff.provenance.seal import BadFile, read_seal
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.stability.settings import MOTION, MotionSettings
 
+#: {variable that no other summary has: name of the summary}, where the module that made it does not tell.
+_BY_CONTENT = {"in_grid": "refined", "basin_fraction": "attractors"}
+
 
 @dataclass(frozen=True, eq=False)
 class Result:
@@ -34,8 +37,9 @@ class Result:
 
     @property
     def name(self) -> str:
-        """Name of the module that made it: that of a summary."""
-        return self.data.attrs["source_module"].rpartition(".")[2]
+        """Name of a summary, by which figures know it, whatever the file is called."""
+        known = (name for variable, name in _BY_CONTENT.items() if variable in self.data)
+        return next(known, self.data.attrs["source_module"].rpartition(".")[2])
 
     @property
     def motion(self) -> MotionSettings:
