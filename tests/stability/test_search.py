@@ -63,7 +63,7 @@ def scripted(monkeypatch):
     """
     asked = []
 
-    def add(measured, lasting, radii, found_model=None, mirror=OTHER, spacing=CLOSED):
+    def add(measured, lasting, radii, found_model=None, mirror=OTHER, spacing=CLOSED, in_chaos=False):
         measured, radii = list(measured), list(radii)
 
         def measure(of_model, start, transient, window, motion, *_):
@@ -80,6 +80,7 @@ def scripted(monkeypatch):
 
         for name, item in (("measure", measure), ("visit", visit), ("captured", captured)):
             monkeypatch.setattr(attractors, name, item)
+        monkeypatch.setattr(Search, "_lies_in_chaos", lambda *_: in_chaos)
         monkeypatch.setattr(attractors, "bounded", lambda of_model, known, *_: list(known))
         monkeypatch.setattr(attractors, "midst", lambda known, index, *_: [])
         monkeypatch.setattr(attractors, "spread", lambda of_model, motion, *_: dataclasses.replace(motion, returns=ONE))
@@ -142,6 +143,9 @@ def test_what_attracts_as_a_whole_is_a_slow_set(scripted):
         ONE.tolist(),
     )
     assert asked[1:] == [("captured", 0, smallest)] * 2
+    # An orbit in the midst of chaos is not all of it, and may attract from nearby alone.
+    pair, asked = scripted([motion()], None, [0.0, 1e-7], in_chaos=True)
+    assert (len(pair), pair[0].slow, asked[-2:]) == (2, False, [("captured", 0, smallest), ("captured", 0, tiny)])
     # A closed orbit may attract from one side only; next to synchrony what does not attract is unstable.
     pair, asked = scripted([motion()], None, [0.0, 0.0, 1e-7])
     assert (len(pair), asked[-1]) == (2, ("captured", 0, tiny))
@@ -227,3 +231,17 @@ def test_states_that_are_ascribed_to_chaos_are_followed(told_search):
     assert told_search.followed == list("acdegh")
     told_search.told = ["new"]
     assert not told_search._single("ab", np.array([0, 1]))
+
+
+@pytest.mark.parametrize("kind", [MotionKind.CHAOTIC, MotionKind.QUASIPERIODIC, None])
+def test_what_surrounds_an_orbit_is_seen_from_a_push(monkeypatch, kind):
+    def measure(of_model, start, transient, window, *_):
+        asked.append((transient / SETTINGS.transient, window / SETTINGS.window))
+        assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
+        return None if kind is None else motion(kind=kind)
+
+    asked = []
+    monkeypatch.setattr(attractors, "measure", measure)
+    found = Returns(ONE, OTHER, CLOSED, 0.0)
+    assert Search(model(), SETTINGS)._lies_in_chaos(found) == (kind == MotionKind.CHAOTIC)
+    assert asked == [(TUNING.slow_time, TUNING.filling)]

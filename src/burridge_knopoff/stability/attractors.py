@@ -281,14 +281,25 @@ class Search:
         new = [replace(item, close_returns=close_returns(found, self.tolerance, tuning)) for item in new]
         if self._accept(new, tuning.smallest_radius):
             return True
-        # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole.
+        # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole; but where
+        # that is chaos, it is a motion of its own, in whose midst an orbit may attract from nearby alone.
         if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
             return False
-        symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
-        slow = Attractor(
-            spread(self.model, motion, settings, tuning), symmetry, index, slow=True, close_returns=tuning.close_returns
-        )
-        return self._accept([slow], tuning.smallest_radius) or (closed and self._accept(new, tuning.tiny_radius))
+        if not (closed and self._lies_in_chaos(found)):
+            symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
+            whole = spread(self.model, motion, settings, tuning)
+            slow = Attractor(whole, symmetry, index, slow=True, close_returns=tuning.close_returns)
+            if self._accept([slow], tuning.smallest_radius):
+                return True
+        return closed and self._accept(new, tuning.tiny_radius)
+
+    def _lies_in_chaos(self, found: Returns) -> bool:
+        """Tell whether a state pushed off a motion moves in chaos."""
+        settings, tuning = self.settings, self.tuning
+        start = pushed(found.instant(), tuning.slow_push * self.resolution, np.random.default_rng(settings.seed))
+        times = tuning.slow_time * settings.transient, tuning.filling * settings.window
+        around = measure(self.model, start, *times, self.motion_settings, tuning)
+        return around is not None and around.kind == MotionKind.CHAOTIC
 
     def _add_slow_synchrony(self) -> bool:
         """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.
