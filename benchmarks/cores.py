@@ -9,6 +9,7 @@ each other. What Snakemake itself takes, and what jobs on one machine take from 
 
 import re
 import sys
+from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from snakemake_logger_plugin_study.forecast import schedule
 from snakemake_logger_plugin_study.past import read_record
 
 LONG = re.compile("(.+)_of_law (.+)")
-PART = re.compile(r"^.+: \d+, ([\d.]+) s, the longest ([\d.]+) s$", re.MULTILINE)
+PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s$", re.MULTILINE)
 
 
 def parts_of(results, job):
@@ -26,7 +27,10 @@ def parts_of(results, job):
     long = LONG.fullmatch(job.kind)
     log = Path(results, "logs", long[1], f"{long[2]}.log") if long else None
     text = log.read_text(encoding="utf-8") if log and log.is_file() else ""
-    return [(float(total), float(longest)) for total, longest in PART.findall(text)]
+    parts = defaultdict(list)
+    for name, *seconds in PART.findall(text):
+        parts[name].append([float(value) for value in seconds])
+    return [(sum(total for total, _ in each), max(longest for _, longest in each)) for each in parts.values()]
 
 
 def on(cores, jobs, seconds, parts):
