@@ -87,8 +87,9 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/basins.py
 	.venv-benchmark/bin/python benchmarks/point_job.py
 	.venv-benchmark/bin/python benchmarks/study.py
-	.venv-benchmark/bin/python benchmarks/stages.py
-	.venv-benchmark/bin/python benchmarks/stages.py --target chains
+	$(BIN)/snakemake -c2 --forceall
+	$(BIN)/python benchmarks/stages.py results/paper
+	$(BIN)/python benchmarks/cores.py results/paper
 
 faults: .venv/kernel .venv/test
 	$(BIN)/python benchmarks/faults.py

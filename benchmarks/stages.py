@@ -1,27 +1,23 @@
-"""Wall time of a study stage by stage, and the CPU time and peak memory of its largest job of each rule.
+"""What the jobs of a study have taken, rule by rule: wall and CPU time, and the peak memory of the largest job.
 
-It runs the default study, or another config, from nothing in a folder of its own on two cores, and reads what Snakemake
-has measured of each job. `--target chains` runs the optional stage of longer chains.
+    python benchmarks/stages.py results/paper
+
+It reads what Snakemake has measured of each job, and what the display has recorded of the last run.
 """
 
 from __future__ import annotations
 
-import argparse
-import os
-import subprocess
 import sys
-import tempfile
-import time
 from collections import defaultdict
 from pathlib import Path
 
 from measure import print_table, verdict
 
 from burridge_knopoff.study.job_costs import read_costs
+from snakemake_logger_plugin_study.past import read_record
 
-REPOSITORY = Path(__file__).resolve().parent.parent
 LIMIT_MB = 400.0
-LIMIT_MINUTES = {"all": 6.0, "basins": 2.0, "chains": 5.0}
+LIMIT_MINUTES = 5.0
 
 
 def rule_of(path: Path) -> str:
@@ -38,43 +34,24 @@ def jobs(folder: Path) -> dict[str, list[tuple[float, float, float]]]:
 
 
 def main() -> None:
-    """Run the study and print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
-    parser.add_argument("--cores", type=int, default=2, help="cores of Snakemake (default: %(default)s)")
-    parser.add_argument("--configfile", type=Path, help="config of the study (default: that of the Snakefile)")
-    parser.add_argument("--target", default="all", help="target of Snakemake (default: %(default)s)")
-    options = parser.parse_args()
-    snakemake = [
-        str(Path(sys.executable).parent / "snakemake"),
-        f"-c{options.cores}",
-        "-s",
-        str(REPOSITORY / "workflow/Snakefile"),
-    ]
-    with tempfile.TemporaryDirectory() as folder:
-        # A target stands before --configfile, which takes all that follows.
-        command = [*snakemake, "-d", folder, options.target]
-        if options.configfile is not None:
-            command += ["--configfile", str(options.configfile.resolve())]
-        begin = time.perf_counter()
-        run = subprocess.run(command, cwd=REPOSITORY, env=os.environ, capture_output=True, text=True)
-        wall = time.perf_counter() - begin
-        if run.returncode:
-            sys.exit(f"{' '.join(command)} failed:\n{run.stderr[-4000:]}")
-        results = next((Path(folder) / "results").iterdir())
+    """Print the tables of each study."""
+    for results in map(Path, sys.argv[1:]):
+        rows = []
         measured = jobs(results / "benchmarks")
-    rows = []
-    for rule, values in sorted(measured.items(), key=lambda item: -sum(value[1] for value in item[1])):
-        total = [sum(value[k] for value in values) for k in (0, 1)]
-        memory = max(value[2] for value in values)
-        rows.append(
-            [rule, len(values), f"{total[0]:.1f}", f"{total[1]:.1f}", f"{memory:.0f}", verdict(memory, LIMIT_MB)]
-        )
-    print_table(["rule", "jobs", "wall s, sum", "CPU s, sum", "MB, largest", f"under {LIMIT_MB:g} MB"], rows)
-    limit = LIMIT_MINUTES.get(options.target)
-    kept = "" if limit is None else f"{limit:g}, {verdict(wall / 60.0, limit)}"
-    print_table(
-        ["target", "cores", "minutes", "limit, kept"], [[options.target, options.cores, f"{wall / 60.0:.2f}", kept]]
-    )
+        for rule, values in sorted(measured.items(), key=lambda item: -sum(value[1] for value in item[1])):
+            total = [sum(value[k] for value in values) for k in (0, 1)]
+            memory = max(value[2] for value in values)
+            rows.append(
+                [rule, len(values), f"{total[0]:.1f}", f"{total[1]:.1f}", f"{memory:.0f}", verdict(memory, LIMIT_MB)]
+            )
+        print_table(["rule", "jobs", "wall s, sum", "CPU s, sum", "MB, largest", f"under {LIMIT_MB:g} MB"], rows)
+        record = read_record(results)
+        if not record:
+            sys.exit(f"{results}: no record of a run in it; snakemake writes it")
+        minutes = max(job["end"] for job in record["jobs"]) / 60.0
+        kept = f"{LIMIT_MINUTES:g}, {verdict(minutes, LIMIT_MINUTES)}"
+        last = [len(record["jobs"]), f"{record['cores']:g}", f"{minutes:.2f}", kept]
+        print_table(["jobs of the last run", "cores", "minutes", "limit, kept"], [last])
 
 
 if __name__ == "__main__":
