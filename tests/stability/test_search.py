@@ -233,15 +233,31 @@ def test_states_that_are_ascribed_to_chaos_are_followed(told_search):
     assert not told_search._single("ab", np.array([0, 1]))
 
 
-@pytest.mark.parametrize("kind", [MotionKind.CHAOTIC, MotionKind.QUASIPERIODIC, None])
-def test_what_surrounds_an_orbit_is_seen_from_a_push(monkeypatch, kind):
+@pytest.mark.parametrize(
+    ("kind", "later", "in_chaos"),
+    [
+        (MotionKind.CHAOTIC, WIDE, True),
+        (MotionKind.CHAOTIC, CLOSED, False),
+        (MotionKind.CHAOTIC, None, False),
+        (MotionKind.QUASIPERIODIC, WIDE, False),
+        (None, WIDE, False),
+    ],
+)
+def test_what_surrounds_an_orbit_is_seen_from_a_push(monkeypatch, kind, later, in_chaos):
+    """Chaos that ends on the orbit belongs to it."""
+
     def measure(of_model, start, transient, window, *_):
         asked.append((transient / SETTINGS.transient, window / SETTINGS.window))
         assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
         return None if kind is None else motion(kind=kind)
 
+    def visit(of_model, start, transient, window, *_):
+        asked.append((transient / SETTINGS.transient, window / SETTINGS.window))
+        return None if later is None else Returns(ONE, OTHER, later, 0.0)
+
     asked = []
     monkeypatch.setattr(attractors, "measure", measure)
-    found = Returns(ONE, OTHER, CLOSED, 0.0)
-    assert Search(model(), SETTINGS)._lies_in_chaos(found) == (kind == MotionKind.CHAOTIC)
-    assert asked == [(TUNING.slow_time, TUNING.filling)]
+    monkeypatch.setattr(attractors, "visit", visit)
+    assert Search(model(), SETTINGS)._lies_in_chaos(Returns(ONE, OTHER, CLOSED, 0.0)) == in_chaos
+    expected = [(TUNING.slow_time, TUNING.filling), (TUNING.lasting, 1)]
+    assert asked == expected[: 2 if kind == MotionKind.CHAOTIC else 1]

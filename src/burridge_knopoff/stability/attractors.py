@@ -294,12 +294,15 @@ class Search:
         return closed and self._accept(new, tuning.tiny_radius)
 
     def _lies_in_chaos(self, found: Returns) -> bool:
-        """Tell whether a state pushed off a motion moves in chaos."""
+        """Tell whether a state pushed off a motion moves in chaos that lasts."""
         settings, tuning = self.settings, self.tuning
         start = pushed(found.instant(), tuning.slow_push * self.resolution, np.random.default_rng(settings.seed))
         times = tuning.slow_time * settings.transient, tuning.filling * settings.window
         around = measure(self.model, start, *times, self.motion_settings, tuning)
-        return around is not None and around.kind == MotionKind.CHAOTIC
+        if around is None or around.kind != MotionKind.CHAOTIC:
+            return False
+        lasting = visit(self.model, start, tuning.lasting * settings.transient, settings.window, tuning)
+        return lasting is not None and not lasting.closed(self.tolerance)
 
     def _add_slow_synchrony(self) -> bool:
         """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.
