@@ -68,6 +68,7 @@ grid = grid_of(Path("points"), ["plus"], {"0.1": 0.1, "0.3": 0.3}, {"laws": laws
 words = [f"--{key.replace('_', '-')}={value}" for key, value in options.items()]
 for _, (law, initial, a) in grid:
     out = str(grid.path(law, initial, a))
+    Path(out).parent.mkdir(parents=True, exist_ok=True)
     assert main(["simulate", "--law", law, "--a", a, "--initial", initial, *words, "--out", out]) == 0
 summary = summarize(grid)
 for law in laws:

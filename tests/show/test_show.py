@@ -103,8 +103,8 @@ def test_a_summary_as_its_figure(study, tmp_path, capsys, name):
 
 
 def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
-    alone = tmp_path / "mean_distance.nc"
-    shutil.copy(study / "summary/mean_distance.nc", alone)
+    alone = tmp_path / "basins.nc"
+    shutil.copy(study / "summary/basins.nc", alone)
     for arguments, words in (
         ([alone, "--plot", "x.png"], "its figure takes attractors.nc besides"),
         ([alone, "--plot", "x.doc"], "x.doc: '.doc' is not allowed: .png | .pdf | .svg"),

@@ -13,6 +13,7 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import (
     SECTION,
     MotionKind,
@@ -77,11 +78,11 @@ def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSetti
     exponent, error = run["lyapunov_exponent"], run["lyapunov_error"]
     period = section_period(run, settings)
     kind = MotionKind.UNDETERMINED
-    mean = float(run["mean_distance"])
-    # That of a run that did not complete is NaN.
-    if not math.isnan(mean):
+    # A number in a file, a word in a trajectory.
+    if run["status"] in (Status.COMPLETED, Status.COMPLETED.name.lower()):
         # End blocks that are not each other's mirror images do not synchronize.
-        kind = motion_kind(mean if symmetric else math.inf, period, exponent, error, settings)
+        mean = float(run["mean_distance"]) if symmetric else math.inf
+        kind = motion_kind(mean, period, exponent, error, settings)
         upward = run["crossing_velocity"][run["crossing_direction"] > 0]
         if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
             # A weakly attracting orbit of a long period.
