@@ -87,6 +87,7 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/basins.py
 	.venv-benchmark/bin/python benchmarks/point_job.py
 	.venv-benchmark/bin/python benchmarks/study.py
+	rm -rf .snakemake/kept/paper
 	$(BIN)/snakemake -c2 --forceall
 	$(BIN)/python benchmarks/stages.py results/paper
 	$(BIN)/python benchmarks/cores.py results/paper

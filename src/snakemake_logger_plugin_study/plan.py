@@ -75,7 +75,7 @@ def planned_jobs(workflow: Any, study: Study) -> dict[int, PlannedJob]:
     numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
     planned = {}
     for job, number in numbers.items():
-        kind, work = work_of(study, job.rule.name, job.wildcards_dict)
+        kind, work = work_of(study, job.rule.name, job.wildcards_dict, job.params.get("kept"))
         needs = frozenset(numbers[need] for need in dag.dependencies[job] if need in numbers)
         name = job_name(job.rule.name, job.wildcards_dict)
         planned[number] = PlannedJob(name, kind, work, int(job.threads), float(job.priority), needs)

@@ -4,10 +4,12 @@ import math
 
 import pytest
 
+from burridge_knopoff.study import load_study
 from snakemake_logger_plugin_study.durations import FILE, Durations, calibrate, shipped
 from snakemake_logger_plugin_study.forecast import Forecast, Known, PlannedJob
 from snakemake_logger_plugin_study.past import read_past, read_record, write_past
 from snakemake_logger_plugin_study.tally import DONE, FAILED, Job
+from snakemake_logger_plugin_study.work import work_of
 
 COSTS = {"short": (1.0, 0.0, 100.0, 0.0), "long": (0.0, 10.0, 0.0, 50.0)}
 
@@ -112,3 +114,14 @@ def test_what_the_tree_ships():
     assert other == known
     assert calibrate() > 0.0
     assert FILE.name == "durations.json"
+
+
+@pytest.mark.parametrize(("kept", "share"), [(None, 1.0), (0, 1.0), (2, 0.55), (4, 0.1), (9, 0.1)])
+def test_what_a_search_has_kept_is_not_done_again(tmp_path, kept, share):
+    study = load_study({"study": "s", "a": [0.02, 0.04, 0.06, 0.08, 0.1], "initial": {"plus": {}}}, "s")
+    (tmp_path / "refined").mkdir()
+    for number in range(kept or 0):
+        (tmp_path / "refined" / str(number)).write_text("")
+    job = study, "attractors_of_law", {"law": "nonlinear"}
+    kind, work = work_of(*job, None if kept is None else str(tmp_path))
+    assert (kind, work) == ("attractors_of_law nonlinear", pytest.approx(share * work_of(*job)[1]))

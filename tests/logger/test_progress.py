@@ -163,7 +163,8 @@ class AJob(SimpleNamespace):
 
 
 def job(name, *output, **wildcards):
-    return AJob(rule=SimpleNamespace(name=name), output=output, wildcards_dict=wildcards, threads=1, priority=0)
+    rule = SimpleNamespace(name=name)
+    return AJob(rule=rule, output=output, wildcards_dict=wildcards, params={}, threads=1, priority=0)
 
 
 def test_what_the_snakefile_announces(tmp_path, monkeypatch):

@@ -1,5 +1,6 @@
 """Attractors along a: what is found at one value is looked for at the others, and no process more changes a number."""
 
+import logging
 from dataclasses import fields
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability import continuation
+from burridge_knopoff.stability import continuation, fractions
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.continuation import continue_attractors
@@ -47,10 +48,11 @@ def scripted(monkeypatch):
             known = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}
             return np.array([known.get(round(start.position[1]), -1) for start in starts])
 
-        def drawn_labels(self, start):
-            return np.full(7, len(self.attractors))
+    def labels(searches, start, each):
+        return searches, [np.full(7, len(search.attractors)) for search in searches]
 
     monkeypatch.setattr(continuation, "Search", Scripted)
+    monkeypatch.setattr(continuation, "fraction_labels", labels)
     return followed
 
 
@@ -82,13 +84,24 @@ def same(one, other):
         assert one == other
 
 
-def test_no_number_depends_on_the_processes():
+def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
+    """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
+    monkeypatch.setattr(fractions, "PART", 30)
     settings = SearchSettings(samples=10, fraction_samples=50, transient=1000.0, window=800.0, pushes=4)
-    options = settings, MOTION, Refine(0.01)
-    one, two = (
-        continue_attractors(models((0.06, 0.09, 0.1)), *options, starts=list(PAPER_STATES.values()), processes=count)
-        for count in (1, 2)
+
+    def found(a_values, **share):
+        states = list(PAPER_STATES.values())
+        return continue_attractors(models(a_values), settings, MOTION, Refine(0.01), starts=states, **share)
+
+    found((0.06, 0.1), processes=2, folder=tmp_path)
+    caplog.set_level(logging.INFO)
+    one, *others = (
+        found((0.06, 0.09, 0.1), **share)
+        for share in ({}, {"processes": 2}, {"folder": tmp_path}, {"processes": 2, "folder": tmp_path})
     )
     assert len(one.models) > 3
-    for item in fields(one):
-        same(getattr(one, item.name), getattr(two, item.name))
+    for two in others:
+        for item in fields(one):
+            same(getattr(one, item.name), getattr(two, item.name))
+    told = [line for line in caplog.messages if line.startswith("searched")]
+    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} kept from a run before" for n in (2, 3))]

@@ -7,7 +7,8 @@ import pytest
 
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability import attractors
+from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.stability import fractions
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.labels import UNDETERMINED, label_states
@@ -58,8 +59,9 @@ def test_patience_is_spared_where_a_sample_comes_early(monkeypatch, came, expect
         asked.append(len(position))
         return (labels, times) if len(asked) == 1 else (np.zeros(len(position), dtype=int), None)
 
-    monkeypatch.setattr(attractors, "label_together", told)
+    monkeypatch.setattr(fractions, "label_together", told)
     search = Search(MODEL, SearchSettings(samples=20, fraction_samples=50), attractors=[chaos, orbit])
-    search.drawn_labels("moving")
+    with shared_out(1) as each:
+        (search,), _ = fractions.fraction_labels([search], "moving", each)
     assert [item.patience for item in search.attractors] == [expected, 0.0]
     assert asked == [20, 50]

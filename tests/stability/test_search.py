@@ -194,12 +194,12 @@ def test_what_a_state_reaches(told_search, monkeypatch, place, spacing, expected
 
 def test_states_are_followed_until_something_is_found(told_search):
     told_search.told = [-1, 0, "new", -1, -1, -1, 0]
-    assert told_search._discover("abcd")
+    assert told_search.discover("abcd")
     assert (told_search.followed, told_search.vain) == (["a", "b", "c"], 2)
     # No more than three at a time, and six in all, in vain.
-    assert not told_search._discover("efgh")
+    assert not told_search.discover("efgh")
     assert (told_search.followed[3:], told_search.vain) == (["e", "f", "g"], 5)
-    assert not told_search._discover("ij")
+    assert not told_search.discover("ij")
     assert (told_search.followed[6:], told_search.vain) == (["i"], 6)
 
 

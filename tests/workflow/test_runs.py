@@ -132,6 +132,22 @@ def test_a_wider_grid_keeps_the_points_that_are_there(copy):
     assert jobs(copy.ok("-n"))["simulate"] == 4
 
 
+def test_a_wider_grid_is_searched_where_it_is_new(copy):
+    """What the first run has kept is taken again, and what no value needs any more goes."""
+    law, values = "linearized", 4
+    folder = copy.folder / ".snakemake/kept/tiny" / law
+    copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
+    before = {path.name for path in folder.rglob("searched*/*")}
+    copy.ok(f"results/tiny/attractors/{law}.nc")
+    log = (copy.folder / "results/tiny/logs/attractors" / f"{law}.log").read_text()
+    assert f"searched from states: {values + 1}, " in log
+    assert f"; {values} kept from a run before" in log.splitlines()[0]
+    after = {path.name for path in folder.rglob("searched*/*")}
+    assert before < after
+    assert len(after) == values + 1
+    assert len(list(folder.iterdir())) == 1
+
+
 def test_the_default_config_is_not_merged_into_another(study):
     """Only the given file counts: no value of config/paper.yaml may leak into a study that leaves a key out."""
     assert jobs(study.ok("-n"))["simulate"] == 16

@@ -1,4 +1,6 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
+import hashlib
+import json
 
 from snakemake.exceptions import WorkflowError
 
@@ -8,6 +10,19 @@ try:
 except WorkflowError:
     # Without a number of cores, as for --unlock, no job is run.
     SHARED_CORES = 1
+
+
+def kept_by_law(wildcards):
+    """Return where the search under a law keeps what it finds, for a run with other values of a, or after a kill."""
+    decides = [
+        keys("initial", "start", "attractors", "refine"),
+        model_config([wildcards.law]),
+        motion_config(),
+        sources("attractors_of_law"),
+    ]
+    digest = hashlib.sha256(json.dumps(decides).encode()).hexdigest()[:16]
+    return f".snakemake/kept/{STUDY.name}/{wildcards.law}/{digest}"
+
 
 OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
 
@@ -31,6 +46,7 @@ rule attractors_of_law:
         model=lambda wildcards: model_config([wildcards.law]),
         motion=motion_config(),
         sources=sources("attractors_of_law"),
+        kept=kept_by_law,
     message:
         "attractors of the {wildcards.law} law along a"
     script:
@@ -54,8 +70,9 @@ rule attractors:
         f"{RESULTS}/logs/attractors.log",
     benchmark:
         f"{RESULTS}/benchmarks/attractors.tsv"
+    threads: SHARED_CORES
     resources:
-        mem_mb=400,
+        mem_mb=lambda wildcards, threads: 400 + 100 * threads,
         runtime=10,
     params:
         **keys("attractors"),

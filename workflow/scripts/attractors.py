@@ -1,8 +1,10 @@
 """Attractors of all laws, their branches numbered alike where one law turns into the other."""
 
+import logging
 import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+logging.basicConfig(level=logging.INFO, format="%(message)s")
 
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.stability.settings import SearchSettings
@@ -13,7 +15,7 @@ from burridge_knopoff.summaries.results import write_results
 params = snakemake.params
 parts, further = ([open_summary(path) for path in paths] for paths in (snakemake.input.grid, snakemake.input.refined))
 models = models_of(params.model, params.a, params.blocks)
-numbers = all_laws.branch_numbers(parts, models, SearchSettings(**params.attractors))
+numbers = all_laws.branch_numbers(parts, models, SearchSettings(**params.attractors), snakemake.threads)
 on_grid = all_laws.merge(parts, numbers)
 write_results(on_grid, all_laws, snakemake.output[:2])
 numbers = all_laws.with_branches_between(numbers, further)

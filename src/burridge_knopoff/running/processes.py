@@ -11,24 +11,52 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing import get_context, parent_process
+from pathlib import Path
 from typing import Any
+
+from burridge_knopoff.running.kept import kept
 
 _LOG = logging.getLogger(__name__)
 
 
 @contextmanager
-def shared_out(processes: int) -> Iterator[Callable[..., list[Any]]]:
+def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
     """Give what calls a function for each item of one or several sequences, in so many processes at once.
+
+    folder : where results are kept for another run, see `running.kept`; None keeps none. What no call has asked for is
+        deleted at the end, from it and from the folders beside it
 
     `each(what, function, *sequences)` returns the list of results, and logs the CPU seconds that `what` has taken.
     Function, items and results have to be picklable, and a call must not rely on what another one has changed.
     """
+    asked: set[Path] = set()
+
+    def each(call: Callable[..., Any], what: str, function: Callable[..., Any], *items: Any) -> list[Any]:
+        done = list(call(partial(_timed, Path(folder, what) if folder else None, function), *items))
+        asked.update(path for *_, path, _ in done if path)
+        seconds = [spent for _, spent, *_ in done]
+        read = sum(was_read for *_, was_read in done)
+        text = f"{what}: {len(done)}, {sum(seconds):.1f} s, the longest {max(seconds, default=0.0):.1f} s"
+        if done:
+            _LOG.info("%s", text + f"; {read} kept from a run before" * bool(read))
+        return [result for result, *_ in done]
+
     if processes == 1:
-        yield partial(_each, map)
-        return
-    # A fresh interpreter would run the script of the caller once more.
-    with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
-        yield partial(_each, pool.map)
+        yield partial(each, map)
+    else:
+        # A fresh interpreter would run the script of the caller once more.
+        with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
+            yield partial(each, pool.map)
+    for path in Path(folder).parent.rglob("*") if folder else ():
+        if path.is_file() and path not in asked:
+            path.unlink(missing_ok=True)
+
+
+def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
+    """Return the result of a call, the CPU seconds that it took, the file that keeps it, and whether it was there."""
+    begin = time.process_time()
+    result, path, was_read = kept(folder, function, *items) if folder else (function(*items), None, False)
+    return result, time.process_time() - begin, path, was_read
 
 
 def _end_with_parent() -> None:
@@ -40,15 +68,3 @@ def _end_with_parent() -> None:
         os._exit(1)
 
     threading.Thread(target=end, daemon=True).start()
-
-
-def _each(call: Callable[..., Any], what: str, function: Callable[..., Any], *items: Any) -> list[Any]:
-    done = list(call(partial(_timed, function), *items))
-    seconds = [spent for _, spent in done]
-    _LOG.info("%s: %d, %.1f s, the longest %.1f s", what, len(done), sum(seconds), max(seconds, default=0.0))
-    return [result for result, _ in done]
-
-
-def _timed(function: Callable[..., Any], *items: Any) -> tuple[Any, float]:
-    begin = time.process_time()
-    return function(*items), time.process_time() - begin

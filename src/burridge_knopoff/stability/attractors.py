@@ -16,11 +16,11 @@ from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractor import Attractor, Symmetry, close_returns, pushed, spread
 from burridge_knopoff.stability.branch import leading_modulus
 from burridge_knopoff.stability.family import synchronized_orbit
-from burridge_knopoff.stability.labels import UNDETERMINED, label, label_together
+from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.motion import MotionKind, closed_kind
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
-from burridge_knopoff.stability.sampling import sample_states, sampled_states
+from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import (
     Returns,
@@ -124,11 +124,11 @@ class Search:
                 self.model, self.attractors, [starts[k] for k in undecided], self.tuning.quick * self.settings.transient
             )
             undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
-            if not self._discover([starts[k] for k in undecided]):
+            if not self.discover([starts[k] for k in undecided]):
                 break
         for _ in range(self.tuning.rounds):
             labels = self.known_labels(starts)
-            more = self._discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
+            more = self.discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
             if more:
                 continue
             if not check or (self._verified(starts, labels) and self._single(starts, labels)):
@@ -164,7 +164,7 @@ class Search:
                     self.attractors[index] = replace(self.attractors[index], radius=attractor.radius / 2)
         return verified
 
-    def _discover(self, starts: Sequence[Instant]) -> bool:
+    def discover(self, starts: Sequence[Instant]) -> bool:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
         known = len(self.attractors)
         for start in starts[: self.tuning.fruitless]:
@@ -180,45 +180,6 @@ class Search:
         """Return the index of the attractor, among those known, that each state reaches; −1 for none of them."""
         labels, _ = label(self.model, self.attractors, starts, self.settings.time_limit)
         return labels
-
-    def drawn_labels(self, start: str) -> np.ndarray:
-        """Return the index of the attractor that each state reaches which is drawn for the basin fractions.
-
-        They are others at each a, and not those from which attractors are looked for; but where one reaches none that
-        is known, it is looked for from there as well.
-        start : see `Model.begin`
-        """
-        settings, model = self.settings, self.model
-        seed = [settings.seed, int(np.float64(model.a).view(np.uint64))]
-        box = settings.position, settings.velocity
-        position, velocity = sample_states(model.blocks, settings.fraction_samples, *box, seed)
-        stuck = model.starts_stuck(position, start)
-        begun = position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
-        labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
-        self._spare_patience(*(values[: settings.samples] for values in begun))
-        while len(position):
-            if self.attractors:
-                labels, _ = label_together(model, self.attractors, *begun, settings.time_limit)
-            lost = np.flatnonzero(labels == UNDETERMINED)
-            if not self._discover([Instant(*(values[k] for values in begun)) for k in lost.tolist()]):
-                break
-        return labels
-
-    def _spare_patience(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
-        """Lessen the patience with attractors whose inner orbits a sample of states reaches much earlier.
-
-        Where chaos is a transient before the orbits, the last of the sample come late and nothing is spared.
-        """
-        inner = [midst(self.attractors, index, self.tolerance, self.tuning) for index in range(len(self.attractors))]
-        if not any(inner) or not len(position):
-            return
-        labels, times = label_together(self.model, self.attractors, position, velocity, stuck, self.settings.time_limit)
-        for index, orbits in enumerate(inner):
-            came = times[np.isin(labels, orbits)]
-            if len(came):
-                attractor = self.attractors[index]
-                patience = min(self.tuning.patience_margin * came.max(), attractor.patience)
-                self.attractors[index] = replace(attractor, patience=patience)
 
     def reach(self, start: Instant) -> int:
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.attractors import Search
+from burridge_knopoff.stability.fractions import fraction_labels
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
 from burridge_knopoff.stability.matching import branches, differing, outlines
@@ -74,23 +76,23 @@ def continue_attractors(
     start: str = "moving",
     tuning: Tuning = TUNING,
     processes: int = 1,
+    folder: str | Path | None = None,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
     settings, motion, starts, start, tuning : see `find_attractors`
     refine : how near in a a change is looked for
-    processes : that work at once; no result depends on how many
+    processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
+        them
 
     Raises ValueError if an initial state does not fit the models.
     """
-    with shared_out(processes) as each:
+    with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion, tuning) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        for giver, taker in (*pairwise(reversed(searches)), *pairwise(searches)):
-            _hand_on(giver, taker)
-        drawn = each("labelled for basin fractions", partial(_drawn, start=start), searches)
+        _hand_on(searches)
+        searches, samples = fraction_labels(searches, start, each)
         # The sets of attractors are complete now: what follows only reads them.
-        searches = [search for search, _ in drawn]
         steps = each("refined", partial(_step, refine=refine), searches[:-1], searches[1:])
         whole = [searches[0]]
         for step, search in zip(steps, searches[1:], strict=True):
@@ -108,7 +110,7 @@ def continue_attractors(
         *branches([search.model.a for search in whole], attractors, tuning.remembered * width, models[0].scale, tuning),
         [*(step.upward for step in steps), last],
         [first, *(step.downward for step in steps)],
-        [labels for _, labels in drawn],
+        samples,
     )
 
 
@@ -118,20 +120,18 @@ def _searched(search: Search, starts: Sequence[InitialState], start: str) -> Sea
     return search
 
 
-def _hand_on(giver: Search, taker: Search) -> None:
-    """Follow attractors to a neighbouring a at which they are not known, or not as they are."""
-    there = outlines(taker.attractors, taker.tuning)
-    lacking, _ = differing(outlines(giver.attractors, giver.tuning), there, taker.model.scale, taker.tuning)
-    if lacking:
-        # Whatever states have led to nothing: what attracts next to it is worth looking for.
-        taker.vain = 0
-        taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
-
-
-def _drawn(search: Search, start: str) -> tuple[Search, np.ndarray]:
-    """Label the states that are drawn for the basin fractions."""
-    labels = search.drawn_labels(start)
-    return search, labels
+def _hand_on(searches: Sequence[Search]) -> None:
+    """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are."""
+    shown = [outlines(search.attractors, search.tuning) for search in searches]
+    places = range(len(searches))
+    for giver, place in (*pairwise(reversed(places)), *pairwise(places)):
+        taker = searches[place]
+        lacking, _ = differing(shown[giver], shown[place], taker.model.scale, taker.tuning)
+        if lacking:
+            # Whatever states have led to nothing: what attracts next to it is worth looking for.
+            taker.vain = 0
+            taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
+            shown[place] = outlines(taker.attractors, taker.tuning)
 
 
 def _step(left: Search, right: Search, refine: Refine) -> _Step:

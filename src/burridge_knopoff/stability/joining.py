@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -10,8 +11,9 @@ from scipy.spatial import cKDTree
 
 from burridge_knopoff.laws.blend import blend
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import Returns, distance, visit
+from burridge_knopoff.stability.steady import Returns, is_near, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 #: {branch: the states on it}, with the models that they belong to by position: at each of them one state.
@@ -37,7 +39,7 @@ def follow_law(
             return None
         if before is not None:
             pairs = ((before.returns, found.returns), (found.returns, before.returns))
-            if min(distance(*pair, tuning.near_share) for pair in pairs) > tuning.same_set * model.scale:
+            if not any(is_near(*pair, tuning.same_set * model.scale, tuning.near_share) for pair in pairs):
                 return None
         before, start = found, found.instant()
     return before
@@ -50,28 +52,37 @@ def joined(
     second: States,
     settings: SearchSettings,
     tuning: Tuning = TUNING,
+    *,
+    processes: int = 1,
 ) -> dict[int, int]:
     """Return {branch under the second law: branch under the first} of those that turn into each other.
 
     firsts, seconds : the models under both laws at the same values of a
     first, second : states on the branches of each, by branch and by the position of their model
     settings : how long a motion is followed
+    processes : that work at once; no result depends on how many
 
     Each branch of the first law is followed at a few of the values at which it exists; it is one with the branch of the
     second law that it comes to at most of them. Where several come to one, it is the one with the longest range. The
     synchronized branch, 0, is one under all laws.
     """
     numbers = [sorted(n for n in states if n != 0) for states in (first, second)]
-    arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
+    tried = []
     for row, number in enumerate(numbers[0]):
         places = sorted(first[number])
         chosen = np.linspace(0, len(places) - 1, min(tuning.law_tries, len(places))).round().astype(int)
-        for k in (places[i] for i in chosen):
-            found = follow_law(firsts[k], seconds[k], first[number][k], settings, tuning)
-            near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
-            best = min(near, key=lambda n: near[n], default=None)
-            if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
-                arrivals[row, numbers[1].index(best)] += len(places) / len(chosen)
+        tried += [(row, places[i], first[number][places[i]], len(places) / len(chosen)) for i in chosen]
+    models = ([law[k] for _, k, *_ in tried] for law in (firsts, seconds))
+    starts = [start for *_, start, _ in tried]
+    with shared_out(processes) as each:
+        follow = partial(follow_law, settings=settings, tuning=tuning)
+        followed = each("turned into the other law", follow, *models, starts)
+    arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
+    for (row, k, _, weight), found in zip(tried, followed, strict=True):
+        near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
+        best = min(near, key=lambda n: near[n], default=None)
+        if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
+            arrivals[row, numbers[1].index(best)] += weight
     pairs = zip(*linear_sum_assignment(arrivals, maximize=True), strict=True)
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 

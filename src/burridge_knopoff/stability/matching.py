@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from burridge_knopoff.stability.attractor import Attractor, Symmetry
 from burridge_knopoff.stability.labels import UNDETERMINED
+from burridge_knopoff.stability.steady import distance
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 
@@ -44,29 +45,25 @@ class Outline:
         """The same of the mirror image."""
         return _thinned(self.attractor.motion.mirror_returns, self.points)
 
-    def distances(self, other: Outline, share: float) -> tuple[float, float]:
+    def distances(self, other: Outline, share: float, bound: float = np.inf) -> tuple[float, float]:
         """Return how far the set, and its mirror image, is from another: the lesser of both directed distances.
 
         share : of the returns that must lie near the other set
+        bound : what is farther may be given as infinitely far
 
         An orbit that lies on a torus, or a window in the midst of chaos, is near it although most of that is not near
         the orbit: so the lesser one tells what follows what along a.
         """
-        own = min(_directed(self.own, other.tree, share), _directed(other.own, self.tree, share))
+        own = min(distance(self.own, other.tree, share, bound), distance(other.own, self.tree, share, bound))
         if not len(self.mirrored) or not len(other.mirrored):
             return own, np.inf
-        mirrored = min(_directed(self.mirrored, other.tree, share), _directed(other.mirrored, self.tree, share))
-        return own, mirrored
+        pairs = (self.mirrored, other.tree), (other.mirrored, self.tree)
+        return own, min(distance(*pair, share, bound) for pair in pairs)
 
 
 def _thinned(returns: np.ndarray, points: int) -> np.ndarray:
     chosen = np.linspace(0, len(returns) - 1, min(points, len(returns))) if len(returns) else np.zeros(0)
     return returns[chosen.astype(int)]
-
-
-def _directed(points: np.ndarray, tree: cKDTree, share: float) -> float:
-    nearest, _ = tree.query(points, p=np.inf)
-    return float(np.quantile(nearest, share))
 
 
 def outlines(attractors: Sequence[Attractor], tuning: Tuning = TUNING) -> dict[int, Outline]:
@@ -96,7 +93,7 @@ def matched(
         if all(synchronized):
             cost[row, column] = -largest
         elif not any(synchronized):
-            cost[row, column] = min(largest, *one.distances(other, tuning.near_share))
+            cost[row, column] = min(largest, *one.distances(other, tuning.near_share, largest))
     pairs = zip(*linear_sum_assignment(cost), strict=True)
     return {second[row]: first[column] for row, column in pairs if cost[row, column] < largest}
 

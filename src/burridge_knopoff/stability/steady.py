@@ -213,10 +213,21 @@ def _measure(
     )
 
 
-def distance(first: np.ndarray, second: np.ndarray, share: float = TUNING.near_share) -> float:
-    """Return how far the returns of the first set lie from the second: the distance within which that share does."""
-    nearest, _ = cKDTree(second).query(first, p=np.inf)
-    return float(np.quantile(nearest, share))
+def distance(
+    first: np.ndarray, second: np.ndarray | cKDTree, share: float = TUNING.near_share, bound: float = np.inf
+) -> float:
+    """Return how far the returns of the first set lie from the second: the distance within which that share does.
+
+    bound : what is farther may be given as infinitely far: neighbours beyond it are hardly looked for
+    """
+    tree = second if isinstance(second, cKDTree) else cKDTree(second)
+    nearest = _nearest(first, tree, bound)
+    near = int(np.count_nonzero(np.isfinite(nearest)))
+    # The quantile lies between two of the sorted distances; only where the bound parts these does their size matter.
+    below = math.floor(share * (len(first) - 1)) + 1
+    if near < below:
+        return np.inf
+    return float(np.quantile(_nearest(first, tree, np.inf) if near == below < len(first) else nearest, share))
 
 
 def _spacing(returns: np.ndarray, share: float) -> float:
@@ -235,22 +246,19 @@ def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
 
 
 def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = TUNING.near_share) -> bool:
-    """Tell whether `distance(first, second)` is at most the limit, without looking for neighbours beyond it."""
-    near = int(np.count_nonzero(np.isfinite(_nearest(first, second, limit))))
-    # The quantile lies between two of the sorted distances; only where the limit parts these does their size matter.
-    below = math.floor(share * (len(first) - 1)) + 1
-    return near > below or (near == below and distance(first, second, share) <= limit)
+    """Tell whether `distance(first, second)` is at most the limit."""
+    return distance(first, second, share, limit) <= limit
 
 
 def least_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
     """Return the distance between the two nearest returns of two sets; infinite if it is beyond the bound."""
-    return float(_nearest(first, second, bound).min())
+    return float(_nearest(first, cKDTree(second), bound).min())
 
 
-def _nearest(first: np.ndarray, second: np.ndarray, bound: float) -> np.ndarray:
-    """Return how far each of the first returns is from the nearest second one; infinite beyond the bound."""
+def _nearest(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
+    """Return how far each of the first returns is from the nearest in a tree; infinite beyond the bound."""
     # The tree leaves out what lies just at the bound. Where two sets are far apart it hardly looks.
-    nearest, _ = cKDTree(second).query(first, p=np.inf, distance_upper_bound=np.nextafter(bound, np.inf))
+    nearest, _ = tree.query(first, p=np.inf, distance_upper_bound=np.nextafter(bound, np.inf))
     return nearest
 
 

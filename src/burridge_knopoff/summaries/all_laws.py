@@ -56,12 +56,12 @@ def merge(
 
 
 def branch_numbers(
-    parts: Sequence[xarray.Dataset], models: Sequence[Model], settings: SearchSettings
+    parts: Sequence[xarray.Dataset], models: Sequence[Model], settings: SearchSettings, processes: int = 1
 ) -> list[dict[int, int]]:
     """Return, for each law, the numbers of its branches: what turns into a branch of the first law takes its number.
 
     parts : of the laws, see `one_law`; models : of each law, at any a
-    settings : of the search
+    settings : of the search; processes : that work at once
 
     All others have a number of their own.
     """
@@ -70,7 +70,7 @@ def branch_numbers(
     for part, model in zip(parts[1:], models[1:], strict=True):
         grid = part["a"].values.tolist()
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
-        renamed = joined(firsts, seconds, first, _states(part, model), settings)
+        renamed = joined(firsts, seconds, first, _states(part, model), settings, processes=processes)
         numbers.append(_with_others(renamed, part, numbers))
     return numbers
 

@@ -1,0 +1,69 @@
+"""Results of long calls, kept in a folder: a run that was killed, or has a little more to do, does only what is left.
+
+A result is known by all that decides it: the code of the function and of what that imports, the versions of NumPy and
+SciPy, and the arguments by value.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Callable, Iterator
+from dataclasses import fields, is_dataclass
+from functools import partial
+from pathlib import Path
+from types import BuiltinFunctionType, FunctionType
+from typing import Any
+
+import numpy as np
+import scipy
+
+from burridge_knopoff.provenance.files import write_whole
+from burridge_knopoff.provenance.sources import source_fingerprint
+
+
+def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
+    """Return the result of a call, the file that keeps it, and whether it was read from there.
+
+    A file that is damaged counts as none. Raises OSError, one line, if the file cannot be written.
+    """
+    digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
+    for part in _parts([function, *items]):
+        digest.update(part)
+    path = folder / digest.hexdigest()[:32]
+    try:
+        check, content = path.read_bytes().split(b"\n", 1)
+        if check == _check(content):
+            return pickle.loads(content), path, True
+    except (OSError, ValueError):
+        pass
+    result = function(*items)
+    content = pickle.dumps(result)
+    write_whole(path, lambda name: Path(name).write_bytes(_check(content) + b"\n" + content))
+    return result, path, False
+
+
+def _check(content: bytes) -> bytes:
+    return hashlib.sha256(content).hexdigest().encode()
+
+
+def _parts(value: Any) -> Iterator[bytes]:
+    """Return what two equal values, and no others, have alike, whatever else they hold or share."""
+    match value:
+        case np.ndarray():
+            yield f"{value.dtype}{value.shape}".encode()
+            yield value.tobytes()
+        case list() | tuple():
+            yield f"{len(value)} items".encode()
+            for item in value:
+                yield from _parts(item)
+        case partial():
+            yield from _parts([value.func, *value.args, *sorted(value.keywords.items())])
+        case FunctionType() | BuiltinFunctionType():
+            yield f"{value.__qualname__} {source_fingerprint(value.__module__)}".encode()
+        case _ if is_dataclass(value):
+            yield type(value).__qualname__.encode()
+            for item in fields(value):
+                yield from _parts(getattr(value, item.name))
+        case _:
+            yield repr(value).encode()

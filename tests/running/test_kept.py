@@ -1,0 +1,105 @@
+"""Results that are kept: taken again only where all that decides them is the same."""
+
+import dataclasses
+import os
+from functools import partial
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.running import kept as module
+from burridge_knopoff.running.kept import kept
+from burridge_knopoff.running.processes import shared_out
+
+
+@dataclasses.dataclass
+class Item:
+    values: object
+
+
+def first(*items, more=0):
+    return items[0]
+
+
+def second(*items):
+    return items[0]
+
+
+MODEL = Model(Chain(3), law_of("nonlinear", 0.08))
+CALLS = [
+    (first, 1),
+    (second, 1),
+    (first, 1, 2),
+    (first, [1, 2]),
+    (first, (1, [2])),
+    (first, 1.0),
+    (first, np.array([1.0, 0.0])),
+    (first, np.array([1.0, -0.0])),
+    (first, np.array([[1.0, 0.0]])),
+    (first, np.array([1.0, 0.0], dtype="f4")),
+    (first, Item(np.zeros(2))),
+    (first, Item(np.zeros(3))),
+    (partial(first, more=1), 1),
+    (partial(first, more=2), 1),
+    (first, MODEL),
+    (first, MODEL.at(0.0800000000000001)),
+    (first, dataclasses.replace(MODEL, contact="symmetric")),
+]
+
+
+def test_another_call_has_another_file(tmp_path):
+    paths = [kept(tmp_path, *call)[1] for call in CALLS]
+    assert len(set(paths)) == len(CALLS) == len(list(tmp_path.iterdir()))
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_a_call_is_made_once(tmp_path, call):
+    result, path, was_read = kept(tmp_path, *call)
+    again, same, was_read_again = kept(tmp_path, *call)
+    assert (path, was_read, was_read_again) == (same, False, True)
+    np.testing.assert_equal(repr(again), repr(result))
+
+
+def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
+    """What has been looked up before, or is one object with another, makes no other call."""
+    asked = MODEL.at(0.05)
+    path = kept(tmp_path, first, [asked, asked])[1]
+    assert asked.sliding_offset.shape == (3,)
+    assert kept(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
+
+
+@pytest.mark.parametrize("change", ["source", "numpy"])
+def test_other_code_is_another_call(tmp_path, monkeypatch, change):
+    kept(tmp_path, first, 1)
+    if change == "source":
+        monkeypatch.setattr(module, "source_fingerprint", lambda name: "another")
+    else:
+        monkeypatch.setattr(np, "__version__", "0.1")
+    assert not kept(tmp_path, first, 1)[2]
+
+
+@pytest.mark.parametrize("damage", [b"", b"no line", b"0" * 64 + b"\nother"])
+def test_a_damaged_file_counts_as_none(tmp_path, damage):
+    path = kept(tmp_path, first, 7)[1]
+    path.write_bytes(damage)
+    assert kept(tmp_path, first, 7) == (7, path, False)
+    assert kept(tmp_path, first, 7) == (7, path, True)
+
+
+def told(number):
+    return number, os.getpid()
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
+    """Also what other settings have left beside it; but nothing if a call has failed."""
+    for folder, numbers in (("before", [1]), ("now", [1, 2])):
+        with shared_out(processes, tmp_path / folder) as each:
+            each("told", told, numbers)
+    assert not any(path.is_file() for path in (tmp_path / "before").rglob("*"))
+    with pytest.raises(ZeroDivisionError), shared_out(processes, tmp_path / "now") as each:
+        each("fails", divmod, [1], [0])
+    with shared_out(processes, tmp_path / "now") as each:
+        assert [pid != os.getpid() for _, pid in each("told", told, [2])] == [processes == 2]
+    assert len([path for path in tmp_path.rglob("*") if path.is_file()]) == 1
