@@ -18,7 +18,7 @@ def kept_by_law(wildcards):
         keys("initial", "start", "attractors", "refine"),
         model_config([wildcards.law]),
         motion_config(),
-        sources("attractors_of_law"),
+        source_fingerprint("burridge_knopoff.stability.continuation"),
     ]
     digest = hashlib.sha256(json.dumps(decides).encode()).hexdigest()[:16]
     return f".snakemake/kept/{STUDY.name}/{wildcards.law}/{digest}"

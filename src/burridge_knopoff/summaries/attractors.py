@@ -134,15 +134,15 @@ def _reached(found: Continuation, states: Sequence[InitialState], time_limit: fl
     for k, place in enumerate(found.grid):
         model = found.models[place]
         for i, contact in enumerate(CONTACTS):
-            for j, start in enumerate(STARTS):
-                other = replace(model, contact=contact)
-                allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
-                starts = [other.begin(states[n], start) for n in allowed]
-                reached, _ = label(other, found.attractors[place], starts, time_limit)
-                for n, index in zip(allowed, reached, strict=True):
-                    if index != UNDETERMINED:
-                        values["initial_branch"][i, j, n, k] = found.branch[place][index]
-                        values["initial_side"][i, j, n, k] = found.side[place][index]
+            other = replace(model, contact=contact)
+            allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
+            cases = [(j, n) for j in range(len(STARTS)) for n in allowed]
+            starts = [other.begin(states[n], STARTS[j]) for j, n in cases]
+            reached, _ = label(other, found.attractors[place], starts, time_limit)
+            for (j, n), index in zip(cases, reached, strict=True):
+                if index != UNDETERMINED:
+                    values["initial_branch"][i, j, n, k] = found.branch[place][index]
+                    values["initial_side"][i, j, n, k] = found.side[place][index]
     return values
 
 
