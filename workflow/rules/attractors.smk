@@ -1,6 +1,4 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
-import hashlib
-import json
 
 from snakemake.exceptions import WorkflowError
 
@@ -10,18 +8,6 @@ try:
 except WorkflowError:
     # Without a number of cores, as for --unlock, no job is run.
     SHARED_CORES = 1
-
-
-def kept_by_law(wildcards):
-    """Return where the search under a law keeps what it finds, for a run with other values of a, or after a kill."""
-    decides = [
-        keys("initial", "start", "attractors", "refine"),
-        model_config([wildcards.law]),
-        motion_config(),
-        source_fingerprint("burridge_knopoff.stability.continuation"),
-    ]
-    digest = hashlib.sha256(json.dumps(decides).encode()).hexdigest()[:16]
-    return f".snakemake/kept/{STUDY.name}/{wildcards.law}/{digest}"
 
 
 OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]

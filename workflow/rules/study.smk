@@ -1,5 +1,7 @@
 # The study that the config describes, where its results lie, and what rules of several stages use.
 import copy
+import hashlib
+import json
 import os
 import shlex
 import subprocess
@@ -188,3 +190,15 @@ def proved_config():
 def motion_config():
     """Return how kinds of motion are told."""
     return {**STUDY.config["motion"], **keys("synchronization_threshold")}
+
+
+def kept_by_law(wildcards):
+    """Return where the search under a law keeps what it finds, for a run with other values of a, or after a kill."""
+    decides = [
+        keys("initial", "start", "attractors", "refine"),
+        model_config([wildcards.law]),
+        motion_config(),
+        source_fingerprint("burridge_knopoff.stability.continuation"),
+    ]
+    digest = hashlib.sha256(json.dumps(decides).encode()).hexdigest()[:16]
+    return f".snakemake/kept/{STUDY.name}/{wildcards.law}/{digest}"
