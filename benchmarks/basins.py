@@ -13,8 +13,6 @@ import time
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from pathlib import Path
-
 import numpy as np
 from measure import cpu_times, print_table, verdict
 
@@ -24,7 +22,6 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.basins import pixel_centres, plane
 from burridge_knopoff.stability.labels import label_states
 
-REPOSITORY = Path(__file__).resolve().parent.parent
 A = 0.08
 LIMIT_MINUTES = 10.0
 SAMPLE_PIXELS = 64

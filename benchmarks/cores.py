@@ -13,10 +13,9 @@ from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
 
-from progress import planned
+from progress import planned, recorded
 
 from snakemake_logger_plugin_study.forecast import schedule
-from snakemake_logger_plugin_study.past import read_record
 
 LONG = re.compile("(.+)_of_law (.+)")
 PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s$", re.MULTILINE)
@@ -52,9 +51,7 @@ def on(cores, jobs, seconds, parts):
 def main():
     """Print the table of each study."""
     for results in sys.argv[1:]:
-        record = read_record(results)
-        if not record:
-            sys.exit(f"{results}: no record of a run in it; snakemake writes it")
+        record = recorded(results)
         jobs, seconds = planned(record)
         if any(job.threads > 1 for job in jobs.values()):
             sys.exit(f"{results}: its long jobs have shared their work already: run it with -c2 or less")

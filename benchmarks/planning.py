@@ -12,17 +12,14 @@ import argparse
 import math
 import statistics
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 import yaml
 from measure import print_table
-from process import run
+from process import BIN, REPOSITORY, SNAKEMAKE, run
 
-REPOSITORY = Path(__file__).resolve().parent.parent
 PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm" / "config.yaml"
-BIN = Path(sys.executable).parent
 #: Two laws and two initial states.
 POINTS_OF_A_VALUE = 4
 STEP = 1e-6
@@ -39,15 +36,7 @@ FILES_OF_A_POINT = 4
 
 def planned(folder: Path, target: str) -> tuple[float, float]:
     """Return CPU time in seconds and peak memory in MB of a dry run."""
-    command = [
-        str(BIN / "snakemake"),
-        "-n",
-        "-s",
-        str(REPOSITORY / "workflow/Snakefile"),
-        "-d",
-        str(folder),
-        target,
-    ]
+    command = [*SNAKEMAKE, "-n", "-d", str(folder), target]
     # A plan of many jobs is a long text.
     silent = ["sh", "-c", 'exec "$@" >/dev/null 2>&1', "sh"]
     used = run([*silent, *command, "--configfile", str(folder / "study.yaml")])

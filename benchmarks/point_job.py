@@ -11,10 +11,9 @@ import argparse
 import statistics
 import sys
 import tempfile
-from pathlib import Path
 
 from measure import print_table, verdict
-from process import AS_TYPED, IMPORTS, ONE_THREAD, run
+from process import AS_TYPED, BIN, IMPORTS, ONE_THREAD, run
 
 LAWS = ("linearized", "nonlinear")
 RATIO_LIMIT = 1.5
@@ -26,8 +25,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("--pairs", type=int, default=15, help="rounds (default: %(default)s)")
     pairs = parser.parse_args().pairs
-    # Beside the interpreter as it was called: a virtual environment's interpreter is a link out of it.
-    bk = Path(sys.executable).parent / "bk"
+    bk = BIN / "bk"
     imports = [sys.executable, "-c", IMPORTS]
     rows = []
     with tempfile.TemporaryDirectory() as folder:

@@ -1,11 +1,20 @@
-"""Runs a process to its end and returns what it has used."""
+"""Programs of this checkout, and what processes have used."""
 
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+#: Beside the interpreter as it was called: a virtual environment's interpreter is a link out of it.
+BIN = Path(sys.executable).parent
+SNAKEFILE = REPOSITORY / "workflow/Snakefile"
+SNAKEMAKE = [str(BIN / "snakemake"), "-s", str(SNAKEFILE)]
 
 #: As typed at a prompt: importing NumPy starts a thread of the linear-algebra library for every core.
 AS_TYPED = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
@@ -33,3 +42,9 @@ def run(command: Sequence[str], environment: Mapping[str, str] = AS_TYPED) -> Us
         raise subprocess.CalledProcessError(process.returncode, command)
     # Linux counts ru_maxrss in KiB.
     return Usage(used.ru_utime + used.ru_stime, used.ru_maxrss * 1024 / 1e6)
+
+
+def children_cpu() -> float:
+    """Return the user and system time in seconds of all processes run so far, theirs included."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime

@@ -19,6 +19,11 @@ from snakemake_logger_plugin_study.past import read_record
 FACTOR, MOMENTS, LEAST = 1.5, 400, 10.0
 
 
+def recorded(results):
+    """Return the record of the last run of a study; end the program, with a line, if there is none."""
+    return read_record(results) or sys.exit(f"{results}: no record of a run in it; snakemake writes it")
+
+
 def planned(record):
     """Return the jobs of a record by number, and the seconds that each took."""
     names = ("name", "kind", "work", "threads", "priority")
@@ -59,9 +64,7 @@ def main():
     given = parser.parse_args()
     worst = 0.0
     for results in given.results:
-        record = read_record(results)
-        if not record:
-            sys.exit(f"{results}: no record of a run in it; snakemake writes it")
+        record = recorded(results)
         moments = list(told(record, given.cores))
         took = moments[0][2]
         counted = [ratio(*pair) for moment, *pair in moments if moment >= min(60.0, took / 10)]

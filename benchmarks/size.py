@@ -8,7 +8,6 @@ the wall time would tell of other programs too. A second run has nothing to do; 
 from __future__ import annotations
 
 import argparse
-import resource
 import subprocess
 import sys
 import tempfile
@@ -18,11 +17,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from measure import print_table, verdict
-from process import ONE_THREAD
-from stages import jobs
+from process import BIN, ONE_THREAD, SNAKEMAKE, children_cpu
+from stages import MB, rules_of
 
-REPOSITORY = Path(__file__).resolve().parent.parent
-BIN = Path(sys.executable).parent
 MEMORY_LIMIT_MB = 1500.0
 COST_LIMIT = 1.3
 CHECK_LIMIT = 20.0
@@ -65,8 +62,7 @@ def config_of(points: int) -> str:
 
 def run(command: list[str], folder: Path) -> Run:
     """Run a command to its end, looking at the memory of its process now and then."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    begin, peak = time.perf_counter(), 0.0
+    cpu, begin, peak = -children_cpu(), time.perf_counter(), 0.0
     with tempfile.TemporaryFile() as said:
         process = subprocess.Popen(command, cwd=folder, env=ONE_THREAD, stdout=said, stderr=said)
         while process.poll() is None:
@@ -80,30 +76,20 @@ def run(command: list[str], folder: Path) -> Run:
         if process.returncode:
             said.seek(0)
             sys.exit(f"{' '.join(command)} failed:\n{said.read().decode()[-4000:]}")
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Run(wall, cpu, peak * 1024 / 1e6)
+    return Run(wall, cpu + children_cpu(), peak * 1024 / 1e6)
 
 
 def measure(points: int, folder: Path, cores: int) -> tuple[list[object], dict[str, tuple[float, float]]]:
     """Run a study of that many points; return its row of the table and {rule: CPU s, largest MB}."""
     (folder / "size.yaml").write_text(config_of(points), encoding="utf-8")
-    command = [
-        str(BIN / "snakemake"),
-        f"-c{cores}",
-        "-s",
-        str(REPOSITORY / "workflow/Snakefile"),
-        "--configfile",
-        "size.yaml",
-    ]
+    command = [*SNAKEMAKE, f"-c{cores}", "--configfile", "size.yaml"]
     plan = run([*command, "-n", "--quiet"], folder)
     whole = run(command, folder)
     again = run(command, folder)
     check = run([str(BIN / "bk"), "check", "results/size"], folder)
     size = sum(path.stat().st_size for path in folder.joinpath("results/size/points").rglob("*.nc")) / 1e6
     rules: dict[str, tuple[float, float]] = defaultdict(lambda: (0.0, 0.0))
-    for rule, values in jobs(folder / "results/size/benchmarks").items():
-        rules[rule] = (sum(value[1] for value in values), max(value[2] for value in values))
+    rules.update((rule.name, (rule.cpu, rule.memory * MB)) for rule in rules_of(folder / "results/size"))
     row = [points, f"{plan.wall:.1f}", f"{whole.wall / 60:.1f}", f"{whole.cpu / points:.3f}", f"{whole.memory:.0f}"]
     row += [f"{again.wall:.1f}", f"{check.wall:.1f}", f"{size:.0f}"]
     print(f"{points} points: {whole.wall:.0f} s", file=sys.stderr)

@@ -17,8 +17,8 @@ import time
 from pathlib import Path
 
 from measure import print_table
+from process import REPOSITORY, SNAKEMAKE
 
-REPOSITORY = Path(__file__).resolve().parent.parent
 PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm"
 CONFIG = """
 study: plugins
@@ -36,12 +36,7 @@ def wall(options: list[str], config: str) -> float:
     """Return the wall time in seconds of all points of a config."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "study.yaml").write_text(config)
-        command = [
-            str(Path(sys.executable).parent / "snakemake"),
-            "-s",
-            str(REPOSITORY / "workflow/Snakefile"),
-            *options,
-        ]
+        command = [*SNAKEMAKE, *options]
         begin = time.perf_counter()
         run = subprocess.run(
             [*command, "--configfile", "study.yaml", "--", "points"], cwd=folder, capture_output=True, text=True

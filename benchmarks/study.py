@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import re
-import resource
 import shutil
 import statistics
 import subprocess
@@ -21,9 +20,8 @@ import time
 from pathlib import Path
 
 from measure import print_table, verdict
-from process import AS_TYPED, IMPORTS, ONE_THREAD
+from process import AS_TYPED, BIN, IMPORTS, ONE_THREAD, REPOSITORY, SNAKEFILE, children_cpu
 
-REPOSITORY = Path(__file__).resolve().parent.parent
 RATIO_LIMIT = 1.5
 #: All that the default study makes from its point files, but figures.
 TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
@@ -49,15 +47,9 @@ def make_baseline(folder: Path, made: Path) -> Path:
     return folder / "workflow/Snakefile"
 
 
-def children_cpu() -> float:
-    """Return the user and system time in seconds of all processes run so far, theirs included."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def run_study(snakefile: Path, folder: Path, cores: int, environment: dict[str, str]) -> tuple[float, float, int]:
     """Run a workflow in an empty folder; return its wall time and CPU time in seconds and its number of jobs."""
-    command = [str(Path(sys.executable).parent / "snakemake"), f"-c{cores}", "-s", str(snakefile), "-d", str(folder)]
+    command = [str(BIN / "snakemake"), f"-c{cores}", "-s", str(snakefile), "-d", str(folder)]
     command += TARGETS
     folder.mkdir()
     cpu = -children_cpu()
@@ -87,7 +79,7 @@ def main() -> None:
         baseline = make_baseline(folder / "workflow_of_imports", folder / "study_0")
         for number in range(options.pairs):
             for name, snakefile, runs in (
-                ("study", REPOSITORY / "workflow/Snakefile", studies),
+                ("study", SNAKEFILE, studies),
                 ("imports", baseline, baselines),
             ):
                 target = folder / f"{name}_{number}"

@@ -1,11 +1,12 @@
-"""Run time and memory of each stage of a study."""
+"""Run time and memory of each stage of a study, from the files that Snakemake's benchmark directive writes."""
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-
-from burridge_knopoff.study.job_costs import read_costs
 
 #: The report cannot tell of the job that is writing it.
 SKIPPED = ("report",)
@@ -30,20 +31,34 @@ class Stage:
     memory: float = 0.0
 
 
-def read_stages(folder: str | Path) -> list[Stage]:
+def read_stages(
+    folder: str | Path, *, joined: Mapping[str, str] = JOINED, skipped: Collection[str] = SKIPPED
+) -> list[Stage]:
     """Return the stages of a folder of benchmark files, the longest wall time first; none if there is no folder.
 
     All files of a subfolder are one stage, and so is the file that has its name.
+
+    joined : {first letters of files that are one stage: its name}; skipped : names of stages that are left out
     """
     stages: dict[str, Stage] = {}
-    for job in read_costs(sorted(Path(folder).rglob("*.tsv"))):
-        name = job.path.relative_to(folder).with_suffix("").parts[0]
-        name = next((whole for start, whole in JOINED.items() if name.startswith(start)), name)
-        if name not in SKIPPED:
+    for path in sorted(Path(folder).rglob("*.tsv")):
+        name = path.relative_to(folder).with_suffix("").parts[0]
+        name = next((whole for start, whole in joined.items() if name.startswith(start)), name)
+        for wall, cpu, memory in _costs(path) if name not in skipped else ():
             stage = stages.setdefault(name, Stage(name))
             stage.jobs += 1
-            stage.wall += job.wall
-            stage.cpu += job.cpu
-            stage.cpu_jobs += job.cpu > 0.0
-            stage.memory = max(stage.memory, job.memory)
+            stage.wall += wall
+            stage.cpu += cpu
+            stage.cpu_jobs += cpu > 0.0
+            stage.memory = max(stage.memory, memory)
     return sorted(stages.values(), key=lambda stage: (-stage.wall, stage.name))
+
+
+def _costs(path: Path) -> Iterator[tuple[float, float, float]]:
+    """Yield wall time, CPU time and MB of the jobs in a file; what cannot be read is left out: it is no result."""
+    with suppress(OSError, ValueError, KeyError, csv.Error), path.open(encoding="utf-8") as file:
+        for row in csv.DictReader(file, delimiter="\t", restval=""):
+            # A job that ends before the first look at it has NA or -.
+            rest = (row.get(key, "") for key in ("cpu_time", "max_rss"))
+            cpu, memory = (float(text) if text[:1].isdigit() else 0.0 for text in rest)
+            yield float(row["s"]), cpu, memory
