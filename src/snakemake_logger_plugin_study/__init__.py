@@ -20,12 +20,13 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 from burridge_knopoff.study import ConfigError
 from burridge_knopoff.study.job_log import failure
+from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import check_command_line, given_cores, reworded
 from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Job, Rule, Tally, downstream
-from snakemake_logger_plugin_study.wording import cost, job_name, jobs, time_left
+from snakemake_logger_plugin_study.wording import cost, job_name, time_left
 
 #: Events that the display does not replace; -p and --verbose bring the others back.
 _KEPT = (
@@ -143,7 +144,7 @@ class LogHandler(LogHandlerBase):
                 *stages, total = self._tally.counts()
                 left = PLAN.forecast.time_left(0.0, self._tally.cores) if PLAN.forecast else None
                 words = ", ".join(f"{stage.name} {stage.total}" for stage in stages)
-                self._say("; ".join(filter(None, [f"{jobs(total.total)}: {words}", time_left(left)])))
+                self._say("; ".join(filter(None, [f"{counted(total.total, 'job')}: {words}", time_left(left)])))
         if self._quiet:
             return
         if self._text.can_color_tty():

@@ -11,8 +11,9 @@ import numpy as np
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
 from burridge_knopoff.study.job_log import failure
+from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.tally import DONE, FAILED, Tally
-from snakemake_logger_plugin_study.wording import elapsed, jobs
+from snakemake_logger_plugin_study.wording import elapsed
 
 #: Verdicts whose claims are named, not only counted.
 NAMED_VERDICTS = (FAILS, CONVENTION)
@@ -41,7 +42,7 @@ def closing_lines(
     made = _made(results, [path for job in done for path in job.output])
     if failed or missed or stopped:
         counts = ((len(failed), "failed"), (missed, "did not run"))
-        reasons = [f"{jobs(count)} {what}" for count, what in counts if count]
+        reasons = [f"{counted(count, 'job')} {what}" for count, what in counts if count]
         lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons) or 'not at its end'}"]
         told = sorted((job.name, job.log) for job in failed)
         lines += [failure(*job) for job in told[:MOST_FAILED]]

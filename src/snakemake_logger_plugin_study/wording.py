@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.forecast import Cost
 from snakemake_logger_plugin_study.tally import FAILED, Tally
 
@@ -30,10 +31,7 @@ def elapsed(seconds: float) -> str:
 
 def time_left(seconds: float | None) -> str:
     """Return how long a run still takes, or "" if it is not known."""
-    if seconds is None:
-        return ""
-    words = f"{duration(seconds)} left"
-    return words if seconds < 10 else f"about {words}"
+    return "" if seconds is None else f"{about(seconds)} left"
 
 
 def about(seconds: float) -> str:
@@ -41,12 +39,11 @@ def about(seconds: float) -> str:
     return duration(seconds) if seconds < 10 else f"about {duration(seconds)}"
 
 
-def cost(forecast: Cost, cores: float) -> str:
+def cost(forecast: Cost, cores: int) -> str:
     """Return what a run would cost in a line."""
-    on = f"{cores:g} core{'' if cores == 1 else 's'}"
     return (
-        f"a run takes {about(forecast.seconds)} on {on}: {about(forecast.cpu)} of CPU time, and {size(forecast.size)} "
-        "of disk"
+        f"a run takes {about(forecast.seconds)} on {counted(cores, 'core')}: {about(forecast.cpu)} of CPU time, "
+        f"and {size(forecast.size)} of disk"
     )
 
 
@@ -69,11 +66,6 @@ def progress_line(tally: Tally, now: float) -> str:
     parts.append(f"all {total.done} of {total.total} ({percent} %)")
     parts += [words for words in (failures(tally), time_left(tally.time_left(now))) if words]
     return ", ".join(parts)
-
-
-def jobs(number: int) -> str:
-    """Return 1 job, 2 jobs."""
-    return f"{number} job{'' if number == 1 else 's'}"
 
 
 def job_name(rule: str, wildcards: Mapping[str, object]) -> str:

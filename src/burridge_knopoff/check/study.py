@@ -16,6 +16,7 @@ from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.study import ConfigError, Study, all_points
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.words import counted
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries.points import check_run
 
@@ -74,11 +75,15 @@ class Check:
         lines += [f"unknown  {path}: no point of a study has that name" for path in self.unknown]
         lines += [line for line in (self.changed, self.note) if line]
         sums = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
-        lines.append(f"{self.results}: {_many(self.points, 'point')} and {_many(self.summaries, 'other file')}: {sums}")
+        lines.append(
+            f"{self.results}: {counted(self.points, 'point')} and {counted(self.summaries, 'other file')}: {sums}"
+        )
         if self.unasked:
-            lines.append(f"not counted: {_many(self.unasked, 'run')} of other solvers, none of which was asked for yet")
+            lines.append(
+                f"not counted: {counted(self.unasked, 'run')} of other solvers, none of which was asked for yet"
+            )
         if self.leftovers or self.leftover_logs:
-            files = _many(len(self.leftovers) + self.leftover_logs, "file")
+            files = counted(len(self.leftovers) + self.leftover_logs, "file")
             lines.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {self.results}")
         if self.paths:
             lines.append(f"remake: {self._remake()}")
@@ -98,10 +103,6 @@ class Check:
 def root_of(results: Path) -> Path:
     """Return the folder in which `snakemake` was called for results/<study>."""
     return results.absolute().parents[1]
-
-
-def _many(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def check_study(results: str | Path) -> Check:

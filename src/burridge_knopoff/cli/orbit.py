@@ -73,13 +73,14 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Return an orbit in lines, at most so many of its events among them."""
     from burridge_knopoff.show.words import table
     from burridge_knopoff.stability.floquet import multipliers
+    from burridge_knopoff.study.words import counted
 
     found = multipliers(orbit)
+    stability = f"unstable: {counted(found.unstable, 'multiplier')}" if found.unstable else "stable: no multiplier"
     lines = [
         f"symmetry     {orbit.symmetry.name.lower()}",
         f"period       {orbit.period:.9f}",
-        f"stability    {f'unstable: {found.unstable}' if found.unstable else 'stable: no'} multiplier"
-        f"{'s' if found.unstable > 1 else ''} outside the unit circle",
+        f"stability    {stability} outside the unit circle",
         f"multipliers  1 (the flow), {_complex(found.whole)}; the others are 0",
     ]
     if len(found.breaking):

@@ -23,6 +23,7 @@ def run(options: argparse.Namespace) -> int:
     """Delete what is left over, and print it."""
     from burridge_knopoff.check.leftovers import delete, leftovers
     from burridge_knopoff.check.study import changed, recorded_study
+    from burridge_knopoff.study.words import counted
 
     studies = []
     for folder in map(Path, options.results):
@@ -36,7 +37,6 @@ def run(options: argparse.Namespace) -> int:
             print(path)
         if not options.dry_run:
             delete(folder, [*results, *logs])
-        count = len(results) + len(logs)
         done = "would be deleted" if options.dry_run else "deleted"
-        print(f"{folder}: {count} file{'' if count == 1 else 's'} {done}")
+        print(f"{folder}: {counted(len(results) + len(logs), 'file')} {done}")
     return 0

@@ -16,6 +16,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.software import git_commit, provenance
 from burridge_knopoff.report.numbers import text
 from burridge_knopoff.study import Study, all_points
+from burridge_knopoff.study.words import counted
 
 #: Distributions whose versions the report states.
 LIBRARIES = (
@@ -39,7 +40,7 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
         ("Blocks", f"N = {chain.blocks}"),
         ("Chain", chain_text(chain)),
         ("Friction laws" if len(models) > 1 else "Friction law", laws_text(models)),
-        ("Friction parameter", f"a = {_grid(config['a'])}: {len(values)} value{'s' if len(values) > 1 else ''}"),
+        ("Friction parameter", f"a = {_grid(config['a'])}: {counted(len(values), 'value')}"),
         ("Driver velocity", f"v = {text(config['v'])}"),
         ("Conventions", f"contact {config['contact']}, start {config['start']}"),
         ("Solvers", solvers),

@@ -14,6 +14,7 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.show.words import listed, paragraph
 from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.lyapunov import motion_of_run
 
 
@@ -95,7 +96,7 @@ def _given(value: Any) -> Any:
 
 def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     sampled = point["time"].values[np.isfinite(point["distance"].values)]
-    yield "J(tau)", f"{len(sampled)} samples{_span(sampled)}"
+    yield "J(tau)", f"{counted(len(sampled), 'sample')}{_span(sampled)}"
     direction = point["crossing_direction"].values
     up, down = int((direction > 0).sum()), int((direction < 0).sum())
     yield "section W = 0", f"{up} upward and {down} downward crossings{_span(point['crossing_time'].values)}"
@@ -110,7 +111,7 @@ def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
             )
     # A run that ended early did not come to its last part.
     time = point["trajectory_time"].values[np.isfinite(point["velocity"].values).all(axis=1)]
-    yield "trajectory", f"positions and velocities at {len(time)} times{_span(time)}"
+    yield "trajectory", f"positions and velocities at {counted(len(time), 'time')}{_span(time)}"
 
 
 def _span(time: np.ndarray) -> str:

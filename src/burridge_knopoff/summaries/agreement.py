@@ -13,6 +13,7 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
@@ -187,16 +188,11 @@ def _parting(row: xarray.Dataset) -> str:
     verdict = row["agrees"].values
     a = row["a"].values[verdict >= 0]
     apart = row["a"].values[verdict == 0]
-    failed = np.count_nonzero(verdict < 0)
-    undetermined = (
-        f" {failed} values of a are undetermined: a run did not complete, or its kind of motion is not clear."
-        if failed
-        else ""
-    )
     if not len(a):
         text = "no value of a could be compared."
     elif not len(apart):
-        text = f"they agree at all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}."
+        several = f"all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}"
+        text = f"they agree at {several if len(a) > 1 else f'the only value of a that was compared, {a[0]:g}'}."
     else:
         before = a[a < apart[0]]
         agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
@@ -206,4 +202,7 @@ def _parting(row: xarray.Dataset) -> str:
             f"they {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
             f"the last {apart[-1]:g}{kinds}."
         )
-    return text + undetermined
+    if failed := int((verdict < 0).sum()):
+        values = f"{counted(failed, 'value')} of a {'is' if failed == 1 else 'are'} undetermined"
+        text += f" {values}: a run did not complete, or its kind of motion is not clear."
+    return text
