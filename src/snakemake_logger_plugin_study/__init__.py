@@ -22,10 +22,11 @@ from burridge_knopoff.study import ConfigError
 from burridge_knopoff.study.job_log import failure
 from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.closing import closing_lines
+from snakemake_logger_plugin_study.forecast import downstream, following
 from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import check_command_line, given_cores, reworded
-from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Job, Rule, Tally, downstream
+from snakemake_logger_plugin_study.tally import DONE, FAILED, RUNNING, Job, Rule, Tally
 from snakemake_logger_plugin_study.wording import cost, job_name, time_left
 
 #: Events that the display does not replace; -p and --verbose bring the others back.
@@ -188,7 +189,7 @@ class LogHandler(LogHandlerBase):
             for job in tally.jobs(RUNNING) if self._quiet else ():
                 job.state = DONE if all(Path(path).exists() for path in job.output) else RUNNING
             # What comes after a rule that runs, and does not run itself, is left out by --until.
-            left_out = downstream(self._counts.keys(), self._needs) - self._counts.keys()
+            left_out = downstream(self._counts, following(self._needs)) - self._counts.keys()
             try:
                 wanted = self._needs.keys() - left_out
                 lines = closing_lines(PLAN.results, time.time() - self._begin, tally, wanted, stopped=self._stopped)

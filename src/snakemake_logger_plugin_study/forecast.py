@@ -6,9 +6,11 @@ import heapq
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from snakemake_logger_plugin_study.durations import Durations
+
+_T = TypeVar("_T")
 
 #: Seconds of jobs for which what was known before counts as much as what has finished: of all kinds, and of one.
 WEIGHT, WEIGHT_OF_KIND = 5.0, 2.0
@@ -62,10 +64,7 @@ class Forecast:
     ) -> None:
         self.jobs = dict(jobs)
         self._durations = durations
-        self._after: dict[int, list[int]] = defaultdict(list)
-        for number, job in self.jobs.items():
-            for need in job.needs:
-                self._after[need].append(number)
+        self._after = following({number: job.needs for number, job in self.jobs.items()})
         self._speed, factors = self._factors(speed, {}, history)
         #: Of kinds that have run before: how much slower each is than all of them.
         self._relative = {kind: factor / self._speed for kind, factor in factors.items()}
@@ -118,7 +117,7 @@ class Forecast:
             if job and now - begin > self._duration(job, self._speed, {}):
                 known.append(Known(job.kind, job.work, (now - begin) * job.threads))
         speed, factors = self._factors(self._speed, self._relative, known)
-        gone = {*done, *failed, *self._blocked(failed)}
+        gone = {*done, *failed, *downstream(failed, self._after)}
         left = {number: job for number, job in self.jobs.items() if number not in gone}
         ends = {}
         for number, begin in running.items():
@@ -132,15 +131,25 @@ class Forecast:
         factor = factors.get(job.kind, speed * self._relative.get(job.kind, 1.0))
         return self._durations.seconds(job.kind, job.work) * factor / job.threads
 
-    def _blocked(self, failed: Iterable[int]) -> set[int]:
-        """Return the jobs that cannot run because some have failed."""
-        found: set[int] = set()
-        more = list(failed)
-        while more:
-            after = [number for number in self._after.get(more.pop(), ()) if number not in found]
-            found.update(after)
-            more += after
-        return found
+
+def following(needs: Mapping[_T, Iterable[_T]]) -> dict[_T, list[_T]]:
+    """Return {job or rule: those that need it}, given what each needs."""
+    after: dict[_T, list[_T]] = defaultdict(list)
+    for name, own in needs.items():
+        for need in own:
+            after[need].append(name)
+    return after
+
+
+def downstream(names: Iterable[_T], after: Mapping[_T, Iterable[_T]]) -> set[_T]:
+    """Return all that comes after some jobs or rules, given what follows on each."""
+    found: set[_T] = set()
+    more = list(names)
+    while more:
+        new = [name for name in after.get(more.pop(), ()) if name not in found]
+        found.update(new)
+        more += new
+    return found
 
 
 def schedule(
@@ -154,13 +163,9 @@ def schedule(
     jobs : {number: job}; of what a job needs only these are waited for
     durations : {number: seconds} of those that have not begun; at_work : {number: when it ends} of the others
     """
-    after: dict[int, list[int]] = defaultdict(list)
-    missing = {}
-    for number, job in jobs.items():
-        needs = [need for need in job.needs if need in jobs]
-        missing[number] = len(needs)
-        for need in needs:
-            after[need].append(number)
+    needs = {number: [need for need in job.needs if need in jobs] for number, job in jobs.items()}
+    missing = {number: len(own) for number, own in needs.items()}
+    after = following(needs)
     order = {number: (-job.priority, place) for place, (number, job) in enumerate(jobs.items())}
     ready = [(order[number], number) for number in durations if not missing[number]]
     heapq.heapify(ready)

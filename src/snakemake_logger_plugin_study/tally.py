@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from snakemake_logger_plugin_study.forecast import Forecast
+from snakemake_logger_plugin_study.forecast import Forecast, downstream, following
 
 #: Seconds for which a time left that was worked out is only counted down.
 FRESH = 2.0
@@ -58,14 +58,6 @@ class Count(NamedTuple):
     running: int
 
 
-def downstream(names: Set[str], needs: Mapping[str, Set[str]]) -> set[str]:
-    """Return the rules that come after some of these, given what each rule needs."""
-    found: set[str] = set()
-    while more := {name for name, own in needs.items() if own & (names | found)} - found:
-        found |= more
-    return found
-
-
 class Tally:
     """Counts the jobs of a run and tells how long it still takes; times are in seconds since any fixed moment."""
 
@@ -111,7 +103,7 @@ class Tally:
         The log tells which rules need each other, not which jobs: one that needs no failed job counts until it begins.
         """
         failed = {name for name, rule in self.rules.items() if rule.count(FAILED)}
-        after = downstream(failed, {name: rule.needs for name, rule in self.rules.items()})
+        after = downstream(failed, following({name: rule.needs for name, rule in self.rules.items()}))
         return {name: self.rules[name].total - len(self.rules[name].jobs) for name in after}
 
     def time_left(self, now: float) -> float | None:

@@ -1,13 +1,8 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
 
-from snakemake.exceptions import WorkflowError
-
 # Cores for the long job of each law, which shares them out among processes: with few cores the laws run side by side.
-try:
-    SHARED_CORES = max(1, workflow.cores // len(STUDY.laws))
-except WorkflowError:
-    # Without a number of cores, as for --unlock, no job is run.
-    SHARED_CORES = 1
+# Where no job is to run, as for --unlock, there need be no number of cores.
+SHARED_CORES = max(1, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
 
 
 OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
