@@ -7,8 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
-from burridge_knopoff.cli.simulate import check_out
+from burridge_knopoff.cli.options import (
+    add,
+    add_model,
+    add_state,
+    check_out,
+    command_of,
+    model_of,
+    said_of,
+    settings_of,
+    state_of,
+)
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 

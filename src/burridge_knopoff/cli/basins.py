@@ -6,8 +6,17 @@ import argparse
 from dataclasses import asdict
 
 from burridge_knopoff.cli.attractors import add_search, search_of
-from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
-from burridge_knopoff.cli.simulate import check_out
+from burridge_knopoff.cli.options import (
+    add,
+    add_model,
+    add_state,
+    check_out,
+    command_of,
+    model_of,
+    said_of,
+    settings_of,
+    state_of,
+)
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
-from burridge_knopoff.cli.simulate import check_out
+from burridge_knopoff.cli.options import add, add_model, add_state, check_out, model_of, said_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.stability.settings import MotionSettings

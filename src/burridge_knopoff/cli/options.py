@@ -6,20 +6,20 @@ import argparse
 import re
 import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of
+from burridge_knopoff.library.given import OWN
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, Text, Whole
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS
+from burridge_knopoff.provenance.files import check_target
 
 _T = TypeVar("_T")
-
-#: Name of a state that was given by its numbers alone.
-OWN = "own"
 
 #: A group of options, or a parser.
 Group = argparse._ActionsContainer
@@ -220,6 +220,14 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
         usual if options.blocks is None else options.blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS}
     )
     return Model(chain, simulated_law(options), options.v, options.contact)
+
+
+def check_out(path: str) -> None:
+    """Raise OSError, one line, if a file could not be written: better before the work than after."""
+    folder = Path(path).parent
+    if not folder.exists():
+        raise OSError(f"{path}: cannot be written: there is no folder {folder}")
+    check_target(path)
 
 
 def command_of(options: argparse.Namespace) -> str:

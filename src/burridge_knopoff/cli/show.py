@@ -21,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what is in a file, and draw it."""
-    from burridge_knopoff.cli.simulate import check_out
+    from burridge_knopoff.cli.options import check_out
     from burridge_knopoff.show.result import open_result
 
     if options.plot:

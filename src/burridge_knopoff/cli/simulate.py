@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, settings_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, check_out, model_of, settings_of, state_of
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
@@ -65,16 +64,6 @@ def run(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
     return 0
-
-
-def check_out(path: str) -> None:
-    """Raise OSError, one line, if a file could not be written: better before the work than after."""
-    from burridge_knopoff.provenance.files import check_target
-
-    folder = Path(path).parent
-    if not folder.exists():
-        raise OSError(f"{path}: cannot be written: there is no folder {folder}")
-    check_target(path)
 
 
 def outcome(trajectory: Trajectory) -> str:

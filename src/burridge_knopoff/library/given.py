@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -37,23 +37,22 @@ def given_state(given: Initial) -> InitialState:
 def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray) -> InitialState:
     if isinstance(given, str):
         return initial_state(given)
-    if not isinstance(given, Mapping):
+    if isinstance(given, Mapping):
+        numbers = {key: _plain(value) for key, value in given.items()}
+    else:
         pair = _plain(given)
-        if not (isinstance(pair, list | tuple) and len(pair) == 2 and all(isinstance(_plain(x), list) for x in pair)):
+        lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
+        if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
             raise ValueError(f"initial: {str(given)[:60]} is not allowed: {_FORMS}, each one number a block")
-        given = dict(zip(("position", "velocity"), pair, strict=True))
-    return InitialState(**_KEYS.form({key: _plain(value) for key, value in given.items()}, "initial"))
+        numbers = dict(zip(("position", "velocity"), lists, strict=True))
+    return InitialState(**_KEYS.form(numbers, "initial"))
 
 
 def _plain(values: Any) -> Any:
-    """Return a sequence or an array of any kind as a list."""
-    if isinstance(values, str | Mapping):
-        return values
-    return np.asarray(values).tolist() if hasattr(values, "__array__") else list(values) if _many(values) else values
-
-
-def _many(values: Any) -> bool:
-    return hasattr(values, "__iter__")
+    """Return a sequence or an array of any kind as a list, anything else as it is."""
+    if hasattr(values, "__array__"):
+        return np.asarray(values).tolist()
+    return list(values) if isinstance(values, Iterable) and not isinstance(values, str | Mapping) else values
 
 
 def given_model(
