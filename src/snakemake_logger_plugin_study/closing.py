@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, one_reason
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, untestable
 from burridge_knopoff.study.job_log import failure
 from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.tally import DONE, FAILED, Tally
@@ -71,10 +71,11 @@ def _made(results: Path, made: Sequence[str]) -> str:
 
 def _claims(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
-    if reason := one_reason(read["claims"]):
-        return [f"claims of the paper: none is judged ({path.with_suffix('.md')})", f"  {reason}"]
+    ledger, reasons = path.with_suffix(".md"), untestable(read["claims"])
+    if list(reasons.values()) == [read["claims"]]:
+        return [f"claims of the paper: none is judged ({ledger})", f"  {next(iter(reasons))}"]
     counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
-    lines = [f"claims of the paper: {counts} ({path.with_suffix('.md')})"]
+    lines = [f"claims of the paper: {counts} ({ledger})"]
     for verdict in NAMED_VERDICTS:
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""

@@ -18,7 +18,15 @@ import numpy as np
 from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, synchronization
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.margins import NOTHING, turns
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict, content_digest
+from burridge_knopoff.claims.verdict import (
+    NOT_TESTABLE,
+    VERDICTS,
+    NotTestableError,
+    Range,
+    Verdict,
+    content_digest,
+    untestable,
+)
 from burridge_knopoff.model import ranges
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -295,13 +303,10 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
             turning = "; ".join(claim["turns"]) or NOTHING
             cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"], turning]
             lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
-    untestable: dict[str, list[str]] = {}
-    for claim in content["claims"]:
-        if claim["verdict"] == NOT_TESTABLE:
-            untestable.setdefault(claim["reason"], []).append(claim["name"])
-    if untestable:
+    if reasons := untestable(content["claims"]):
         lines += ["", "### Not testable", ""]
-        lines += [f"- {reason} ({len(names)}: {', '.join(names)})" for reason, names in untestable.items()]
+    for reason, claims in reasons.items():
+        lines.append(f"- {reason} ({len(claims)}: {', '.join(claim['name'] for claim in claims)})")
     return "\n".join(lines) + "\n"
 
 

@@ -108,11 +108,13 @@ class Range:
         return chosen
 
 
-def one_reason(claims: Sequence[Mapping[str, Any]]) -> str:
-    """Return why none of the claims of a ledger can be judged, where that is the same for all; else empty."""
-    reasons = {claim["reason"] for claim in claims}
-    untestable = all(claim["verdict"] == NOT_TESTABLE for claim in claims)
-    return reasons.pop() if untestable and len(reasons) == 1 else ""
+def untestable(claims: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Return {reason: claims of a ledger that cannot be judged for it}."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for claim in claims:
+        if claim["verdict"] == NOT_TESTABLE:
+            found.setdefault(claim["reason"], []).append(claim)
+    return found
 
 
 def worst(verdicts: Iterable[str]) -> str:

@@ -60,6 +60,11 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     return record
 
 
+def study_folder(path: str | Path) -> Path | None:
+    """Return the folder of results in which a file lies, None if it lies in none."""
+    return next((folder for folder in Path(path).absolute().parents if (folder / NAME).is_file()), None)
+
+
 def check_owner(results: str | Path, config_file: str | Path, given: dict[str, Any]) -> None:
     """Refuse a folder of results for a config file if another file, with another content, has made what lies there.
 
@@ -90,9 +95,7 @@ def remake_command(study_file: str | Path, *paths: str | Path) -> str:
     paths : the files, if it is not that one
     """
     arguments = ""
-    for folder in Path(study_file).absolute().parents:
-        if (folder / NAME).is_file():
-            with contextlib.suppress(ValueError):
-                arguments = f"{read_study_record(folder)['arguments']} ".lstrip()
-            break
+    if folder := study_folder(study_file):
+        with contextlib.suppress(ValueError):
+            arguments = f"{read_study_record(folder)['arguments']} ".lstrip()
     return f"snakemake -c2 {arguments}-R {' '.join(map(str, paths or [study_file]))}"

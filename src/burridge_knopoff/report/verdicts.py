@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, content_digest
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, content_digest, untestable
 from burridge_knopoff.provenance.seal import BadFile
 
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
@@ -55,12 +55,11 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
     if counts != stated:
         raise ValueError(f"{path}: counts: {stated} is not allowed: the claims have {counts}")
     topics: dict[str, list[dict[str, Any]]] = {}
-    untestable: dict[str, list[dict[str, Any]]] = {}
     for claim in claims:
-        judged = claim["verdict"] != NOT_TESTABLE
-        (topics if judged else untestable).setdefault(claim["topic" if judged else "reason"], []).append(claim)
+        if claim["verdict"] != NOT_TESTABLE:
+            topics.setdefault(claim["topic"], []).append(claim)
     setting = {key: value for key, value in content.items() if key not in ("claims", "counts", "digest")}
-    return Verdicts(counts, topics, untestable, setting)
+    return Verdicts(counts, topics, untestable(claims), setting)
 
 
 def _claim(claim: dict[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
-from burridge_knopoff.provenance.record import NAME, read_study_record
+from burridge_knopoff.provenance.record import read_study_record, study_folder
 from burridge_knopoff.provenance.seal import BadFile, read_seal
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.stability.settings import MOTION, MotionSettings
@@ -67,7 +67,7 @@ def open_result(path: str | Path) -> Result:
     Raises ValueError, one line, if it is not there, damaged, or of another program.
     """
     path = Path(path)
-    study = next((folder for folder in path.absolute().parents if (folder / NAME).is_file()), None)
+    study = study_folder(path)
     try:
         read_seal(path)
         data = xarray.load_dataset(path, engine="netcdf4")

@@ -110,7 +110,7 @@ class Study:
         there = {
             "basins": self.basin_maps,
             "phases": self.has_phases,
-            "two_blocks": self.has_several_laws and self.has_other_lengths,
+            "two_blocks": self.has_several_laws and not self.single_length_key,
             "proof": self.proved_laws,
         }
         return tuple(stage for stage in stages.OPTIONAL if stage not in self.left_out and there.get(stage, True))
@@ -129,11 +129,6 @@ class Study:
     def has_phases(self) -> bool:
         """Whether states are drawn by the phases of their end blocks."""
         return bool(self.config["phases"]["a"])
-
-    @property
-    def has_other_lengths(self) -> bool:
-        """Whether there are chains of other lengths, of two blocks among them."""
-        return not self.single_length_key
 
     @property
     def single_length_key(self) -> str:
