@@ -1,20 +1,10 @@
 # Solvers: the points of a few values of a once more, by every other solver of each law.
 
 from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.study import solver_points
 
 SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT}"
-SOLVER_GRID = {
-    name: value
-    for name, value in STUDY.grid.items()
-    if value in STUDY.config["solvers"]["a"]
-}
-SOLVER_POINTS = [
-    (law, solver, initial, a)
-    for law in STUDY.laws
-    for solver in STUDY.other_solvers(law)
-    for initial in STUDY.initial
-    for a in SOLVER_GRID
-]
+SOLVER_POINTS = solver_points(STUDY)
 SOLVER_POINT_NUMBERS = {point: number for number, point in enumerate(SOLVER_POINTS)}
 
 
@@ -51,7 +41,7 @@ rule solvers:
             f"{RESULTS}/points/{POINT}".format(law=law, initial=initial, a=a)
             for law in STUDY.laws
             for initial in STUDY.initial
-            for a in SOLVER_GRID
+            for a in STUDY.compared
         ],
         others=[
             SOLVER_POINT.format(law=law, solver=solver, initial=initial, a=a)
@@ -69,7 +59,7 @@ rule solvers:
         mem_mb=400,
         runtime=10,
     params:
-        points={**STUDY.points, "folder": RESULTS, "a": SOLVER_GRID},
+        points={**STUDY.points, "folder": RESULTS, "a": STUDY.compared},
         others={
             solver: {
                 law: asdict(STUDY.settings(law, solver))

@@ -13,7 +13,7 @@ from burridge_knopoff.check.leftovers import leftovers
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.study import ConfigError, Study, all_points
+from burridge_knopoff.study import ConfigError, Study, all_points, solver_points
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.words import counted
@@ -155,15 +155,12 @@ def recorded_study(results: Path) -> tuple[dict[str, Any], Study]:
 
 def _runs(study: Study) -> Iterator[tuple[str, str, str]]:
     """Yield file, log and command of every run of a study, the paths below its results."""
-    for law, initial, a in all_points(study):
+    points = [(law, None, initial, a) for law, initial, a in all_points(study)]
+    for law, solver, initial, a in (*points, *solver_points(study)):
         place = POINT.format(law=law, initial=initial, a=a)
-        solvers = study.other_solvers(law) if study.grid[a] in study.config["solvers"]["a"] else []
-        for solver, folder, rule in (
-            (None, "points", "simulate"),
-            *((name, f"solvers/{name}", f"simulate_solver/{name}") for name in solvers),
-        ):
-            log = f"logs/{rule}/{place.removesuffix('.nc')}.log"
-            yield f"{folder}/{place}", log, study.command(law, initial, a, solver)
+        folder, rule = (f"solvers/{solver}", f"simulate_solver/{solver}") if solver else ("points", "simulate")
+        log = f"logs/{rule}/{place.removesuffix('.nc')}.log"
+        yield f"{folder}/{place}", log, study.command(law, initial, a, solver)
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-__all__ = ["ConfigError", "Study", "all_points", "load_study", "read_config", "read_yaml"]
+__all__ = ["ConfigError", "Study", "all_points", "load_study", "read_config", "read_yaml", "solver_points"]
 
 if TYPE_CHECKING:
-    from burridge_knopoff.study.study import Study, all_points, load_study
+    from burridge_knopoff.study.study import Study, all_points, load_study, solver_points
     from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 
 

@@ -157,6 +157,11 @@ class Study:
             others.remove("map")
         return others
 
+    @property
+    def compared(self) -> dict[str, float]:
+        """The values of a at which the solvers are compared, by their names in file names."""
+        return {name: value for name, value in self.grid.items() if value in self.config["solvers"]["a"]}
+
     def value(self, a: str) -> float:
         """Return the value of a by its name in file names; raises ConfigError if it is not in the grid."""
         if a not in self.grid:
@@ -260,3 +265,9 @@ def _lists(value: Any) -> Any:
 def all_points(study: Study) -> list[tuple[str, str, str]]:
     """Return (law, initial, a) of every point job, in the order of the summaries."""
     return [(law, initial, a) for law in study.laws for initial in study.initial for a in study.grid]
+
+
+def solver_points(study: Study) -> list[tuple[str, str, str, str]]:
+    """Return (law, solver, initial, a) of every point that another solver makes once more."""
+    others = [(law, solver) for law in study.laws for solver in study.other_solvers(law)] if study.compared else []
+    return [(*other, initial, a) for other in others for initial in study.initial for a in study.compared]
