@@ -33,34 +33,34 @@ class Finding:
     path: Path
     reason: str
 
+    def __str__(self) -> str:
+        return f"{self.kind:8} {self.path}: {self.reason}"
+
 
 @dataclass(frozen=True)
 class Check:
     """What was found in the results of a study.
 
     points, summaries : numbers of point files that should be there, and of other netCDF files that are
+    findings : what is wrong with these files
+    others : what no run of the config of the last run mends: what is left over, of an unknown name, or another config
     unasked : number of runs of other solvers, none of which has been asked for
-    leftovers, leftover_logs : files that belong to no point of the study; see `leftovers`
-    unknown : netCDF files among the points that have no name of one
-    changed : what has changed in the config since the last run, in a line, or nothing
-    note : what could not be compared, in a line, or nothing
+    leftover_logs : number of logs and benchmarks that belong to no point of the study; see `leftovers`
     """
 
     results: Path
     points: int
     summaries: int
     findings: tuple[Finding, ...]
+    others: tuple[Finding, ...]
     unasked: int
-    leftovers: tuple[Path, ...]
     leftover_logs: int
-    unknown: tuple[Path, ...]
-    changed: str
-    note: str
 
     @property
     def exit_code(self) -> int:
         """0 if nothing is wrong, 3 if runs have failed only, else 1."""
-        return 1 if self.changed or self.paths else 3 if self.findings else 0
+        changed = any(finding.kind == "stale" for finding in self.others)
+        return 1 if changed or self.paths else 3 if self.findings else 0
 
     @property
     def paths(self) -> list[str]:
@@ -70,20 +70,15 @@ class Check:
     def lines(self) -> list[str]:
         """Return all findings and their sum, a line each."""
         counts = Counter(finding.kind for finding in self.findings)
-        lines = [f"{finding.kind:8} {finding.path}: {finding.reason}" for finding in self.findings]
-        lines += [f"leftover {path}: belongs to no point of the study" for path in self.leftovers]
-        lines += [f"unknown  {path}: no point of a study has that name" for path in self.unknown]
-        lines += [line for line in (self.changed, self.note) if line]
-        sums = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
-        lines.append(
-            f"{self.results}: {counted(self.points, 'point')} and {counted(self.summaries, 'other file')}: {sums}"
-        )
+        left = sum(finding.kind == "leftover" for finding in self.others) + self.leftover_logs
+        files = f"{counted(self.points, 'point')} and {counted(self.summaries, 'other file')}"
+        lines = [str(finding) for finding in (*self.findings, *self.others)]
+        lines.append(f"{self.results}: {files}: {', '.join(f'{counts[kind]} {kind}' for kind in KINDS)}")
         if self.unasked:
-            lines.append(
-                f"not counted: {counted(self.unasked, 'run')} of other solvers, none of which was asked for yet"
-            )
-        if self.leftovers or self.leftover_logs:
-            files = counted(len(self.leftovers) + self.leftover_logs, "file")
+            runs = counted(self.unasked, "run")
+            lines.append(f"not counted: {runs} of other solvers, none of which was asked for yet")
+        if left:
+            files = counted(left, "file")
             lines.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {self.results}")
         if self.paths:
             lines.append(f"remake: {self._remake()}")
@@ -125,17 +120,13 @@ def check_study(results: str | Path) -> Check:
     summaries = [path for path in others if path not in unknown]
     found = [*(_look(path, command, log) for path, (log, command) in points.items()), *map(_look, summaries)]
     findings = sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path))
-    return Check(
-        results,
-        len(points),
-        len(summaries),
-        tuple(findings),
-        len(runs) - len(wanted),
-        tuple(left),
-        len(logs),
-        tuple(unknown),
-        *changed(results, record),
-    )
+    elsewhere = [
+        *(Finding("leftover", path, "belongs to no point of the study") for path in left),
+        *(Finding("unknown", path, "no point of a study has that name") for path in unknown),
+        *filter(None, [changed(results, record)]),
+    ]
+    numbers = len(points), len(summaries)
+    return Check(results, *numbers, tuple(findings), tuple(elsewhere), len(runs) - len(wanted), len(logs))
 
 
 def recorded_study(results: Path) -> tuple[dict[str, Any], Study]:
@@ -179,15 +170,17 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
     return None
 
 
-def changed(results: Path, record: dict[str, Any]) -> tuple[str, str]:
-    """Return what has changed in the config file since the last run, and what is to be said if that is not known."""
+def changed(results: Path, record: dict[str, Any]) -> Finding | None:
+    """Return that the config file is not that of the last run: stale, or a note if it is not there to be compared."""
     file = record["config_file"]
     path = root_of(results) / file
     # Which file it was can be told from where it lay only.
     if not path.exists():
-        return "", f"note     {file}: is not there; what is checked is the config of the last run"
+        return Finding("note", Path(file), "is not there; what is checked is the config of the last run")
     try:
-        same = read_yaml(path) == record["given"]
+        if read_yaml(path) != record["given"]:
+            return Finding("stale", Path(file), "has changed since the last run, whose config is checked")
     except ConfigError as error:
-        return f"stale    {error}; what is checked is the config of the last run", ""
-    return "" if same else f"stale    {file}: has changed since the last run, whose config is checked", ""
+        file, _, reason = str(error).partition(": ")
+        return Finding("stale", Path(file), f"{reason}; what is checked is the config of the last run")
+    return None
