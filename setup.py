@@ -1,6 +1,5 @@
 """Compiles the kernel; everything else about the package is in pyproject.toml."""
 
-import json
 import os
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ from setuptools.command.build_ext import build_ext
 sys.path.insert(0, "src")
 
 from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
-from burridge_knopoff.provenance.kernel_build import RECORD, kernel_sources, write_record
+from burridge_knopoff.provenance.kernel_build import RECORD, kernel_sources, recorded_sources, write_record
 
 KERNEL = Path("src/burridge_knopoff/kernel")
 #: What Cython puts beside every module, compiled once for all of them: half of the time.
@@ -24,21 +23,13 @@ def extension(name: str, source: Path) -> Extension:
     return Extension(name, [str(source)], extra_compile_args=[*COMPILER_FLAGS, *vector_flags()])
 
 
-def changed() -> bool:
-    """Tell whether the kernel in the tree is another one than that of its sources."""
-    try:
-        return json.loads((KERNEL / RECORD).read_text(encoding="utf-8")) != kernel_sources()
-    except (OSError, ValueError):
-        return True
-
-
 class RecordedBuild(build_ext):
     """Compiles the kernel, and records from what when all of it is compiled."""
 
     def run(self) -> None:
         """Compile all of it or, if nothing has changed, what is not there."""
         # Times of files do not tell what was compiled from what.
-        self.force = self.force or changed()
+        self.force = self.force or recorded_sources() != kernel_sources()
         self.parallel = self.parallel or os.cpu_count()
         (KERNEL / RECORD).unlink(missing_ok=True)
         # Only here: pip runs this file three times, and a source distribution needs no C.

@@ -33,6 +33,14 @@ def write_record(folder: Path) -> None:
     (folder / RECORD).write_text(json.dumps(kernel_sources(), indent=1) + "\n", encoding="utf-8")
 
 
+def recorded_sources() -> dict[str, str] | None:
+    """Return what has been compiled, in the form of `kernel_sources`; None if that cannot be read."""
+    try:
+        return dict(json.loads((KERNEL / RECORD).read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
 def check_kernel(*, compiled: bool = False) -> None:
     """Raise KernelError if the compiled kernel is not that of the sources on disk.
 
@@ -42,11 +50,9 @@ def check_kernel(*, compiled: bool = False) -> None:
         if compiled:
             raise KernelError("the kernel is not compiled")
         return
-    try:
-        recorded = dict(json.loads((KERNEL / RECORD).read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
-        raise KernelError(f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole") from None
-    current = kernel_sources()
+    current, recorded = kernel_sources(), recorded_sources()
+    if recorded is None:
+        raise KernelError(f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole")
     for name in sorted(current.keys() | recorded.keys()):
         if current.get(name) != recorded.get(name):
             raise KernelError(f"{name}: has changed since the kernel was compiled")

@@ -132,22 +132,21 @@ def fill_basins(config: Mapping[str, Any], grid: Iterable[float]) -> None:
 
 def fill_phases(config: Mapping[str, Any], grid: Iterable[float], blocks: int) -> None:
     """Check where states are drawn by their phases against the grid, and fill it in."""
-    phases = config["phases"]
-    if "a" not in phases:
-        of_paper = Chain(blocks, **config["chain"]) == Chain(3)
-        phases["a"] = [a for a in PAPER_PHASES if a in grid and of_paper]
-    _check_grid("phases.a", phases["a"], grid)
-    phases["a"].sort()
+    of_paper = Chain(blocks, **config["chain"]) == Chain(3)
+    _fill_values(config, "phases", [a for a in PAPER_PHASES if a in grid and of_paper], grid)
 
 
 def fill_compared(config: Mapping[str, Any], grid: Iterable[float], else_a: float) -> None:
     """Check where the solvers are compared against the grid, and fill it in; `else_a` if no usual value is there."""
-    solvers = config["solvers"]
-    if "a" not in solvers:
-        solvers["a"] = [a for a in PAPER_COMPARED if a in grid] or [else_a]
-    _check_grid("solvers.a", solvers["a"], grid)
-    solvers["a"].sort()
+    _fill_values(config, "solvers", [a for a in PAPER_COMPARED if a in grid] or [else_a], grid)
     _check_grid("figures.a", [config["figures"].get("a", else_a)], grid)
+
+
+def _fill_values(config: Mapping[str, Any], section: str, usual: list[float], grid: Iterable[float]) -> None:
+    """Check the values of a of a section against the grid, the usual ones where it has none, and sort them."""
+    values = config[section].setdefault("a", usual)
+    _check_grid(f"{section}.a", values, grid)
+    values.sort()
 
 
 def _check_grid(key: str, values: Iterable[float], grid: Iterable[float]) -> None:
