@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -70,7 +70,6 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
     pictures = {name: read_picture(path, list(summaries)) for name, path in sources.figures.items()}
     commands = Commands(study, configfile)
-    attractors, chains = summaries.get("attractors"), summaries.get("chains")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -97,14 +96,14 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
         pictures=pictures,
         further=[picture for name, picture in pictures.items() if name not in PLACED],
         exponents=bool(summaries["lyapunov"]["lyapunov_exponent"].notnull().any()),
-        branches=[] if attractors is None else tables.branch_table(attractors),
-        attractors=None if attractors is None else attractors.attrs,
+        branches=_of(summaries, "attractors", tables.branch_table, []),
+        attractors=_of(summaries, "attractors", lambda attractors: attractors.attrs),
         transitions=tables.transition_table(summaries["orbits"]),
-        maps=_map_table(summaries.get("basins")),
+        maps=_of(summaries, "basins", _map_table, []),
         agreement=digest(summaries["agreement"]).splitlines(),
-        chains=tables.chain_table(chains) if chains is not None else [],
-        chain_laws=[str(law) for law in chains["law"].values] if chains is not None else [],
-        chain_settings=overview.foreign_settings(chains, study) if chains is not None else [],
+        chains=_of(summaries, "chains", tables.chain_table, []),
+        chain_laws=_of(summaries, "chains", lambda chains: chains["law"].values.tolist(), []),
+        chain_settings=_of(summaries, "chains", lambda chains: overview.foreign_settings(chains, study), []),
         unclear=unclear_runs(commands, summaries["mean_distance"], summaries["lyapunov"]),
         origins=overview.origins(summaries),
         software=overview.software(),
@@ -117,24 +116,30 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
 
 def _data(study: Study, commands: Commands, summaries: Mapping[str, xarray.Dataset]) -> Markup:
     """Return all numbers of the charts as JSON."""
-    attractors, basins, chains = (summaries.get(name) for name in ("attractors", "basins", "chains"))
     return embedded_json(
         {
             "runs": embedded_runs(commands, *(summaries[name] for name in ("mean_distance", "lyapunov", "agreement"))),
             "kinds": curves.kinds(),
-            "branches": [] if attractors is None else curves.branches(attractors),
-            "attractors": [] if attractors is None else curves.attractor_points(attractors),
-            "fractions": [] if attractors is None else curves.basin_fractions(attractors),
-            "conventions": None if attractors is None else curves.conventions(attractors),
+            "branches": _of(summaries, "attractors", curves.branches, []),
+            "attractors": _of(summaries, "attractors", curves.attractor_points, []),
+            "fractions": _of(summaries, "attractors", curves.basin_fractions, []),
+            "conventions": _of(summaries, "attractors", curves.conventions),
             "sections": section_counts(summaries["bifurcation"]),
             "orbits": curves.orbit_curves(summaries["orbits"]),
-            "basins": None
-            if basins is None or attractors is None
-            else basin_maps(basins, attractors, study.marked_states),
+            "basins": _of(
+                summaries, "basins", lambda basins: basin_maps(basins, summaries["attractors"], study.marked_states)
+            ),
             "agreement": curves.agreement_curves(summaries["agreement"]),
-            "chains": None if chains is None else curves.chain_fractions(chains),
+            "chains": _of(summaries, "chains", curves.chain_fractions),
         }
     )
+
+
+def _of(
+    summaries: Mapping[str, xarray.Dataset], name: str, make: Callable[[xarray.Dataset], Any], nothing: Any = None
+) -> Any:
+    """Return what is made of a summary, or what stands for it in a study that lacks this one."""
+    return make(summaries[name]) if name in summaries else nothing
 
 
 def _crossed(bifurcation: xarray.Dataset, laws: int, states: int) -> list[list[bool]]:
@@ -143,10 +148,8 @@ def _crossed(bifurcation: xarray.Dataset, laws: int, states: int) -> list[list[b
     return (counts.sum(axis=2) > 0).tolist()
 
 
-def _map_table(basins: xarray.Dataset | None) -> list[dict[str, Any]]:
+def _map_table(basins: xarray.Dataset) -> list[dict[str, Any]]:
     """Return law, a, and the uncertainty exponent of the boundary of each map."""
-    if basins is None:
-        return []
     names = basins["law"].attrs["flag_meanings"].split()
     rows = []
     for number in range(basins.sizes["map"]):

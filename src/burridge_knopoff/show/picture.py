@@ -42,9 +42,7 @@ def write_picture(result: Result, path: str | Path) -> str:
         write_figure(draw_point(result.data), path)
         return f"{path}: J, section points and velocities"
     figure = _figure_of(result)
-    others = [_beside(result, name) for name in figure.inputs if name != result.name]
-    data = iter(others)
-    inputs = [result.data if name == result.name else next(data) for name in figure.inputs]
+    inputs = [result.data if name == result.name else _beside(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
         drawn = module.draw(*inputs, **_from_study(result, figure))
