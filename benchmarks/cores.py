@@ -18,16 +18,18 @@ from progress import planned, recorded
 from snakemake_logger_plugin_study.forecast import schedule
 
 LONG = re.compile("(.+)_of_law (.+)")
-PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s$", re.MULTILINE)
+PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ kept.*)?$", re.MULTILINE)
 
 
 def parts_of(results, job):
     """Return (sum, longest) in seconds of what the processes of a job share, from its log."""
     long = LONG.fullmatch(job.kind)
-    log = Path(results, "logs", long[1], f"{long[2]}.log") if long else None
-    text = log.read_text(encoding="utf-8") if log and log.is_file() else ""
+    log = Path(results, "logs", *([long[1], f"{long[2]}.log"] if long else [f"{job.kind}.log"]))
+    text = log.read_text(encoding="utf-8") if log.is_file() else ""
     parts = defaultdict(list)
-    for name, *seconds in PART.findall(text):
+    for name, *seconds, kept in PART.findall(text):
+        if kept:
+            sys.exit(f"{log}: what was kept from a run before took no time: rm -r .snakemake/kept, and run it again")
         parts[name].append([float(value) for value in seconds])
     return [(sum(total for total, _ in each), max(longest for _, longest in each)) for each in parts.values()]
 
