@@ -10,14 +10,15 @@ from burridge_knopoff.study import Study, all_points
 
 #: The search for attractors refines some of the gaps between values of a: so many values more, by measurement.
 _VALUES_BETWEEN = 6.6
-#: What a search keeps of every gap between values of a, last of all; and the share of its work that nothing spares.
-_LAST, _ALWAYS = "refined", 0.1
+#: What a long job keeps last of all, about once for every gap between values of a; and what is spared at most.
+_LAST = {"attractors_of_law": "refined", "edges_of_law": "followed"}
+_SPARED = 0.9
 
 
 def work_of(study: Study, rule: str, wildcards: Mapping[str, str], kept: str | None = None) -> tuple[str, float]:
     """Return the kind of a job, which shares its durations, and how much it has to do, in units of that kind.
 
-    kept : folder in which a search keeps what it has found at values of a, and between them
+    kept : folder in which a long job keeps what it has found at values of a, and between them
 
     A rule is a kind, or several by wildcards that decide how fast it is. Jobs of rules that are not named here read, or
     draw, every point of the study.
@@ -26,8 +27,8 @@ def work_of(study: Study, rule: str, wildcards: Mapping[str, str], kept: str | N
     units = _UNITS.get(rule)
     work = float(len(all_points(study)) if units is None else units(study))
     if kept and len(study.grid) > 1:
-        done = sum(1 for _ in Path(kept, _LAST).glob("*")) / (len(study.grid) - 1)
-        work *= 1.0 - (1.0 - _ALWAYS) * min(1.0, done)
+        done = sum(1 for _ in Path(kept, _LAST[rule]).glob("*")) / (len(study.grid) - 1)
+        work *= 1.0 - _SPARED * min(1.0, done)
     return kind, work
 
 

@@ -135,13 +135,16 @@ def test_a_wider_grid_keeps_the_points_that_are_there(copy):
 def test_a_wider_grid_is_searched_where_it_is_new(copy):
     """What the first run has kept is taken again, and what no value needs any more goes."""
     law, values = "linearized", 4
-    folder = copy.folder / ".snakemake/kept/tiny" / law
+    folder = copy.folder / f".snakemake/kept/tiny/attractors {law}"
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
     before = {path.name for path in folder.rglob("searched*/*")}
-    copy.ok(f"results/tiny/attractors/{law}.nc")
-    log = (copy.folder / "results/tiny/logs/attractors" / f"{law}.log").read_text()
-    assert f"searched from states: {values + 1}, " in log
-    assert f"; {values} kept from a run before" in log.splitlines()[0]
+    copy.ok(f"results/tiny/edges/{law}.nc")
+    search, edges = (
+        (copy.folder / f"results/tiny/logs/{stage}/{law}.log").read_text() for stage in ("attractors", "edges")
+    )
+    assert f"searched from states: {values + 1}, " in search
+    assert f"; {values} kept from a run before" in search.splitlines()[0]
+    assert re.search(r"closed orbits: .*; [1-9]\d* kept from a run before", edges)
     after = {path.name for path in folder.rglob("searched*/*")}
     assert before < after
     assert len(after) == values + 1

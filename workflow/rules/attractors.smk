@@ -27,7 +27,13 @@ rule attractors_of_law:
         model=lambda wildcards: model_config([wildcards.law]),
         motion=motion_config(),
         sources=sources("attractors_of_law"),
-        kept=kept_by_law,
+        kept=lambda wildcards: kept_folder(
+            f"attractors {wildcards.law}",
+            keys("initial", "start", "attractors", "refine"),
+            model_config([wildcards.law]),
+            motion_config(),
+            source_fingerprint("burridge_knopoff.stability.continuation"),
+        ),
     message:
         "attractors of the {wildcards.law} law along a"
     script:

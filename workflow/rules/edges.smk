@@ -20,6 +20,11 @@ rule edges_of_law:
         blocks=STUDY.blocks,
         a=min(STUDY.grid.values()),
         sources=sources("edges_of_law"),
+        kept=lambda wildcards: kept_folder(
+            f"edges {wildcards.law}",
+            model_config([wildcards.law]),
+            source_fingerprint("burridge_knopoff.summaries.edge_entries"),
+        ),
     message:
         "edges of the branches of attractors, {wildcards.law} law"
     script:

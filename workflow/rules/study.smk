@@ -192,13 +192,10 @@ def motion_config():
     return {**STUDY.config["motion"], **keys("synchronization_threshold")}
 
 
-def kept_by_law(wildcards):
-    """Return where the search under a law keeps what it finds, for a run with other values of a, or after a kill."""
-    decides = [
-        keys("initial", "start", "attractors", "refine"),
-        model_config([wildcards.law]),
-        motion_config(),
-        source_fingerprint("burridge_knopoff.stability.continuation"),
-    ]
+def kept_folder(what, *decides):
+    """Return where a long job keeps what it finds, for a run with other values of a, or after a kill.
+
+    decides : all that decides it but the values of a
+    """
     digest = hashlib.sha256(json.dumps(decides).encode()).hexdigest()[:16]
-    return f".snakemake/kept/{STUDY.name}/{wildcards.law}/{digest}"
+    return f".snakemake/kept/{STUDY.name}/{what}/{digest}"

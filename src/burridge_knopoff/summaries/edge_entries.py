@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import xarray
@@ -57,12 +58,17 @@ class Entry:
 
 
 def followed(
-    model: Model, one: xarray.Dataset, changes: Sequence[BranchChange], processes: int = 1
+    model: Model,
+    one: xarray.Dataset,
+    changes: Sequence[BranchChange],
+    processes: int = 1,
+    folder: str | Path | None = None,
 ) -> tuple[list[Stretch], dict[tuple[int, int], int]]:
     """Follow every attractor of one law that is a closed orbit; return the stretches, and the one of each (a, slot).
 
     one : the attractors at all values of a; those between the grid are left out where the branch does not change
-    processes : that work at once; no result depends on how many
+    processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
+        them
     """
     a_values = one["a"].values
     branch, side, kind = (one[name].values for name in ("branch", "side", "kind"))
@@ -84,7 +90,7 @@ def followed(
             of_slot[place] = number
         return number is not None
 
-    with shared_out(processes) as each:
+    with shared_out(processes, folder) as each:
         orbits = each("closed orbits", _closed, models, *states)
         left = list(zip(places, orbits, strict=True))
         while left:

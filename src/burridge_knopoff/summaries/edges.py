@@ -7,6 +7,7 @@ An attractor that is a closed orbit is followed in a to where it loses its stabi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -68,18 +69,24 @@ PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
 
 
-def one_law(model: Model, attractors: xarray.Dataset, refined: xarray.Dataset, processes: int = 1) -> xarray.Dataset:
+def one_law(
+    model: Model,
+    attractors: xarray.Dataset,
+    refined: xarray.Dataset,
+    processes: int = 1,
+    folder: str | Path | None = None,
+) -> xarray.Dataset:
     """Return the edges of one law.
 
     model : with this law, at any a
     attractors, refined : of this law, at the values of the grid, and at all
-    processes : that work at once; no result depends on how many
+    processes, folder : see `followed`
     """
     values: dict[str, list[Any]] = {name: [] for name in VARIABLES}
     blocks = model.blocks
     one = refined.load()
     changes = branch_changes(attractors, one)
-    stretches, of_slot = followed(model, one, changes, processes)
+    stretches, of_slot = followed(model, one, changes, processes, folder)
     for entry in sorted(entries(one, changes, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
         _append_edge(values, entry, blocks)
     branch = one["branch"].values
