@@ -16,6 +16,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 
 
@@ -66,11 +67,12 @@ def _filled(text: str, wildcards: Mapping[str, str]) -> str:
     return text.replace("{initial}", wildcards.get("initial", ""))
 
 
-def figure_descriptions() -> list[Description]:
+@cache
+def figure_descriptions() -> tuple[Description, ...]:
     """Return all figures, those of the paper first, then by name."""
     found = [_described(path) for path in Path(__file__).parent.glob("*.py")]
     figures = [description for description in found if description is not None]
-    return sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name))
+    return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
 def described_picture(file: str, summaries: Collection[str]) -> tuple[str, str]:

@@ -12,6 +12,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.figure import Figure
 
 from burridge_knopoff.provenance.files import write_whole
@@ -148,9 +149,13 @@ def say_nothing(panel: Axes, reason: str) -> None:
 
 
 def write_figure(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure in the format of each path; the same figure gives the same bytes."""
+    """Write a figure in the format of each path, .pdf, .png or .svg; the same figure gives the same bytes."""
     for path in map(Path, paths):
+        # `savefig` would draw twice, the first time for the layout alone, which a drawing begins with anyway.
+        canvas = get_registered_canvas_class(path.suffix[1:])
         # Without this, PDF files record the time of day.
         metadata = {"CreationDate": None} if path.suffix == ".pdf" else None
         with mpl.rc_context(STYLE):
-            write_whole(path, partial(figure.savefig, metadata=metadata))
+            figure.dpi = STYLE["savefig.dpi"]
+            draw = getattr(canvas(figure), f"print_{path.suffix[1:]}")
+            write_whole(path, partial(draw, metadata=metadata))
