@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from operator import mul
 from typing import Any, ClassVar
 
 from flint import arb, arb_series, fmpq
@@ -59,7 +60,8 @@ class Nonlinear:
         x, y, p, q, d, e = ([value] for value in start)
         b = a * self.v
         strength = a / (1 + b)
-        one = 1 + b
+        # 1 + b + b p at the start, of both.
+        heads = [_positive(1 + b + b * rate[0]) if moves else None for rate, moves in zip((p, q), slips, strict=True)]
         # p/(1 + b + b p) of both, and 1/(1 + b + b p) of the lateral blocks, whose square the difference needs.
         ratios: list[list[Any]] = [[], []]
         inverse: list[Any] = []
@@ -72,15 +74,15 @@ class Nonlinear:
                     rates.append(zero)
                     continue
                 ratio = ratios[block]
-                rest = sum((ratio[j] * rate[k - j] for j in range(k)), zero)
-                ratio.append((rate[k] - b * rest) / _positive(one + b * rate[0]))
+                rest = sum(map(mul, ratio, rate[k:0:-1]), zero)
+                ratio.append((rate[k] - b * rest) / heads[block])
                 rates.append((COUPLING[block] * other[k] - STIFFNESS[block] * place[k] + strength * ratio[k]) / (k + 1))
             bend = zero
             if slips[LATERAL]:
-                rest = sum((inverse[j] * p[k - j] for j in range(k)), zero)
-                inverse.append(((1 if k == 0 else 0) - b * rest) / _positive(one + b * p[0]))
-                square.append(sum((inverse[i] * inverse[k - i] for i in range(k + 1)), zero))
-                slope = sum((square[j] * e[k - j] for j in range(k + 1)), zero)
+                rest = sum(map(mul, inverse, p[k:0:-1]), zero)
+                inverse.append(((1 if k == 0 else 0) - b * rest) / heads[LATERAL])
+                square.append(sum(map(mul, inverse, reversed(inverse)), zero))
+                slope = sum(map(mul, square, reversed(e)), zero)
                 bend = (a * slope - STIFFNESS[LATERAL] * d[k]) / (k + 1)
             for values, new in zip((x, y, d), (p[k], q[k], e[k]), strict=True):
                 values.append(new / (k + 1))
