@@ -30,7 +30,9 @@ endif
 .venv/study: requirements/study.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv
-	$(PIP) install --require-hashes --requirement $<
+	$(PIP) install --no-compile --require-hashes --requirement $<
+	@# pip compiles one file after the other, and the packages' own tests as well.
+	$(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib
 	@touch $@
 
 .venv/kernel: .venv/study setup.py pyproject.toml $(KERNEL)
