@@ -18,9 +18,9 @@ KERNEL = Path("src/burridge_knopoff/kernel")
 SHARED = "burridge_knopoff.kernel._shared"
 
 
-def extension(name: str, source: Path) -> Extension:
+def extension(name: str, source: Path, *flags: str) -> Extension:
     """Return a module of the kernel."""
-    return Extension(name, [str(source)], extra_compile_args=[*COMPILER_FLAGS, *vector_flags()])
+    return Extension(name, [str(source)], extra_compile_args=[*COMPILER_FLAGS, *vector_flags(), *flags])
 
 
 class RecordedBuild(build_ext):
@@ -54,7 +54,8 @@ class RecordedBuild(build_ext):
 setup(
     cmdclass={"build_ext": RecordedBuild},
     ext_modules=[
-        extension(SHARED, Path("_shared.c")),
+        # It hands arrays over and computes nothing: the longest to compile would take twice as long.
+        extension(SHARED, Path("_shared.c"), "-O1"),
         *(
             extension(f"burridge_knopoff.kernel.{source.stem}", source)
             for source in sorted(KERNEL.glob("*.py"))

@@ -18,6 +18,8 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
     "embedsignature": False,
+    # No object of the kernel is pickled; the code for it takes a tenth of the time of compiling.
+    "auto_pickle": False,
 }
 
 
