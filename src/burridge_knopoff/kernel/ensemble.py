@@ -1,4 +1,3 @@
-# cython: auto_pickle=False
 """Many trajectories of one chain at once: a lane holds a trajectory with its own clock and step.
 
 A lane whose trajectory has ended takes the next one from the list. No number of a trajectory depends on what goes on in

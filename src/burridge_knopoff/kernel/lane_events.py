@@ -1,4 +1,3 @@
-# cython: auto_pickle=False
 """The first event of each lane: guessed, found, and proven to be the first.
 
 The gaps (see `lane_series`) are sampled, the earliest fall below 0 is refined to a root t*, and `lane_proof` tells

@@ -1,4 +1,3 @@
-# cython: auto_pickle=False
 """Proof in lanes that no gap has a root before a given time, and how far it holds where there may be one.
 
 Bernstein coefficients over [0, t*] bound a gap from below (see `bernstein`): those of its first terms, with all others

@@ -1,4 +1,3 @@
-# cython: auto_pickle=False
 """The states of several trajectories of one chain, one a lane, and the stick-slip rules that change them.
 
 The rules are those of `state`, for all lanes at once: what is true of some lanes is a mask. Block i feels the
