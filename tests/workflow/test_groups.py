@@ -18,6 +18,8 @@ def groups(study, size, seed):
     note.write_text(NOTE)
     note.chmod(0o755)
     cluster = ("--executor", "cluster-generic", "--cluster-generic-submit-cmd", str(note), "--jobs", "20")
+    # It waits so long before it sees that the submissions have failed.
+    cluster += ("--seconds-between-status-checks", "1")
     command = study.command("--until", "points", *cluster, "--group-components", f"points={size}")
     environment = {**study.environment(), "PYTHONHASHSEED": str(seed)}
     run = subprocess.run(command, cwd=study.folder, env=environment, capture_output=True, text=True)
