@@ -13,7 +13,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import fcntl
 import pickle
 import shutil
-import subprocess
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -23,6 +22,12 @@ from hypothesis import settings
 
 settings.register_profile("study", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("study")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the tests that take longest, so that no worker is left alone with one of them."""
+    longest = ("tests/workflow/test_faults.py", "tests/test_extending.py", "tests/workflow/")
+    items.sort(key=lambda item: next((n for n, name in enumerate(longest) if item.nodeid.startswith(name)), 9))
 
 
 @pytest.fixture(scope="session")
@@ -49,17 +54,9 @@ def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callabl
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory: pytest.TempPathFactory):
     """A tiny study that has run to its end; tests only read it."""
-    from tests.workflow.conftest import Study
+    from tests.workflow.conftest import TINY, run_once
 
-    made = made_once(
-        tmp_path_factory, "finished", lambda folder: (folder / "output").write_text(Study(folder / "study").ok())
-    )
-    # Snakemake locks its folder: each worker has a copy.
-    folder = tmp_path_factory.mktemp("finished")
-    subprocess.run(["cp", "-a", f"{made}/study/.", str(folder)], check=True)
-    study = Study(folder)
-    study.output = (made / "output").read_text()
-    return study
+    return run_once(tmp_path_factory, "finished", TINY)
 
 
 @pytest.fixture(scope="session")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -95,10 +94,9 @@ def _fail(found) -> None:
 @pytest.fixture
 def reported(finished, tmp_path):
     """A copy of the finished study with its report."""
-    from tests.workflow.conftest import Study as Folder
+    from tests.workflow.conftest import copied
 
-    subprocess.run(["cp", "-a", str(finished.folder), str(tmp_path / "copy")], check=True)
-    study = Folder(tmp_path / "copy", finished.config.read_text())
+    study = copied(finished.folder, tmp_path / "copy")
     claims = study.folder / "results" / "tiny" / "summary" / "claims.json"
     if not claims.exists():
         claims.write_bytes(CLAIMS.read_bytes())

@@ -90,7 +90,7 @@ def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] |
             return bool(condition())
         if time.monotonic() > end:
             raise TimeoutError(f"not within {PATIENCE:g} s")
-        time.sleep(0.005)
+        time.sleep(0.02)
     return True
 
 
@@ -118,10 +118,11 @@ def go_on(study: Study, *arguments: str) -> list[str]:
 
 
 def failures(text: str) -> dict[str, str]:
-    """Return {log below results/tiny/logs: reason} from the last words of a run that failed."""
-    assert "study tiny: stopped" in text, text
-    lines = text[text.index("study tiny: stopped") :].splitlines()
-    found = [re.fullmatch(r"failed: (.+?): (.*) \(log results/tiny/logs/(\S+)\)", line) for line in lines]
+    """Return {log below results/<study>/logs: reason} from the last words of a run that failed."""
+    end = re.search(r"study \w+: stopped.*", text, re.DOTALL)
+    assert end, text
+    lines = end[0].splitlines()
+    found = [re.fullmatch(r"failed: (.+?): (.*) \(log results/\w+/logs/(\S+)\)", line) for line in lines]
     return {line[3]: line[2] for line in found if line}
 
 

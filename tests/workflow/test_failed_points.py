@@ -9,32 +9,6 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff.figures.mean_distance import draw
-from tests.workflow.conftest import Study
-
-#: rk4 at so long a step is unstable: slowly at a = 0.05, before the end of the run at a = 0.2.
-CONFIG = """
-study: limits
-a: [0.05, 0.2]
-initial: {minus: {}, plus: {}}
-solver: {linearized: rk4}
-step: 2
-transient: 30
-window: 60
-batches: 2
-lyapunov_alignment: 10
-attractors: {samples: 2, fraction_samples: 2, lifetime: 1000, transient: 300, window: 300, time_limit: 1000, pushes: 4}
-refine: {resolution: 1}
-basins: {a: {linearized: [], nonlinear: []}}
-solvers: {a: [0.2], step: 0.01}
-chains: {two_blocks: {a: [0.02], samples: 1}}
-"""
-
-
-@pytest.fixture(scope="module")
-def limited(tmp_path_factory):
-    study = Study(tmp_path_factory.mktemp("limits"), CONFIG)
-    study.output = study.ok()
-    return study
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ import time
 
 import pytest
 
+from tests.workflow.conftest import LIMITS, Study
 from tests.workflow.faults import (
     COMPARED,
     STAGES,
@@ -38,8 +39,9 @@ needs_mounts = pytest.mark.skipif(bool(NO_MOUNTS), reason=NO_MOUNTS)
 ATTRACTORS = "results/tiny/attractors/linearized.nc"
 
 
-def test_killed_in_every_stage(finished, study):
+def test_killed_in_every_stage(limited, tmp_path):
     """SIGKILL of the whole process group, again and again in one study, so that none gets away with a fault."""
+    study = Study(tmp_path / "study", LIMITS)
     chance = random.Random(1)
     left = set(STAGES)
     flag = ""
@@ -51,11 +53,11 @@ def test_killed_in_every_stage(finished, study):
         process.wait()
         left -= stages_running(study)
         whole = {name: content for name, content in study.files(*COMPARED).items() if "/." not in name}
-        assert whole.items() <= finished.files(*COMPARED).items()
+        assert whole.items() <= limited.files(*COMPARED).items()
         flag = flag or flag_named(study.run().stderr)
         study.ok(flag)
     assert go_on(study) == []
-    assert differences(study, finished) == []
+    assert differences(study, limited) == []
     assert temporaries(study) == []
 
 

@@ -188,22 +188,8 @@ def test_solvers_summary(results):
 @pytest.mark.parametrize(
     "name",
     [
-        "friction_laws",
-        "mean_distance",
-        "bifurcation",
-        "distance",
-        "motion_minus",
-        "motion_plus",
-        "agreement",
-        "lyapunov",
-        "basins",
-        "basin_fractions",
-        "edges",
-        "orbits",
-        "phases",
-        "stick_slip",
-        "equilibrium",
-        "solvers",
+        *("friction_laws", "mean_distance", "bifurcation", "distance", "motion_minus", "motion_plus", "agreement"),
+        *("lyapunov", "basins", "basin_fractions", "edges", "orbits", "phases", "stick_slip", "equilibrium", "solvers"),
     ],
 )
 def test_figures_are_pictures(results, name):

@@ -2,7 +2,6 @@
 
 import contextlib
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import pytest
 import yaml
 
 from burridge_knopoff.study.config import CONFIG
-from tests.workflow.conftest import REPOSITORY, TINY, Study
+from tests.workflow.conftest import REPOSITORY, TINY, Study, copied
 from tests.workflow.test_runs import jobs
 
 #: Rules by stage; an edit makes some of them run again, and all that needs their output.
@@ -18,17 +17,8 @@ POINTS = ("simulate", "simulate_solver")
 OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
 SUMMARIES = (*OF_POINTS, "solvers")
 STABILITY = (
-    *(
-        "attractors_of_law",
-        "basin_tile",
-        "basin_pairs",
-        "edges_of_law",
-        "phases_of_law",
-        "orbits",
-        "equilibrium",
-        "proof",
-    ),
-    "two_blocks",
+    *("attractors_of_law", "basin_tile", "basin_pairs", "edges_of_law", "phases_of_law", "orbits", "equilibrium"),
+    *("proof", "two_blocks"),
 )
 FIGURES = tuple(
     f"figure_{name}"
@@ -59,8 +49,7 @@ def studied(finished, tmp_path_factory):
     folder = tmp_path_factory.mktemp("studied")
     for name in ("config", "src", "workflow", "pyproject.toml", "Makefile"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(folder)], check=True)
-    subprocess.run(["cp", "-a", str(finished.folder), str(folder / "study")], check=True)
-    study = Study(folder / "study", finished.config.read_text(), folder)
+    study = copied(finished.folder, folder / "study", folder)
     # Neither where the sources lie nor where the results do makes a difference.
     assert jobs(study.ok("-n")) == {}
     return study
@@ -176,10 +165,7 @@ def test_a_kernel_that_is_not_compiled_starts_no_study(uncompiled):
 
 #: Changes of keys that make the same rules run again, besides the report.
 KEYS = [
-    (
-        {"sampling": 4, "trajectory": 20, "trajectory_sampling": 0.1, "events": "all", "event_window": 100},
-        POINTS,
-    ),
+    ({"sampling": 4, "trajectory": 20, "trajectory_sampling": 0.1, "events": "all", "event_window": 100}, POINTS),
     ({"transient": 120, "window": 180, "batches": 5, "lyapunov_alignment": 50}, (*POINTS, "two_blocks")),
     ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
     ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
@@ -245,9 +231,7 @@ def test_every_key_is_there():
 @pytest.fixture(scope="module")
 def edited(finished, tmp_path_factory):
     """A copy of the finished study whose config may be edited: a folder of results belongs to its config file."""
-    folder = tmp_path_factory.mktemp("edited") / "study"
-    shutil.copytree(finished.folder, folder)
-    return Study(folder, finished.config.read_text())
+    return copied(finished.folder, tmp_path_factory.mktemp("edited") / "study")
 
 
 def changed(edited, changes):
