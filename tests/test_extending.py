@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import made_once
 from tests.pages import apply, blocks
+from tests.workflow.conftest import Study
 
 REPOSITORY = Path(__file__).parent.parent
 PAGE = (REPOSITORY / "docs" / "extending.md").read_text()
@@ -89,10 +91,8 @@ for panel, law in zip(panels, laws):
 """
 
 
-@pytest.fixture(scope="module")
-def extended(tmp_path_factory):
-    """A copy of the tree with the edits of the page, and its kernel compiled."""
-    folder = tmp_path_factory.mktemp("extended")
+def extend(folder):
+    """Make a copy of the tree with the edits of the page, and compile its kernel."""
     for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
     shutil.copy(REPOSITORY / "pyproject.toml", folder)
@@ -100,7 +100,11 @@ def extended(tmp_path_factory):
     compiled = run(folder, sys.executable, "-c", COMPILE).split()
     assert "observe" in compiled
     assert "series" not in compiled
-    return folder
+
+
+@pytest.fixture(scope="module")
+def extended(tmp_path_factory):
+    return made_once(tmp_path_factory, "extended", extend)
 
 
 def run(extended, *command, folder=None):
@@ -113,20 +117,9 @@ def run(extended, *command, folder=None):
     return done.stdout + done.stderr
 
 
-def study(extended, folder, config):
-    """Run a study with the extended tree, to its report; return its results."""
-    (folder / "study.yaml").write_text(config)
-    snakemake = str(Path(sys.executable).parent / "snakemake")
-    run(
-        extended,
-        snakemake,
-        "-c1",
-        "-s",
-        str(extended / "workflow/Snakefile"),
-        "--configfile",
-        "study.yaml",
-        folder=folder,
-    )
+def study(extended, folder, without, config):
+    """Run a study with the extended tree, to its report, without some stages; return its results."""
+    Study(folder, f"{SMALL}without: [{without}]\n{config}", extended).ok()
     results = folder / "results" / "small"
     assert (results / "report.html").stat().st_size > 100_000
     return results
@@ -150,20 +143,16 @@ def test_the_page_prints_what_it_says(extended):
 
 def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
     laws, _ = (block.text for block in blocks(PAGE) if block.info == "yaml")
-    results = study(extended, tmp_path, SMALL + laws + "  nonlinear: {}\n  quadratic: {c: 1.0}\n")
-    assert {path.name for path in (results / "points").iterdir()} == {
-        "linearized",
-        "rational",
-        "nonlinear",
-        "quadratic",
-    }
+    results = study(extended, tmp_path, "phases, proof", laws + "  nonlinear: {}\n  quadratic: {c: 1.0}\n")
+    names = {"linearized", "rational", "nonlinear", "quadratic"}
+    assert {path.name for path in (results / "points").iterdir()} == names
     assert (results / "figures" / "largest_velocity.png").is_file()
     assert "aU′(1 + U′/c)" in (results / "report.html").read_text()
 
 
 def test_a_study_of_the_chain_ends_in_its_report(extended, tmp_path):
     _, chain = (block.text for block in blocks(PAGE) if block.info == "yaml")
-    results = study(extended, tmp_path, SMALL + chain + "laws: {linearized: {}}\n")
+    results = study(extended, tmp_path, "attractors, proof, claims", chain + "laws: {linearized: {}}\n")
     assert (results / "figures" / "largest_velocity.png").is_file()
 
 
