@@ -204,10 +204,7 @@ def test_no_events(tmp_path):
         ([*RUN, "--initial", "two words", "--out", "x.nc"], "'two words' is not allowed"),
         ([*RUN, "--position", "", "--out", "x.nc"], "numbers with commas"),
         ([*RUN, "--out", "no/folder/x.nc"], "no/folder/x.nc: cannot be written: there is no folder no/folder"),
-        (
-            [*RUN, "--initial", "plus", "--position", "1,1,1", "--out", "x.nc"],
-            "initial: 'plus' is not allowed",
-        ),
+        ([*RUN, "--initial", "plus", "--position", "1,1,1", "--out", "x.nc"], "initial: 'plus' is not allowed"),
         (["attractors", "--law", "linearized", "--a", "0.08", "--samples", "-1"], "samples: -1 is not allowed"),
         (["attractors", "--law", "linearized", "--a", "0.08", "--position-box", "1,0"], "position: (1.0, 0.0) is not"),
         (["basins", "--law", "linearized", "--a", "0.08", "--pixels", "0"], "pixels: 0 is not allowed"),

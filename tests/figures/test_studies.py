@@ -40,10 +40,7 @@ def figures_of(small):
     grid = small.grid
     run_shown = run(study.model(law, 0.2), grid.initial[initial], grid.settings[law])
     point = to_dataset(run_shown)
-    yield (
-        "friction_laws",
-        friction_laws.draw(found["mean_distance"], study.law_descriptions, 0.05),
-    )
+    yield ("friction_laws", friction_laws.draw(found["mean_distance"], study.law_descriptions, 0.05))
     yield "mean_distance", mean_distance.draw(found["mean_distance"], found["attractors"])
     yield "bifurcation", bifurcation.draw(found["bifurcation"])
     yield "lyapunov", lyapunov.draw(found["lyapunov"])

@@ -130,10 +130,7 @@ def test_mirror_images_move_as_mirror_images(model):
     start, ensemble = states(model, 30), new_ensemble(model)
     left_half = np.arange(model.blocks) < model.blocks // 2
     own = [np.where(left_half, part[:, ::-1], part) for part in start]
-    for one, other, times in (
-        (start, [part[:, ::-1] for part in start], [3.0, 25.0]),
-        (own, own, [25.0, 200.0]),
-    ):
+    for one, other, times in ((start, [part[:, ::-1] for part in start], [3.0, 25.0]), (own, own, [25.0, 200.0])):
         straight, mirrored = ensemble.run(*one, times), ensemble.run(*other, times)
         for key in ("position", "velocity", "slip"):
             assert (straight[key] == mirrored[key][:, :, ::-1]).all()

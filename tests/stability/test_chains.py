@@ -240,19 +240,11 @@ FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         (FAR, None, Fate(APART, distance=0.5, mean_distance=0.5)),
         # The last quarter of ten looks is the last two, before it the two before these.
         ([*FAR[:8], (0.4, 0.0), (0.2, 0.1)], None, Fate(APART, distance=0.4, mean_distance=0.3)),
-        (
-            [*FAR[:8], (0.3, 0.0), (0.2, 9e-7)],
-            None,
-            Fate(APART, distance=0.3, mean_distance=0.25, pairs=1),
-        ),
+        ([*FAR[:8], (0.3, 0.0), (0.2, 9e-7)], None, Fate(APART, distance=0.3, mean_distance=0.25, pairs=1)),
         ([*FAR[:8], (0.26, 0.3), (0.2, 0.1)], None, Fate(APART, distance=0.3, mean_distance=0.25)),
         # Still falling: the largest is below half of that of the quarter before.
         ([*FAR[:8], (0.2, 0.24), (0.2, 0.1)], None, Fate(Outcome.UNDETERMINED, distance=0.24, mean_distance=0.22)),
-        (
-            [*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2],
-            None,
-            Fate(APART, distance=0.2, mean_distance=0.2),
-        ),
+        ([*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2], None, Fate(APART, distance=0.2, mean_distance=0.2)),
         # Near symmetric motion it is undetermined but for an exponent beyond three errors.
         (NEAR, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
         (NEAR, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),

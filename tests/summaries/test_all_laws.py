@@ -69,10 +69,7 @@ def branches(*numbers):
 def test_a_branch_between_has_a_number_of_its_own():
     numbers = [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
     parts = [branches([0, 1], [3, -1], [4, 2]), branches([0, 2], [3, 1], [-1, 9])]
-    assert with_branches_between(numbers, parts) == [
-        {0: 0, 1: 1, 4: 4, 2: 6, 3: 7},
-        {0: 0, 2: 1, 3: 5, 1: 8, 9: 9},
-    ]
+    assert with_branches_between(numbers, parts) == [{0: 0, 1: 1, 4: 4, 2: 6, 3: 7}, {0: 0, 2: 1, 3: 5, 1: 8, 9: 9}]
     assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
 
 

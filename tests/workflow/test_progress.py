@@ -129,10 +129,7 @@ def test_failed_jobs_are_named_with_their_logs(copy):
         f"failed: mean_distance: {point.relative_to(copy.folder)}: is empty; remake it: snakemake -c2 "
     )
     assert told.endswith(f" -R {point.relative_to(copy.folder)} (log results/tiny/logs/mean_distance.log)")
-    assert lines[end + 2 : end + 4] == [
-        "made: nothing",
-        "the same command goes on where this run stopped",
-    ]
+    assert lines[end + 2 : end + 4] == ["made: nothing", "the same command goes on where this run stopped"]
     # It was told when it happened as well, in the same line and without Snakemake's block of all input files.
     assert lines.count(told) == 2
     assert "Error in rule" not in run.stderr
