@@ -4,8 +4,6 @@ import os
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import netCDF4
@@ -20,8 +18,9 @@ from burridge_knopoff.provenance.seal import BadFile, identity, seal
 from burridge_knopoff.study import load_study
 from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
-from tests.workflow.conftest import TINY
+from tests.workflow.conftest import TINY, copied
 from tests.workflow.faults import differences, failures, go_on, temporaries
+from tests.workflow.snakemake import run_snakemake
 
 #: A point that every stage reads which reads points.
 POINT = "points/linearized/minus/a0.2000.nc"
@@ -150,27 +149,26 @@ def test_the_readers_read_what_is_whole(finished, grids):
 def remade(study, reasons):
     """Run exactly the commands that the reasons name."""
     commands = {re.search(r"; remake it: (.*)$", reason)[1] for reason in reasons}
-    environment = study.environment()
-    environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     for number, command in enumerate(sorted(commands), 1):
-        run = subprocess.run(shlex.split(command), cwd=study.folder, capture_output=True, text=True, env=environment)
+        run = run_snakemake(shlex.split(command), study.folder, study.environment())
         # Each mends what it names, and stops at the next bad file.
         assert run.returncode == (number < len(commands)), run.stderr
     return commands
 
 
-def test_every_stage_stops_at_a_bad_file(finished, copy):
+def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     """The files are newer than what was made of them: the next run reads them. Their own commands mend them."""
-    results = copy.folder / "results" / "tiny"
+    study = copied(limited.folder, tmp_path / "study")
+    results = study.folder / "results" / "limits"
     spoiled = {
-        "points/linearized/minus/a0.0800.nc": lambda path: shutil.copy(path.with_name("a0.0500.nc"), path),
+        "points/linearized/minus/a0.0500.nc": lambda path: shutil.copy(path.with_name("a0.2000.nc"), path),
         "solvers/rk4/nonlinear/plus/a0.2000.nc": lambda path: rewrite(path, cut),
         "attractors/nonlinear.nc": lambda path: rewrite(path, noise_inside),
     }
     for path, spoil in spoiled.items():
         spoil(results / path)
         os.utime(results / path)
-    run = copy.run()
+    run = study.run()
     assert run.returncode == 1
     reasons = failures(run.stderr)
     assert reasons.keys() >= {
@@ -179,16 +177,16 @@ def test_every_stage_stops_at_a_bad_file(finished, copy):
     }
     named = set()
     for log, reason in reasons.items():
-        found = re.fullmatch(r"results/tiny/(\S+): .+; remake it: (snakemake -c2 .* -R results/tiny/(\S+))", reason)
+        found = re.fullmatch(r"results/limits/(\S+): .+; remake it: (snakemake -c2 .* -R results/limits/(\S+))", reason)
         assert found, f"{log}: {reason}"
         assert found[1] == found[3]
         named.add(found[1])
     assert named == spoiled.keys()
     assert not (results / "summary" / "mean_distance.nc").exists()
-    assert len(remade(copy, reasons.values())) == len(spoiled)
-    assert go_on(copy) == []
-    assert differences(copy, finished) == []
-    assert temporaries(copy) == []
+    assert len(remade(study, reasons.values())) == len(spoiled)
+    assert go_on(study) == []
+    assert differences(study, limited) == []
+    assert temporaries(study) == []
 
 
 @pytest.mark.parametrize(
