@@ -117,9 +117,9 @@ def run(extended, *command, folder=None):
     return done.stdout + done.stderr
 
 
-def study(extended, folder, without, config):
-    """Run a study with the extended tree, to its report, without some stages; return its results."""
-    Study(folder, f"{SMALL}without: [{without}]\n{config}", extended).ok()
+def study(extended, folder, config):
+    """Run a study with the extended tree, to its report; return its results. The proof is of the paper's laws alone."""
+    Study(folder, f"{SMALL}without: [proof]\n{config}", extended).ok()
     results = folder / "results" / "small"
     assert (results / "report.html").stat().st_size > 100_000
     return results
@@ -143,7 +143,7 @@ def test_the_page_prints_what_it_says(extended):
 
 def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
     laws, _ = (block.text for block in blocks(PAGE) if block.info == "yaml")
-    results = study(extended, tmp_path, "phases, proof", laws + "  nonlinear: {}\n  quadratic: {c: 1.0}\n")
+    results = study(extended, tmp_path, laws + "  nonlinear: {}\n  quadratic: {c: 1.0}\n")
     names = {"linearized", "rational", "nonlinear", "quadratic"}
     assert {path.name for path in (results / "points").iterdir()} == names
     assert (results / "figures" / "largest_velocity.png").is_file()
@@ -152,7 +152,7 @@ def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
 
 def test_a_study_of_the_chain_ends_in_its_report(extended, tmp_path):
     _, chain = (block.text for block in blocks(PAGE) if block.info == "yaml")
-    results = study(extended, tmp_path, "attractors, proof, claims", chain + "laws: {linearized: {}}\n")
+    results = study(extended, tmp_path, chain + "laws: {linearized: {}}\n")
     assert (results / "figures" / "largest_velocity.png").is_file()
 
 
