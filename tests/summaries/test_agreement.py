@@ -126,6 +126,12 @@ def test_altered_data_changes_the_verdict(compare):
     assert "they part at a = 0.05; they disagree at 2 of 2 values of a, the last 0.08" in agreement.digest(dataset)
 
 
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
+    _, dataset = compare({(law, 0.05): {"end_time": 7.0}})
+    assert dataset["event_order_time"].values[0, 0, 0] == 7.0
+
+
 @pytest.mark.parametrize(
     ("mean", "error", "branch", "settled"),
     [

@@ -54,6 +54,22 @@ def test_features_are_sorted_by_branch_and_side(one_law):
     assert {key: found.attrs[key] for key in told} == told
 
 
+def test_there_are_as_many_slots_as_attractors_at_one_a():
+    """One where there is never more than one, and where there is none at all."""
+    both = continuation("linearized")
+    for count in (1, 0):
+        few = {
+            name: [row[:count] for row in getattr(both, name)] for name in ("attractors", "lifetimes", "branch", "side")
+        }
+        few |= {
+            name: [np.full(len(both.attractors[k][:count]), -1) for k in both.grid] for name in ("upward", "downward")
+        }
+        found = attractors.one_law(replace(both, **few), STATES, SETTINGS, MOTION, "tested")
+        assert found.sizes["attractor"] == 1
+        for name in ("branch", "upward_branch", "downward_branch", "basin_count", "mean_distance"):
+            assert found[name].shape == (3, 1)
+
+
 def test_what_initial_states_and_sweeps_reach(one_law):
     found = one_law("linearized")
     reached, side = found["initial_branch"], found["initial_side"]

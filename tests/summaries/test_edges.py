@@ -175,6 +175,21 @@ def test_orbits_are_stable_on_one_side_of_the_edge(found):
     assert (found["orbit_period"].values > 0.0).all()
 
 
+def test_an_edge_without_an_orbit_has_no_numbers_of_one(grid):
+    """Chaos on both sides of every edge: none is located, and each lies anywhere between two values of a."""
+    chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
+    model = Model(Chain(3), law_of("linearized", 0.1))
+    found = one_law(model, *(one.isel(law=0) for one in (chaotic, at_all_values(chaotic))))
+    assert found.sizes["orbit"] == 0
+    assert found["a"].values == pytest.approx([0.08375] * 2)
+    assert found["a_error"].values == pytest.approx([0.00375] * 2)
+    for name in ("stops", "stops_beyond"):
+        assert (found[name].values == -1).all()
+    assert (found["turns"].values == -1).all()
+    for name in ("period", "mean_distance", "stick_time", "multiplier", "multiplier_beyond"):
+        assert np.isnan(found[name].values).all()
+
+
 def test_edges_of_laws_come_one_after_the_other(found):
     other = found.isel(edge=[1], orbit=[0, 2]).assign_attrs(laws="mine")
     both = merge([found, other])

@@ -1,0 +1,50 @@
+"""What would turn a verdict, told of judges whose verdict turns at a known place."""
+
+from __future__ import annotations
+
+import pytest
+
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.margins import turns
+from burridge_knopoff.claims.verdict import FAILS, HOLDS, NOT_TESTABLE, Verdict
+
+NOTHING = Evidence({}, {})
+
+
+def turning(name, place, below, above):
+    """Return a judge whose verdict turns where a parameter does."""
+
+    def judge(_evidence, parameters):
+        return Verdict(below if parameters[name] < place else above, "")
+
+    return judge
+
+
+@pytest.mark.parametrize(("below", "above"), [(FAILS, HOLDS), (HOLDS, FAILS)])
+@pytest.mark.parametrize(("place", "relation"), [(0.8, "below"), (1.3, "above"), (1.9, "above"), (0.51, "below")])
+def test_the_tolerance_at_which_a_verdict_turns_is_told_to_two_per_cent(below, above, place, relation):
+    judge = turning("tolerance", place, below, above)
+    parameters = {"tolerance": 1.0}
+    now = judge(NOTHING, parameters)
+    (text,) = turns(judge, NOTHING, parameters, now)
+    other = {below: above, above: below}[now.verdict]
+    head, value = text.removesuffix(" (1)").rsplit(" ", 1)
+    assert head == f"{other}: tolerance {relation}"
+    # On the side of the verdict as it is, but for three digits, and next to where it turns.
+    assert (float(value) - place) * (1.0 - place) >= -0.005 * place
+    assert float(value) == pytest.approx(place, rel=0.025)
+
+
+def test_a_share_changes_by_its_distance_from_one():
+    judge = turning("share", 0.85, FAILS, HOLDS)
+    (text,) = turns(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
+    assert text.startswith("fails: share below 0.85")
+    # 0.75 is farther off than twice 0.1 from 1.
+    assert turns(turning("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, "")) == []
+
+
+def test_nothing_turns_what_cannot_be_tested():
+    judge = turning("tolerance", 0.9, FAILS, HOLDS)
+    assert turns(judge, NOTHING, {"tolerance": 1.0}, Verdict(NOT_TESTABLE, "")) == []
+    beyond = turning("tolerance", 2.1, HOLDS, FAILS)
+    assert turns(beyond, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, "")) == []
