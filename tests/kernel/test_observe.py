@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff.running.runner import Runner, new_observer
 from tests.flows import wave
 
 
@@ -36,6 +37,27 @@ def test_section_of_other_chains(law, blocks):
     # By the secant, whose error is a second derivative times the interval squared over the slope.
     secant = time[change] - w[change] * 1e-3 / (w[change + 1] - w[change])
     assert np.abs(run.crossing_time - secant).max() < 1e-5
+
+
+def test_a_crossing_at_the_seam_of_two_pieces_is_one():
+    """Cut within rounding of where W changes its sign, a run has that crossing once, and there."""
+    model = Model(Chain(3), law_of("linearized", 0.1))
+    generator = np.random.default_rng(1)
+
+    def crossings(start, *cuts):
+        runner = Runner(model, observer=new_observer(model, [0.0, 1.0]))
+        runner.begin(start)
+        for time in (*cuts, None):
+            runner.run(time)
+        return runner.observer.results()["crossing_time"]
+
+    for _ in range(250):
+        position = generator.uniform(-1.0, 1.0, 3)
+        position += (model.sliding_offset - position).mean() - generator.uniform(0.0, 0.02)
+        start = model.begin(InitialState("rising", tuple(position), tuple(generator.uniform(0.2, 0.4, 3))))
+        (time,) = crossings(start)
+        for cut in (np.nextafter(time, 0.0), time, np.nextafter(time, 1.0)):
+            assert crossings(start, cut) == pytest.approx([time], abs=1e-12)
 
 
 @pytest.fixture(
