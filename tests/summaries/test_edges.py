@@ -8,7 +8,7 @@ from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
-from burridge_knopoff.summaries.edges import merge, one_law
+from burridge_knopoff.summaries.edges import VARIABLES, _rounded, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -166,6 +166,13 @@ def test_numbers_are_rounded(found):
     for name in ("a", "period", "orbit_a", "orbit_mean_distance"):
         values = found[name].values
         assert [float(f"{value:.9e}") for value in values] == values.tolist()
+        assert [float(f"{value:.8e}") for value in values] != values.tolist()
+
+
+def test_next_to_0_eleven_digits_behind_the_point_are_kept():
+    values = _rounded(VARIABLES["stick_time"], [1.23456789e-7, 1.23456789e-2, 4e-12], 5)
+    assert values.tolist() == [1.2346e-7, 1.2346e-2, 0.0]
+    assert _rounded(VARIABLES["a"], [1.23456789e-8], 10).tolist() == [1.235e-8]
 
 
 def test_orbits_are_stable_on_one_side_of_the_edge(found):

@@ -1,0 +1,46 @@
+"""Which closed orbits are followed, told of made-up ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.stability.family import Family
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.periodic import find_periodic_orbit
+from burridge_knopoff.stability.pseudo_arclength import begin_branch
+from burridge_knopoff.stability.stretch import Stretch
+from burridge_knopoff.summaries import edge_entries
+
+
+def test_orbits_of_other_periods_are_followed_apart(monkeypatch):
+    """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
+    known = Family(Model(Chain(3), law_of("linearized", 0.0))).at(0.05)
+    orbit = find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
+    periods = iter([1.0, 1.0001, 1.01, 0.99])
+
+    def next_orbit(*_):
+        return replace(orbit, return_time=next(periods) * orbit.return_time)
+
+    def alone(one, *_):
+        return Stretch(*[[begin_branch(one, True)]] * 2)
+
+    monkeypatch.setattr(edge_entries, "closed_motion", next_orbit)
+    monkeypatch.setattr(edge_entries, "stretch", alone)
+    slot = ("value", "attractor")
+    one = xr.Dataset(
+        {
+            "a": ("value", [0.05]),
+            "in_grid": ("value", [1]),
+            "branch": (slot, [[0, 1, 2, 3]]),
+            "side": (slot, np.zeros((1, 4), int)),
+            "kind": (slot, np.full((1, 4), MotionKind.PERIODIC)),
+            **dict.fromkeys(("position", "velocity"), ((*slot, "block"), np.zeros((1, 4, 3)))),
+        }
+    )
+    found, of_slot = edge_entries.followed(orbit.model, one, [])
+    assert of_slot == {(0, 0): 0, (0, 1): 0, (0, 2): 1, (0, 3): 2}
+    assert [item.upward[0].orbit.period / orbit.period for item in found] == pytest.approx([1.0, 1.01, 0.99])
