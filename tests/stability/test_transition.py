@@ -1,11 +1,13 @@
 """Where synchrony is lost, block 2 begins to stick, and what branches off, against independent computations."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from burridge_knopoff import InitialState, simulate
+from burridge_knopoff.stability import branch
 from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import OrbitError, flow, multipliers, transverse_multiplier
@@ -134,6 +136,15 @@ def test_no_hysteresis(families, critical, law):
 def test_an_asymmetry_beyond_the_branch_is_refused(families, critical):
     with pytest.raises(OrbitError):
         branch_orbit(families["linearized"], critical["linearized"], 0.2)
+
+
+@pytest.mark.parametrize("share", [1.001, np.nan])
+def test_a_root_that_is_none_is_refused(families, critical, monkeypatch, share):
+    """Beside a_c there is no orbit of this asymmetry, whatever the secant method ends with."""
+    a = critical["linearized"]
+    monkeypatch.setattr(branch, "root_scalar", lambda *_, **__: SimpleNamespace(root=share * a))
+    with pytest.raises(OrbitError, match=r"asymmetry = 0\.001: no orbit found near a = 0\.0869"):
+        branch_orbit(families["linearized"], a, 1e-3)
 
 
 def test_critical_a_does_not_depend_on_v_under_the_linearized_law(families, critical):

@@ -82,6 +82,12 @@ def test_no_frequency_without_a_cycle():
     assert leading_frequency(np.exp(-time / 40.0) + 0.5 * np.sin(time), 30.0) == pytest.approx(0.5 / np.pi, abs=3e-3)
 
 
+def test_four_samples_are_enough_for_a_frequency():
+    values = np.sin(0.84 * np.pi * np.arange(4))
+    assert leading_frequency(values, 3.0) == pytest.approx(0.42, abs=0.05)
+    assert np.isnan(leading_frequency(values[:3], 2.0))
+
+
 def test_correlation():
     one = np.sin(np.arange(500) * 0.1)
     assert correlation(one, one) == 1.0
