@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import simulate
-from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
+from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, write_point
 from burridge_knopoff.laws import FormulaLaw
 from burridge_knopoff.model.chain import Chain
 
@@ -175,3 +175,9 @@ def test_the_data_dictionary_describes_every_variable(repository):
     text = (repository / "docs" / "data.md").read_text()
     for name in POINT_VARIABLES:
         assert f"`{name}`" in text, name
+
+
+@pytest.mark.parametrize(("solver", "steps"), [("series", False), ("rk4", True)])
+def test_only_a_run_in_steps_has_a_step(solver, steps):
+    run = simulate("linearized", 0.08, "plus", solver=solver, transient=0.0, window=5.0)
+    assert ("step" in point_attributes(run)) == steps
