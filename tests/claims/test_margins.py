@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.margins import turns
@@ -41,6 +42,17 @@ def test_a_share_changes_by_its_distance_from_one():
     assert text.startswith("fails: share below 0.85")
     # 0.75 is farther off than twice 0.1 from 1.
     assert turns(turning("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, "")) == []
+
+
+@pytest.mark.parametrize(("a", "which"), [([0.1, 0.2, 0.3], "second"), ([0.2, 0.1, 0.2], "first")])
+def test_the_half_of_the_grid_that_turns_a_verdict_is_told(a, which):
+    """Of three values one half has the first and the third, the other the second; without 0.1 it fails."""
+    world = Evidence({"mean_distance": xarray.Dataset(coords={"a": a})}, {})
+
+    def judge(evidence, _parameters):
+        return Verdict(HOLDS if 0.1 in evidence.summaries["mean_distance"]["a"].values else FAILS, "")
+
+    assert turns(judge, world, {}, judge(world, {})) == [f"fails: every second value of a, from the {which} on"]
 
 
 def test_nothing_turns_what_cannot_be_tested():
