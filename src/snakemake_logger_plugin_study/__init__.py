@@ -80,6 +80,7 @@ class LogHandler(LogHandlerBase):
 
     def emit(self, record: LogRecord) -> None:
         """Take a record of Snakemake's log."""
+        repeated = self._is_repeated(record)
         try:
             with self._lock:
                 self._take(record)
@@ -87,8 +88,15 @@ class LogHandler(LogHandlerBase):
             # A defect of the display must neither end the thread of the log nor hide a message.
             self.handleError(record)
         shown = self._shown(record)
-        if shown is not None:
+        if shown is not None and not repeated:
             self._write(shown)
+
+    def _is_repeated(self, record: Any) -> bool:
+        """Tell whether a record tells of a failed job once more, as those of Snakemake 9.22 do."""
+        if getattr(record, "event", None) != LogEvent.JOB_ERROR:
+            return False
+        job = self._tally.job(record.jobid)
+        return job is not None and job.state == FAILED
 
     def _shown(self, record: Any) -> LogRecord | None:
         """Return what is shown of a record: itself, one line in its place, or nothing."""
