@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import pairwise
 from math import prod
 from pathlib import Path
 
 from burridge_knopoff.study import Study, all_points
 
-#: The search for attractors refines some of the gaps between values of a: so many values more, by measurement.
+#: The search for attractors refines some of the gaps between values of a, if any is wide enough: so many values more,
+#: by measurement.
 _VALUES_BETWEEN = 6.6
 #: What a long job keeps last of all, about once for every gap between values of a; and what is spared at most.
 _LAST = {"attractors_of_law": "refined", "edges_of_law": "followed"}
@@ -44,7 +46,9 @@ def _search(study: Study) -> float:
     """Time units of all blocks of a search for attractors under one law."""
     section = study.config["attractors"]
     time = section["transient"] + section["window"]
-    return study.blocks * section["samples"] * time * (len(study.grid) + _VALUES_BETWEEN)
+    widest = max((after - before for before, after in pairwise(study.grid.values())), default=0.0)
+    between = _VALUES_BETWEEN if study.config["refine"]["resolution"] < widest else 0.0
+    return study.blocks * section["samples"] * time * (len(study.grid) + between)
 
 
 def _phases(study: Study) -> float:
