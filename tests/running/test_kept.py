@@ -93,13 +93,20 @@ def told(number):
 
 @pytest.mark.parametrize("processes", [1, 2])
 def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
-    """Also what other settings have left beside it; but nothing if a call has failed."""
-    for folder, numbers in (("before", [1]), ("now", [1, 2])):
-        with shared_out(processes, tmp_path / folder) as each:
+    """Also what other settings have left beside it; but nothing if a call has failed, and never anything else."""
+    before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
+    others = [tmp_path / "mine", now / "mine", now / "told" / "mine", tmp_path / "kept/told" / (32 * "a")]
+    for path in others:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("mine")
+    for folder, numbers in ((before, [1]), (now, [1, 2])):
+        with shared_out(processes, folder) as each:
             each("told", told, numbers)
-    assert not any(path.is_file() for path in (tmp_path / "before").rglob("*"))
-    with pytest.raises(ZeroDivisionError), shared_out(processes, tmp_path / "now") as each:
+    assert not any(path.is_file() for path in before.rglob("*"))
+    with pytest.raises(ZeroDivisionError), shared_out(processes, now) as each:
         each("fails", divmod, [1], [0])
-    with shared_out(processes, tmp_path / "now") as each:
+    with shared_out(processes, now) as each:
         assert [pid != os.getpid() for _, pid in each("told", told, [2])] == [processes == 2]
-    assert len([path for path in tmp_path.rglob("*") if path.is_file()]) == 1
+    left = {path for path in tmp_path.rglob("*") if path.is_file()}
+    assert set(others) <= left
+    assert len(left) == len(others) + 1

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import fields, is_dataclass
 from functools import partial
 from pathlib import Path
@@ -20,6 +20,8 @@ import scipy
 
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import source_fingerprint
+
+_DIGIT = "[0-9a-f]"
 
 
 def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
@@ -41,6 +43,17 @@ def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, 
     content = pickle.dumps(result)
     write_whole(path, lambda name: Path(name).write_bytes(_check(content) + b"\n" + content))
     return result, path, False
+
+
+def forget(folder: Path, asked: Collection[Path]) -> None:
+    """Delete what is kept in the folders of a folder, and nothing else, but for the files that were asked for.
+
+    Also what is kept beside it, in folders that other settings have named by 16 hexadecimal digits.
+    """
+    result = f"*/{32 * _DIGIT}"
+    for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
+        if path not in asked:
+            path.unlink(missing_ok=True)
 
 
 def _check(content: bytes) -> bytes:

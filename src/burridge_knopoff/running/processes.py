@@ -14,7 +14,7 @@ from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.running.kept import kept
+from burridge_knopoff.running.kept import forget, kept
 
 _LOG = logging.getLogger(__name__)
 
@@ -23,8 +23,8 @@ _LOG = logging.getLogger(__name__)
 def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
     """Give what calls a function for each item of one or several sequences, in so many processes at once.
 
-    folder : where results are kept for another run, see `running.kept`; None keeps none. What no call has asked for is
-        deleted at the end, from it and from the folders beside it
+    folder : where results are kept for another run, see `running.kept`; None keeps none. Of what is kept there all that
+        no call has asked for is deleted at the end
 
     `each(what, function, *sequences)` returns the list of results, and logs the CPU seconds that `what` has taken.
     Function, items and results have to be picklable, and a call must not rely on what another one has changed.
@@ -47,9 +47,8 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
         # A fresh interpreter would run the script of the caller once more.
         with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
             yield partial(each, pool.map)
-    for path in Path(folder).parent.rglob("*") if folder else ():
-        if path.is_file() and path not in asked:
-            path.unlink(missing_ok=True)
+    if folder:
+        forget(Path(folder), asked)
 
 
 def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
