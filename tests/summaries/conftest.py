@@ -18,8 +18,10 @@ def one_law(monkeypatch):
     def label(model, found, starts, time_limit):
         assert time_limit == 123.0
         reached = [1 if len(found) else -1] * len(starts)
-        if starts and starts[0].stuck.any():
-            reached[0] = -1
+        # The states under one convention of start, then those under the other.
+        for k in (0, len(starts) // 2):
+            if starts[k].stuck.any():
+                reached[k] = -1
         return np.array(reached, int), np.zeros(len(starts))
 
     monkeypatch.setattr(attractors, "label", label)
