@@ -37,8 +37,9 @@ def fraction_labels(
         those, firsts = [searches[k] for k, _ in parts], [first for _, first in parts]
         found = each("labelled for basin fractions", partial(_labels, start=start), those, firsts)
         for k in waiting:
-            here = [part for (place, _), part in zip(parts, found, strict=True) if place == k]
-            labels[k] = np.concatenate(here) if here else labels[k]
+            labels[k] = labels[k][:0]
+        for (k, _), part in zip(parts, found, strict=True):
+            labels[k] = np.concatenate([labels[k], part])
         lost = [k for k in waiting if (labels[k] == UNDETERMINED).any()]
         those = [searches[k] for k in lost]
         looked = each("looked for from the others", partial(_more, start=start), those, [labels[k] for k in lost])
