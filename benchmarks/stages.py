@@ -17,8 +17,6 @@ from burridge_knopoff.report.stages import Stage, read_stages
 
 LIMIT_MB = 400.0
 LIMIT_MINUTES = 5.0
-#: Of Snakemake's, which are MiB.
-MB = 1.048576
 
 
 def rules_of(results: Path) -> list[Stage]:
@@ -31,9 +29,8 @@ def main() -> None:
     for results in map(Path, sys.argv[1:]):
         rows = []
         for rule in rules_of(results):
-            memory = rule.memory * MB
-            taken = [f"{rule.wall:.1f}", f"{rule.cpu:.1f}", f"{memory:.0f}"]
-            rows.append([rule.name, rule.jobs, *taken, verdict(memory, LIMIT_MB)])
+            taken = [f"{rule.wall:.1f}", f"{rule.cpu:.1f}", f"{rule.memory:.0f}"]
+            rows.append([rule.name, rule.jobs, *taken, verdict(rule.memory, LIMIT_MB)])
         print_table(["rule", "jobs", "wall s, sum", "CPU s, sum", "MB, largest", f"under {LIMIT_MB:g} MB"], rows)
         record = recorded(results)
         minutes = max(job["end"] for job in record["jobs"]) / 60.0

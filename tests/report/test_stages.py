@@ -23,10 +23,10 @@ def test_run_times_are_sums_over_the_files_of_a_stage(tmp_path):
     write("report.tsv", "9.0\t0:00:09\t900\t1\t1\t1\t0\t0\t90\t9")
     (tmp_path / "empty.tsv").write_text("")
     (tmp_path / "noise.tsv").write_bytes(b"\xff\xfe\x00")
-    rows = [(s.name, s.jobs, s.wall, s.cpu, s.cpu_jobs, s.memory) for s in read_stages(tmp_path)]
+    rows = [(s.name, s.jobs, s.wall, s.cpu, s.cpu_jobs, round(s.memory, 6)) for s in read_stages(tmp_path)]
     assert rows == [
-        ("basins", 2, 6.0, 5.0, 2, 200.0),
-        ("simulate", 3, pytest.approx(2.68), 1.75, 1, 80.0),
-        ("figures", 2, 2.0, 0.0, 0, 60.0),
+        ("basins", 2, 6.0, 5.0, 2, 209.7152),
+        ("simulate", 3, pytest.approx(2.68), 1.75, 1, 83.88608),
+        ("figures", 2, 2.0, 0.0, 0, 62.91456),
     ]
     assert read_stages(tmp_path / "missing") == []

@@ -84,7 +84,7 @@ MinJobAge=86400
 KillWait=3
 ReturnToService=2
 SlurmdParameters=config_overrides
-NodeName=$name NodeAddr=127.0.0.1 Port=${ports[1]} CPUs=$(nproc) RealMemory=4000 State=UNKNOWN
+NodeName=$name NodeAddr=127.0.0.1 Port=${ports[1]} CPUs=8 RealMemory=4000 State=UNKNOWN
 PartitionName=all Nodes=$name Default=YES MaxTime=INFINITE State=UP
 END
 }

@@ -167,6 +167,10 @@ def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
     again = {target: [state for _, _, state in several] for target, several in runs.items() if len(several) > 1}
     assert list(again.values()) == [["CANCELLED", "COMPLETED"]]
     assert re.search(rf"Slurm job {cancelled} \S+: CANCELLED, ", log)
+    # Of the long jobs each has the cores that the profile asks for, of all others one.
+    cores = {job["Name"].rpartition("-")[0]: job["ProcCnt"] for job in cluster.ended()}
+    assert {name for name, count in cores.items() if count == "8"} == {"attractors_of_law", "edges_of_law"}
+    assert set(cores.values()) == {"1", "8"}
     assert "Nothing to be done" in study.ok("-n")
 
 

@@ -19,6 +19,8 @@ rule attractors_of_law:
     priority: 10
     threads: SHARED_CORES
     resources:
+        # Set by a profile where threads are the width of a group: `cores` of workflow/profiles/slurm.
+        cpus_per_task=lambda wildcards, threads: threads,
         mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=240,
     params:

@@ -40,6 +40,7 @@ rule basin_tile:
         tile="|".join(map(str, range(STUDY.config["basins"]["tiles"]))),
     threads: STUDY.config["basins"]["threads"]
     resources:
+        cpus_per_task=lambda wildcards, threads: threads,
         mem_mb=400,
         runtime=240,
     params:
@@ -65,6 +66,7 @@ rule basin_pairs:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/pairs.tsv"
     threads: STUDY.config["basins"]["threads"]
     resources:
+        cpus_per_task=lambda wildcards, threads: threads,
         mem_mb=400,
         runtime=240,
     params:

@@ -13,6 +13,7 @@ rule edges_of_law:
         f"{RESULTS}/benchmarks/edges/{{law}}.tsv"
     threads: SHARED_CORES
     resources:
+        cpus_per_task=lambda wildcards, threads: threads,
         mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=60,
     params:

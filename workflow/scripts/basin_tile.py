@@ -12,7 +12,7 @@ from burridge_knopoff.summaries.basins import tile
 
 params = snakemake.params
 attractors = open_summary(snakemake.input[0])
-plane = BasinSettings(initial=InitialState(**params.state), threads=snakemake.threads, **params.basins)
+plane = BasinSettings(initial=InitialState(**params.state), threads=snakemake.resources.cpus_per_task, **params.basins)
 model = model_of(params.model, snakemake.wildcards.law, params.a, len(plane.initial.position))
 settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
 number = int(snakemake.wildcards.tile)

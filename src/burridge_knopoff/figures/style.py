@@ -14,13 +14,13 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from burridge_knopoff.provenance.files import write_whole
 
 Arguments = ParamSpec("Arguments")
 
-#: Widths of one and two journal columns, in inches.
-COLUMN = 3.4
+#: Width of two journal columns, in inches.
 PAGE = 7.0
 
 # Okabe and Ito's colours: told apart by colour-blind readers, and by their lightness in print.
@@ -70,7 +70,8 @@ def new_figure(
     width: float, height: float, rows: int = 1, columns: int = 1, share_rows: bool = True, share_columns: bool = True
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y, if asked."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+    # So wide that the last number below a panel stays apart from the first below the next.
+    figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=0.04))
     axes = figure.subplots(
         rows,
         columns,

@@ -15,6 +15,10 @@ SKIPPED = ("report",)
 JOINED = {"figure_": "figures"}
 
 
+#: Snakemake's unit of memory, in MB.
+MEBIBYTE = 1.048576
+
+
 @dataclass
 class Stage:
     """The jobs of one stage, as far as they were measured.
@@ -61,4 +65,4 @@ def _costs(path: Path) -> Iterator[tuple[float, float, float]]:
             # A job that ends before the first look at it has NA or -.
             rest = (row.get(key, "") for key in ("cpu_time", "max_rss"))
             cpu, memory = (float(text) if text[:1].isdigit() else 0.0 for text in rest)
-            yield float(row["s"]), cpu, memory
+            yield float(row["s"]), cpu, MEBIBYTE * memory

@@ -152,7 +152,7 @@ def requests(properties, attempt):
     options = [
         "--nodes=1",
         "--ntasks=1",
-        f"--cpus-per-task={properties['threads']}",
+        f"--cpus-per-task={resources.get('cpus_per_task', properties['threads'])}",
         f"--mem={SNAKEMAKE_MB + resources['mem_mb'] * attempt}M",
         f"--time={SNAKEMAKE_MINUTES + resources['runtime'] * attempt}",
     ]
