@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +41,20 @@ class Evidence:
     summaries: Mapping[str, xarray.Dataset]
     config: Mapping[str, Any]
     verdicts: Mapping[str, Verdict] = field(default_factory=dict)
+
+    @cached_property
+    def halves(self) -> list[Evidence]:
+        """The evidence with every second value of a, from the first and from the second on."""
+        return [
+            replace(
+                self,
+                summaries={
+                    name: dataset.isel(a=slice(first, None, 2)) if "a" in dataset.dims else dataset
+                    for name, dataset in self.summaries.items()
+                },
+            )
+            for first in (0, 1)
+        ]
 
     def check_setting(self) -> None:
         """Raise NotTestableError if the driver is not as fast as the paper's, or springs or thresholds are others."""
@@ -79,7 +94,7 @@ class Evidence:
         if name not in self.summaries:
             raise NotTestableError(f"the study has no summary {name}.nc")
         dataset = self.summaries[name]
-        if "law" not in dataset.dims:
+        if "law" not in dataset.dims or set(dataset["law"].values) <= {*PAPER_LAWS}:
             return dataset
         return dataset.sel(law=[law for law in dataset["law"].values if law in PAPER_LAWS])
 

@@ -208,18 +208,18 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
 
     figures : names of the figures of the study; a claim whose figure is not among them has none
     """
-    judged: dict[str, tuple[Claim, Verdict]] = {}
+    verdicts: dict[str, Verdict] = {}
+    # A claim on other claims finds in the evidence what has been judged before it.
+    known = replace(evidence, verdicts=verdicts)
     for claim in claims:
-        # A claim on other claims finds their verdicts in the evidence.
-        known = replace(evidence, verdicts={name: verdict for name, (_, verdict) in judged.items()})
         verdict = judge(claim, known)
-        turning = turns(partial(judge, claim), known, claim.parameters, verdict)
-        judged[claim.name] = claim, replace(verdict, turns=turning)
+        verdicts[claim.name] = replace(verdict, turns=turns(partial(judge, claim), known, claim.parameters, verdict))
+    judged = [(claim, verdicts[claim.name]) for claim in claims]
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
         **provenance(__name__),
-        "counts": {name: sum(verdict.verdict == name for _, verdict in judged.values()) for name in VERDICTS},
+        "counts": {name: sum(verdict.verdict == name for verdict in verdicts.values()) for name in VERDICTS},
         "claims": [
             {
                 "name": claim.name,
@@ -243,7 +243,7 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                 "conventions": dict(verdict.conventions),
                 "figure": claim.figure if claim.figure in figures else "",
             }
-            for claim, verdict in judged.values()
+            for claim, verdict in judged
         ],
     }
 

@@ -9,13 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, Verdict
-
-if TYPE_CHECKING:
-    import xarray
 
 # Parameters of judges that are a choice of ours: by this factor others may choose them larger or smaller.
 CHOSEN = ("tolerance", "loose", "near", "relative", "much", "level")
@@ -81,10 +78,10 @@ def _changed(value: float, name: str, exponent: float) -> float:
 
 def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
     """Judge on both halves of the grid, and without each of the values at which solvers are compared."""
-    for first in (0, 1):
-        other = judge(_thinned(evidence, first), parameters).verdict
+    for half, first in zip(evidence.halves, ("first", "second"), strict=True):
+        other = judge(half, parameters).verdict
         if other not in (verdict, NOT_TESTABLE):
-            yield f"{other}: every second value of a, from the {'first' if first == 0 else 'second'} on"
+            yield f"{other}: every second value of a, from the {first} on"
     if "relative" in parameters and "solvers" in evidence.summaries:
         solvers = evidence.summaries["solvers"]
         for a in solvers["a"].values.tolist():
@@ -92,12 +89,3 @@ def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], ve
             other = judge(replace(evidence, summaries=without), parameters).verdict
             if other not in (verdict, NOT_TESTABLE):
                 yield f"{other}: without a = {a:g}"
-
-
-def _thinned(evidence: Evidence, first: int) -> Evidence:
-    """Return evidence with every second value of a."""
-
-    def thin(dataset: xarray.Dataset) -> xarray.Dataset:
-        return dataset.isel(a=slice(first, None, 2)) if "a" in dataset.dims else dataset
-
-    return replace(evidence, summaries={name: thin(dataset) for name, dataset in evidence.summaries.items()})

@@ -6,7 +6,7 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
@@ -26,19 +26,23 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
     folder : where results are kept for another run, see `running.kept`; None keeps none. Of what is kept there all that
         no call has asked for is deleted at the end
 
-    `each(what, function, *sequences)` returns the list of results, and logs the CPU seconds that `what` has taken.
-    Function, items and results have to be picklable, and a call must not rely on what another one has changed.
+    `each(what, function, *sequences)` returns the list of results. What calls of the same name in a row have taken, in
+    seconds, is logged. Function, items and results have to be picklable, and a call must not rely on what another one
+    has changed.
     """
     asked: set[Path] = set()
+    taken: list[tuple[float, bool]] = []
+    last = ""
 
     def each(call: Callable[..., Any], what: str, function: Callable[..., Any], *items: Any) -> list[Any]:
+        nonlocal last
+        if what != last:
+            _log(last, taken)
+            taken.clear()
+            last = what
         done = list(call(partial(_timed, Path(folder, what) if folder else None, function), *items))
         asked.update(path for *_, path, _ in done if path)
-        seconds = [spent for _, spent, *_ in done]
-        read = sum(was_read for *_, was_read in done)
-        text = f"{what}: {len(done)}, {sum(seconds):.1f} s, the longest {max(seconds, default=0.0):.1f} s"
-        if done:
-            _LOG.info("%s", text + f"; {read} kept from a run before" * bool(read))
+        taken.extend((seconds, was_read) for _, seconds, _, was_read in done)
         return [result for result, *_ in done]
 
     if processes == 1:
@@ -47,15 +51,24 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
         # A fresh interpreter would run the script of the caller once more.
         with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
             yield partial(each, pool.map)
+    _log(last, taken)
     if folder:
         forget(Path(folder), asked)
 
 
+def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
+    """Say how many calls there were, what they have taken in all and the longest, and how many were kept."""
+    if taken:
+        seconds, was_read = zip(*taken, strict=True)
+        text = f"{what}: {len(taken)}, {sum(seconds):.1f} s, the longest {max(seconds):.1f} s"
+        _LOG.info("%s", text + f"; {sum(was_read)} kept from a run before" * any(was_read))
+
+
 def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
-    """Return the result of a call, the CPU seconds that it took, the file that keeps it, and whether it was there."""
-    begin = time.process_time()
+    """Return the result of a call, the seconds that it took, the file that keeps it, and whether it was there."""
+    begin = time.perf_counter()
     result, path, was_read = kept(folder, function, *items) if folder else (function(*items), None, False)
-    return result, time.process_time() - begin, path, was_read
+    return result, time.perf_counter() - begin, path, was_read
 
 
 def _end_with_parent() -> None:

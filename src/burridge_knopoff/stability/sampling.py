@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 import scipy
@@ -39,6 +40,7 @@ def sampled_states(
     ]
 
 
+@cache
 def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
     """Return the fraction hits/count and its Wilson confidence interval (low, high); NaN for no trials.
 

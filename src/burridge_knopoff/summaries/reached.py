@@ -13,7 +13,7 @@ def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tu
     known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
     values : shape (a, …)
     """
-    found = attractors.sel(law=law)
+    found = attractors[[*{name, "branch", "side", "initial_branch", "initial_side"}]].sel(law=law)
     slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
         found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
     )
