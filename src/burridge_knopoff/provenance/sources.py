@@ -32,6 +32,7 @@ _DIRECTIVE = re.compile(r"#\s*(cython|distutils)\s*:")
 _IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?c?import\s+(\([^)]*\)|.+)", re.MULTILINE)
 
 
+@cache
 def source_fingerprint(*entries: str | Path) -> str:
     """Return 16 hexadecimal digits for the code that decides what these modules or scripts make.
 

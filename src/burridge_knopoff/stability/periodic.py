@@ -14,10 +14,12 @@ C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical System
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.orbit import OrbitError, flow, rate
 from burridge_knopoff.stability.return_map import ReturnMap, directions, mirror
@@ -76,10 +78,19 @@ class PeriodicOrbit:
         """The time after which all blocks are where they were."""
         return self.return_time * (2.0 if self.symmetry == Symmetry.SYMMETRIC else 1.0)
 
-    @property
+    @cached_property
     def signature(self) -> tuple[int, ...]:
         """How often each block stops in a period."""
         return tuple(sum((block, kind) == (i, 0) for _, block, kind in self.events) for i in range(self.model.blocks))
+
+    @cached_property
+    def mean_distance(self) -> float:
+        """⟨J⟩ over a period."""
+        observer = new_observer(self.model, [0.0, self.period])
+        runner = Runner(self.model, observer=observer)
+        runner.begin(self.reference)
+        runner.run()
+        return float(observer.results()["batch_integral"][0]) / self.period
 
     def start(self, block: int) -> Instant:
         """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""

@@ -129,8 +129,9 @@ def _stretch(orbit: PeriodicOrbit, largest: float) -> Stretch | OrbitError:
     """Follow an orbit, and find the edges that it meets, or return why it cannot be followed."""
     try:
         found = stretch(orbit, (LEAST_A, largest), BEYOND, FOLLOWING)
-        # Found here, the edges go with the stretch to the process that asks for them.
+        # Found here, these go with the stretch to the process that asks for them.
         _ = found.low_edges, found.high_edges, found.stable
+        _ = [point.orbit.mean_distance for point in (*found.downward, *found.upward)]
     except OrbitError as error:
         return error
     return found

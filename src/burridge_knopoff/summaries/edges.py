@@ -16,10 +16,8 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.stretch import Stretch
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
 from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries, followed
@@ -150,7 +148,7 @@ def _append_edge(values: dict[str, list[Any]], entry: Entry, blocks: int) -> Non
     values["a_error"].append(edge.a_error if edge else 1.0)
     values["turns"].append(int(edge.turns) if edge else -1)
     values["period"].append(edge.before.orbit.period if edge else np.nan)
-    values["mean_distance"].append(_mean_distance(edge.before.orbit) if edge else np.nan)
+    values["mean_distance"].append(edge.before.orbit.mean_distance if edge else np.nan)
     values["stick_time"].append(edge.stick_time if edge else np.nan)
     values["lifetime_low"].append(entry.lifetime[0])
     values["lifetime_high"].append(entry.lifetime[1])
@@ -173,15 +171,7 @@ def _append_orbits(values: dict[str, list[Any]], number: int, branch: int, one: 
         values["orbit_stable"].append(int(point.multipliers.unstable == 0))
         values["orbit_period"].append(point.orbit.period)
         values["orbit_stops"] += point.orbit.signature
-        values["orbit_mean_distance"].append(_mean_distance(point.orbit))
-
-
-def _mean_distance(orbit: PeriodicOrbit) -> float:
-    observer = new_observer(orbit.model, [0.0, orbit.period])
-    runner = Runner(orbit.model, observer=observer)
-    runner.begin(orbit.reference)
-    runner.run()
-    return float(observer.results()["batch_integral"][0]) / orbit.period
+        values["orbit_mean_distance"].append(point.orbit.mean_distance)
 
 
 def _rounded(item: Variable, values: Sequence[Any], digits: int) -> np.ndarray:
