@@ -170,8 +170,8 @@ def phases_decide(
     correlation : of the velocities of the end blocks, up to which these are in antiphase
     share : of the states that have to end so, by the lower end of a Wilson interval
 
-    It holds if that is so at every amplitude, and loosely if it is at all those at which no block stops: only there
-    the states are oscillations about uniform sliding.
+    It holds if that is so at every amplitude, and loosely if it is at all those at which every velocity is positive at
+    the start, whatever the phases: only there the states are oscillations about uniform sliding.
     """
     evidence.check_blocks()
     phases = evidence.summary("phases")
@@ -179,7 +179,7 @@ def phases_decide(
     difference, amplitude = phases["phase_difference"].values, phases["amplitude"].values
     slips = amplitude <= phases.attrs["slipping_amplitude"]
     if not slips.any():
-        raise NotTestableError("at every amplitude of phases.nc some block stops")
+        raise NotTestableError("at every amplitude of phases.nc some block would slip backward")
     together, together_low = _fractions(phases["branch"] == 0, difference <= close, share)
     against, against_low = _fractions(phases["velocity_correlation"] <= correlation, difference >= opposite, share)
     right = (together_low >= share) & (against_low >= share)
@@ -207,7 +207,7 @@ def phases_decide(
         for found, low in ((together, together_low), (against, against_low))
     ]
     reason = (
-        f"End blocks that oscillate about uniform sliding without stopping (A = {_values(amplitude[slips])}) "
+        f"End blocks that oscillate about uniform sliding, none of them backward (A = {_values(amplitude[slips])}), "
         f"synchronize from phases within {close:g}° ({told[0]}) and end in antiphase from opposite ones ({told[1]}), "
         f"at {text} of the values of a with {a}."
     )

@@ -34,14 +34,9 @@ if TYPE_CHECKING:
 
 
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) of the runs from a state; one still on its way to synchrony counts as synchronized."""
-    runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
-    kind = np.nan_to_num(runs["kind"].values, nan=MotionKind.UNDETERMINED).astype(int)
-    if "attractors" in evidence.summaries:
-        attractors = evidence.choose(evidence.own_attractors(), a)
-        known, branch = reached(attractors, initial, law, "branch")
-        kind[(kind == MotionKind.PERIODIC) & known & (branch == 0)] = MotionKind.SYNCHRONIZED
-    return runs["a"].values, kind
+    """Return (a, kind of motion) of the runs from a state, as `agreement.nc` has it."""
+    runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
+    return runs["a"].values, runs["kind"].values
 
 
 def all_of_kind(
@@ -66,6 +61,8 @@ def all_of_kind(
             measured.append(Measured(f"share of a with {what} motion, {name}", shares[name]))
             if not right[known].all():
                 exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
+            if not known.all():
+                exceptions.append(f"not known {at_values(grid, ~known)} ({name})")
     if "attractors" in evidence.summaries:
         attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
         known = (attractors["branch"] >= 0).values & (attractors["kind"].values != MotionKind.UNDETERMINED)

@@ -9,15 +9,17 @@ import numpy as np
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import Measured, NotTestableError, Verdict, by_share, worst
 from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.branch_changes import Change
 
 
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     """Judge whether branches of attractors, as a grows, become chaotic where a locked orbit ends, under both laws.
 
     A locked orbit is a closed one: the blocks stop in a ratio of whole numbers. A torus is not locked. What a branch is
-    like before it turns chaotic is taken at the value of a next below.
+    like before it turns chaotic is taken at the value of a next below. Chaos that was there before and died is no
+    beginning of chaos, nor is an edge that a branch passes without a change.
 
     loose_share : share of the beginnings of chaos from which on the claim holds loosely
     """
@@ -30,7 +32,9 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             raise NotTestableError(f"the study has no {name} law")
         own = edges["law"].values == laws.index(name)
         before, after = edges["motion_before"].values, edges["motion_after"].values
-        onset = own & (after == MotionKind.CHAOTIC) & ~np.isin(before, (MotionKind.CHAOTIC, MotionKind.UNDETERMINED))
+        changes = own & (edges["change"].values != Change.PASSED) & (after == MotionKind.CHAOTIC)
+        onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
+        unknown = changes & (before == MotionKind.UNDETERMINED)
         places = {
             (float(edges["grid_low"].values[k]), int(edges["to_branch"].values[k])): int(before[k])
             for k in np.flatnonzero(onset)
@@ -45,6 +49,9 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         ends = Counter(int(edges["kind"].values[k]) for k in np.flatnonzero(onset))
         for kind, count in sorted(ends.items()):
             measured.append(Measured(f"edges there that are a {EdgeKind(kind).name.lower()}, {name}", count))
+        if unknown.any():
+            values = np.unique(edges["a"].values[unknown])
+            others.append(f"what comes before is not known at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")
         torus = sorted(place for (place, _), right in zip(places, locked, strict=True) if not right)
         if torus:
             others.append(f"a torus before chaos above a = {', '.join(f'{value:g}' for value in torus)} ({name})")

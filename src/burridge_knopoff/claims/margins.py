@@ -25,7 +25,7 @@ SHARES = ("share", "loose_share", "correlation")
 HALVINGS = 5
 
 #: Said of a verdict that nothing turns.
-NOTHING = "no tolerance within a factor of two, and no half of the grid"
+NOTHING = "no tolerance within a factor of two, and, of what is judged on the grid, no half of it"
 
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
 

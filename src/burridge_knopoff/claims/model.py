@@ -166,6 +166,8 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
             for name in initial
         ]
     )
+    # Without exponents nothing was counted: −1.
+    lost = lost[lost >= 0.0]
     if not len(lost):
         raise NotTestableError(f"no Lyapunov exponents are known with {a}")
     numbers = 2 * len(evidence.summary("equilibrium")["block"])

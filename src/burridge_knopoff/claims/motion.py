@@ -66,25 +66,37 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
 
 
 def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
-    """Judge whether in every motion that attracts some block stops again and again; loosely if so in nine of ten."""
+    """Judge whether in every motion that attracts some block stops again and again; loosely if so in nine of ten.
+
+    Attractors are known by the stops of the first block: motion without any would be among what drawn states reach that
+    is not known. So their share counts as well.
+    """
     evidence.check_blocks()
     attractors = evidence.choose(evidence.summary("attractors"), a)
-    shares, measured, all_stop = {}, [], {}
+    shares, measured, all_stop, unknown = {}, [], {}, []
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
         there = found["branch"].values >= 0
         rate = found["stop_rate"].values[there]
         if not len(rate):
             raise NotTestableError(f"no attractor is known under the {law} law with {a}")
-        shares[law] = float((rate > 0.0).any(axis=-1).mean())
+        stops = (found["stop_rate"].values > 0.0).any(axis=-1) & there
+        drawn = int(found["basin_count"].values.sum()), int(found["undetermined_count"].values.sum())
+        reached_stops = float(found["basin_count"].values[stops].sum() / sum(drawn)) if sum(drawn) else 1.0
+        shares[law] = min(float((rate > 0.0).any(axis=-1).mean()), reached_stops)
+        unknown.append(f"{drawn[1]} of {sum(drawn)} drawn states reach no motion that is known ({law})")
         all_stop[law] = float((rate > 0.0).all(axis=-1).mean())
-        measured.append(Measured(f"share of attractors in which some block stops, {law}", shares[law]))
+        measured.append(
+            Measured(f"drawn states that reach an attractor in which some block stops, {law}", reached_stops)
+        )
         measured.append(Measured(f"share of attractors in which every block stops, {law}", all_stop[law]))
     reason = (
-        f"Some block stops again and again in {shares_text(shares)} of the attractors with {a}; every block in "
-        f"{shares_text(all_stop)}."
+        f"Some block stops again and again in all attractors that are known, which {shares_text(shares)} of the drawn "
+        f"states reach with {a}; every block in {shares_text(all_stop)} of them."
     )
-    changes = "" if min(all_stop.values()) == 1.0 else "it does not hold of every single block"
+    changes = "; ".join(
+        [*unknown, *(["it does not hold of every single block"] if min(all_stop.values()) < 1.0 else [])]
+    )
     return Verdict(worst(by_share(share, 0.9) for share in shares.values()), reason, measured, changes)
 
 

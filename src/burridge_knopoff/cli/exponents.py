@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
     if trajectory.lyapunov_infinite_count > 0:
         print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
-    found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
+    found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion.at_speed(model.v))
     print(f"\nmotion: {found.words}")
     print(f"<J> = {trajectory.mean_distance:.6g} +- {trajectory.mean_distance_error:.2g}")
     if model.chain.is_mirror_symmetric:

@@ -73,7 +73,7 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
     yield "<J>", f"{point['mean_distance'].item():.9g} +- {point['mean_distance_error'].item():.2g}"
-    yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion).words
+    yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion.at_speed(point.attrs["v"])).words
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
         words = (f"{value:.6f} +- {error:.6f}" if np.isfinite(value) else "-infinity" for value, error in exponents)

@@ -95,7 +95,7 @@ class Search:
     @property
     def tolerance(self) -> float:
         """Distance within which the returns of a closed orbit repeat."""
-        return self.motion_settings.period_tolerance * min(1.0, self.model.scale)
+        return self.motion_settings.at_speed(self.model.v).period_tolerance
 
     def seeds(self, attractors: Iterable[Attractor]) -> list[Instant]:
         """Return a state on each of some attractors of a neighbouring a, pushed a little off any symmetry."""

@@ -39,7 +39,7 @@ INTERVAL = 20.0
 # The distance still falls if its maximum over a quarter of the run is below this share of that over the quarter before.
 FALLING = 0.5
 
-# Motion that stays nearer to symmetric motion than this is judged by the transverse exponent there.
+# Motion that stays nearer to symmetric motion than this, for v = 0.1, is judged by the transverse exponent there.
 NEAR = 0.01
 STANDARD_ERRORS = 3.0
 
@@ -114,14 +114,14 @@ def watch_state(runner: Runner, start: Instant, watch: Watch = WATCH) -> Fate:
     last, before = np.array(history[-quarter:]), np.array(history[-2 * quarter : -quarter])
     undetermined = last.max() < FALLING * before.max()
     exponent = math.nan
-    if last.max() < NEAR:
+    if last.max() < NEAR * model.scale:
         exponent, error = transverse_exponent(model, runner.instant(), ALIGNMENT, watch.quarter)
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(
         Outcome.UNDETERMINED if undetermined else Outcome.NOT_SYNCHRONIZED,
         distance=float(last.max()),
         mean_distance=float(last.max(axis=1).mean()),
-        pairs=int(np.count_nonzero(last.max(axis=0) < watch.pair_distance)),
+        pairs=int(np.count_nonzero(last.max(axis=0) < watch.pair_distance * min(1.0, model.scale))),
         transverse_exponent=exponent,
     )
 

@@ -90,8 +90,10 @@ def _lifetime(
     end = np.concatenate([moved["position"][:, 0], moved["velocity"][:, 0]], axis=1)
     reached, _ = label(model, attractors, [instant_of(state) for state in end], settings.time_limit)
     left = np.flatnonzero(~np.isin(reached, (index, attractor.partner)))
-    # When they did; the whole time where what they reached is not known.
     others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
     gone, when = label(model, others, [starts[k] for k in left], time)
-    survived = time * (tuning.followed - len(left)) + np.where(gone == UNDETERMINED, time, when).sum()
-    return Lifetime(len(left), float(survived))
+    # Who gets elsewhere later was still there. Who gets nowhere that is known has left, at a time that nobody knows.
+    within, nowhere = gone != UNDETERMINED, (gone == UNDETERMINED) & (reached[left] == UNDETERMINED)
+    spent = np.where(within, when, np.where(nowhere, 0.5 * time, time))
+    survived = time * (tuning.followed - len(left)) + spent.sum()
+    return Lifetime(int((within | nowhere).sum()), float(survived))

@@ -80,9 +80,9 @@ def matched(
 ) -> dict[int, int]:
     """Return {key in `after`: key in `before`} of the sets that are one: each has one at most.
 
-    Synchronized sets match each other and nothing else: what synchrony turns into where it loses its stability is
-    another branch. Of all others those are paired that lie within `same_set` (times the scale of the model), so that
-    the distances of all pairs are least in sum.
+    Synchronized sets match each other, the nearest if there are several, and nothing else: what synchrony turns into
+    where it loses its stability is another branch. Of all others those are paired that lie within `same_set` (times the
+    scale of the model), so that the distances of all pairs are least in sum.
     """
     first, second = list(before), list(after)
     largest = tuning.same_set * scale
@@ -90,10 +90,10 @@ def matched(
     for row, column in np.ndindex(cost.shape):
         one, other = after[second[row]], before[first[column]]
         synchronized = [item.attractor.symmetry == Symmetry.SYNCHRONIZED for item in (one, other)]
-        if all(synchronized):
-            cost[row, column] = -largest
-        elif not any(synchronized):
+        if synchronized[0] == synchronized[1]:
             cost[row, column] = min(largest, *one.distances(other, tuning.near_share, largest))
+        if all(synchronized):
+            cost[row, column] -= 2.0 * largest
     pairs = zip(*linear_sum_assignment(cost), strict=True)
     return {second[row]: first[column] for row, column in pairs if cost[row, column] < largest}
 
@@ -124,8 +124,8 @@ def branches(
     scale : of the model, see `Model.scale`
 
     The two of a mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images
-    have side 0. Branch 0 is the synchronized attractor; the others are numbered from 1 in the order of their first a,
-    and of ⟨J⟩ there.
+    have side 0. Branch 0 is the synchronized attractor, the first one found if there are several; the others are
+    numbered from 1 in the order of their first a, and of ⟨J⟩ there.
     """
     branch_of, side_of = [], []
     seen: dict[int, tuple[float, Outline, int]] = {}
@@ -140,10 +140,10 @@ def branches(
         found |= matched({n: item for n, item in lost.items() if n not in found.values()}, left, scale, tuning)
         branch, side = np.full(len(here), UNDETERMINED), np.zeros(len(here), dtype=int)
         for i in sorted(now, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
-            if here[i].symmetry == Symmetry.SYNCHRONIZED:
-                branch[i] = 0
-            elif i in found:
+            if i in found:
                 branch[i] = found[i]
+            elif here[i].symmetry == Symmetry.SYNCHRONIZED and 0 not in (*found.values(), *branch):
+                branch[i] = 0
             else:
                 branch[i] = following
                 following += 1

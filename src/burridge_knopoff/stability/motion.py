@@ -34,8 +34,15 @@ class MotionKind(IntEnum):
         return self.name.lower().replace("_", " ")
 
 
+#: Closed orbits without synchrony, and tori. On a dense set of a a torus is locked to closed orbits: which of the two
+#: one value of a shows, another beside it need not.
+REGULAR = (MotionKind.PERIODIC, MotionKind.QUASIPERIODIC)
+
 # Largest error of an exponent, in units of `chaotic_exponent`, with which exponents decide the kind.
 LARGEST_ERROR = 3.0
+
+# Points of a closed orbit of a long period are nearer to each other than this share of their even spacing.
+CLOSER = 0.1
 
 # A period counts if the sequence shows it at least this many times.
 REPETITIONS = 3
@@ -96,13 +103,16 @@ def section_closed(section: np.ndarray, tolerance: float) -> bool:
     """Tell whether section points W' repeat, however long the period: almost all have another within the tolerance.
 
     section : shape (n,); its second half is judged
+
+    On a torus points fill an interval evenly, the closer the more there are: on a closed orbit they are closer still.
     """
     settled = np.sort(_second_half(section))
     if len(settled) < 4 * REPETITIONS:
         return False
     gap = np.diff(settled)
     nearest = np.minimum(np.concatenate([[np.inf], gap]), np.concatenate([gap, [np.inf]]))
-    return bool(np.quantile(nearest, 0.95) <= tolerance)
+    even = np.ptp(settled) / len(settled)
+    return bool(np.quantile(nearest, 0.95) <= min(tolerance, CLOSER * even))
 
 
 def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from burridge_knopoff.model.fields import check_fields
@@ -49,13 +49,17 @@ class MotionSettings:
         float,
         TOLERANCE,
         "a motion is periodic if its section points W' and states repeat within this, or if its second exponent is "
-        "negative",
+        "negative; below v = 0.1 it scales with v",
     ] = 1e-6
     longest_period: Annotated[int, Whole(1, 1000), "section points up to which a repetition is looked for"] = 120
     synchronization_threshold: Annotated[float, TOLERANCE, "the end blocks move as one where <J> is below this"] = 1e-6
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+    def at_speed(self, v: float) -> MotionSettings:
+        """Return the settings with the tolerance that a driver of speed v asks for: slower motion is smaller."""
+        return replace(self, period_tolerance=self.period_tolerance * min(1.0, v / 0.1))
 
 
 #: The defaults of a study.
@@ -241,7 +245,9 @@ class Watch:
         "mirror distance at which a motion has synchronized, if its transverse exponent is negative",
     ] = 1e-12
     pair_distance: Annotated[
-        float, TOLERANCE, "a pair of a motion that is not synchronized counts as synchronized below this"
+        float,
+        TOLERANCE,
+        "a pair of a motion that is not synchronized counts as synchronized below this; below v = 0.1 it scales with v",
     ] = 1e-6
 
     def __post_init__(self) -> None:

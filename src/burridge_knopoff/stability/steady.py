@@ -191,6 +191,7 @@ def _measure(
     found = _returns(model, trajectory.event_block, trajectory.event_kind, states, tuning)
     if found is None:
         return None
+    settings = settings.at_speed(model.v)
     period = section_period(vars(trajectory), settings)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     # End blocks that are not each other's mirror images do not synchronize.

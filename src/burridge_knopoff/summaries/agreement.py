@@ -12,7 +12,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
@@ -27,10 +27,14 @@ _PAIR = ("other_law", "initial", "a")
 _ANSWER = flag("i1", Answer)
 # ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
 SAME_MEAN = 0.01
+KIND_COMMENT = (
+    "of the attractor that the run has come to, where the run alone does not tell a torus from a closed orbit that "
+    "hardly attracts; a run on its way to synchrony counts as synchronized"
+)
 POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
-    "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", MotionKind)),
+    "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", MotionKind) | {"comment": KIND_COMMENT}),
 }
 RUN_VARIABLES = {
     "settled": Variable(
@@ -110,7 +114,10 @@ def summarize(
 def _fill_settled(
     values: Mapping[str, np.ndarray], attractors: xarray.Dataset, standard_errors: float, threshold: float
 ) -> None:
-    """Fill in whether each run has the ⟨J⟩ of the attractor that its initial state reaches."""
+    """Fill in whether each run has the ⟨J⟩ of the attractor that its initial state reaches.
+
+    If so the kind is that of the attractor where the run alone leaves it open: attractors are watched for longer.
+    """
     own = attractors.sel(contact=attractors.attrs["contact_convention"], start=attractors.attrs["start_convention"])
     for law, initial in np.ndindex(values["settled"].shape[:2]):
         names = str(own["initial"].values[initial]), str(own["law"].values[law])
@@ -120,8 +127,13 @@ def _fill_settled(
         allowed = np.maximum(
             standard_errors * np.hypot(error, my_error), np.maximum(SAME_MEAN * np.maximum(mean, mine), threshold)
         )
-        known &= np.isfinite(mine) & (values["kind"][law, initial] != MotionKind.UNDETERMINED)
-        values["settled"][law, initial] = np.where(known, np.abs(mean - mine) <= allowed, Answer.UNDETERMINED)
+        there = known & (np.abs(mean - mine) <= allowed)
+        kind, (_, finer) = values["kind"][law, initial], reached(own, *names, "kind")
+        told = there & np.isin(finer, REGULAR) & np.isin(kind, (MotionKind.UNDETERMINED, MotionKind.QUASIPERIODIC))
+        told |= known & (finer == MotionKind.SYNCHRONIZED) & (mine < attractors.attrs["resolution"])
+        kind[...] = np.where(told, finer, kind)
+        known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED)
+        values["settled"][law, initial] = np.where(known, there, Answer.UNDETERMINED)
 
 
 def _upward(run: Mapping[str, np.ndarray]) -> np.ndarray:

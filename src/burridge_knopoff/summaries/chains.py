@@ -47,7 +47,7 @@ CHAIN_VARIABLES = {
     "symmetric_exponent": Variable(_SYMMETRIC, "f8", "largest transverse Lyapunov exponent of symmetric motion"),
     "symmetric_error": Variable(_SYMMETRIC, "f8", "standard error of this exponent from batches"),
     "lyapunov_exponent": Variable(_POINT, "f8", "largest Lyapunov exponent of the first state"),
-    "lyapunov_error": Variable(_POINT, "f8", "standard error of this exponent from batches"),
+    "lyapunov_error": Variable(_POINT, "f8", "error of this exponent, of the batches and of the window"),
 }
 VARIABLES = {
     **{

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import REGULAR, MotionKind
 
 
 class Answer(IntEnum):
@@ -22,7 +22,8 @@ class Answer(IntEnum):
 def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreement: Mapping[str, Any]) -> None:
     """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
 
-    There is no verdict where the kind of one of the two motions is not determined.
+    A torus and a closed orbit without synchrony are one kind here: which of them a value of a shows, one beside it need
+    not (`motion.REGULAR`). There is no verdict where the kind of one of the two motions is not determined.
     values : mean_distance, its error and kind of both laws, the first and the other, shape (2, …, a); the rest is
         filled in
     a : ascending, shape (a,)
@@ -31,8 +32,9 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
     kind = values["kind"]
     values["difference"][...] = other - first
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
+    same = (kind[0] == kind[1]) | np.isin(kind, REGULAR).all(axis=0)
     determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
-    values["same_kind"][...] = np.where(determined, kind[0] == kind[1], Answer.UNDETERMINED)
+    values["same_kind"][...] = np.where(determined, same, Answer.UNDETERMINED)
     tolerance = np.maximum.reduce(
         [
             agreement["relative_tolerance"] * np.maximum(first, other),

@@ -34,7 +34,9 @@ VARIABLES = {
         "Lyapunov exponents in the window, the largest first",
         {"ancillary_variables": "lyapunov_error status"},
     ),
-    "lyapunov_error": Variable((*_AXES, "exponent"), "f8", "standard error of a Lyapunov exponent from the batches"),
+    "lyapunov_error": Variable(
+        (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, of the batches and of the window"
+    ),
     "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
     "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
@@ -98,7 +100,7 @@ def summarize(
     lyapunov_exponents : how many were computed in each run
     motion : the config's section of that name: thresholds of the kinds of motion
     """
-    settings = MotionSettings(**motion, synchronization_threshold=synchronization_threshold)
+    settings = MotionSettings(**motion, synchronization_threshold=synchronization_threshold).at_speed(grid.models["v"])
     symmetric = grid.is_mirror_symmetric
     values = {}
     for name, item in VARIABLES.items():

@@ -19,11 +19,12 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.stability.motion import MotionKind, motion_kind, section_period
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
+from burridge_knopoff.summaries.lyapunov import motion_of_run
 
 BLOCKS = 2
 
@@ -92,8 +93,11 @@ def summarize(
         values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
         for k, a in enumerate(grid):
             runs = [run(model.at(a), state, settings) for model in models]
-            for i, trajectory in enumerate(runs):
-                _fill_run({name: values[name][i, j] for name in RUN_VARIABLES}, k, trajectory, motion)
+            for i, (model, trajectory) in enumerate(zip(models, runs, strict=True)):
+                found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion.at_speed(model.v))
+                values["mean_distance"][i, j, k] = trajectory.mean_distance
+                values["mean_distance_error"][i, j, k] = trajectory.mean_distance_error
+                values["kind"][i, j, k], values["section_period"][i, j, k] = found.kind, found.section_period
             for i, trajectory in enumerate(runs[1:]):
                 count, until = common_order(_sequence(runs[0]), _sequence(trajectory))
                 values["event_order_count"][i, j, k] = count
@@ -130,18 +134,6 @@ def summarize(
         },
         module=__name__,
     )
-
-
-def _fill_run(values: Mapping[str, np.ndarray], k: int, trajectory: Trajectory, motion: MotionSettings) -> None:
-    """Fill in what a run shows, at that a of the grid."""
-    period = section_period(vars(trajectory), motion)
-    mean = trajectory.mean_distance
-    values["mean_distance"][k], values["mean_distance_error"][k] = mean, trajectory.mean_distance_error
-    values["section_period"][k] = period
-    values["kind"][k] = MotionKind.UNDETERMINED
-    if trajectory.status == "completed":
-        exponents = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-        values["kind"][k] = motion_kind(mean, period, *exponents, motion)
 
 
 def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
