@@ -154,6 +154,7 @@ def test_the_lifetime_of_chaos_is_told_beside_its_edges(found):
 def test_edges_are_those_of_the_orbits(found):
     kind, a = found["kind"].values, found["a"].values
     assert a[kind == EdgeKind.PITCHFORK] == pytest.approx([0.0869729046661] * 2, abs=1e-10)
+    assert found["multiplier"].values[kind == EdgeKind.PITCHFORK].tolist() == [[1.0, 0.0]] * 2
     grazing = found.isel(edge=np.flatnonzero((kind == EdgeKind.GRAZING) & (found["change"].values == Change.CHANGE)))
     assert grazing["a"].values == pytest.approx([0.1122215462], abs=1e-9)
     assert grazing["stops"].values.tolist() in ([[1, 1, 1]],)
