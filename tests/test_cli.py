@@ -9,10 +9,8 @@ from pathlib import Path
 import netCDF4
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Chain, FormulaLaw, simulate
 from burridge_knopoff.cli import main
-from burridge_knopoff.laws import FormulaLaw
-from burridge_knopoff.model.chain import Chain
 
 BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]

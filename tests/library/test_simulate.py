@@ -6,10 +6,9 @@ import typing
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Settings, basin_map, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, SearchSettings, Settings, basin_map, law_of, simulate
 from burridge_knopoff.library.by_name import RunSettings, SearchOptions
 from burridge_knopoff.model.fields import fields_of
-from burridge_knopoff.stability.settings import SearchSettings
 
 POSITION, VELOCITY = [-0.9, -1.0, -0.8], [0.1, 0.0, 0.2]
 SHORT = {"transient": 0.0, "window": 20.0}

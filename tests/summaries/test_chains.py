@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+import xarray
 
 from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.dataset.summary import open_summary, write_summary
@@ -56,8 +57,6 @@ def test_chains_are_ordered_by_their_number_of_blocks(files):
 
 
 def test_fractions_count_outcomes(files):
-    import xarray
-
     chain = xarray.load_dataset(files[0])
     chain["outcome"][0, 0] = [1, 1, -1, 0, 0]
     chain["pairs"][0, 0] = [5, 5, 0, 2, 0]

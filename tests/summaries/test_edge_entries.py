@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff import Chain, Model, MotionKind, Symmetry, find_periodic_orbit, law_of
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.periodic import find_periodic_orbit
 from burridge_knopoff.stability.pseudo_arclength import begin_branch
 from burridge_knopoff.stability.stretch import Stretch
 from burridge_knopoff.summaries import edge_entries

@@ -5,8 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff import MotionKind, simulate
 from burridge_knopoff.summaries import bifurcation, lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
 from tests.grids import PAPER_MODELS, grid_of

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Settings, simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.figures import solvers as figure
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
 from tests.grids import PAPER_MODELS

@@ -5,11 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
