@@ -31,14 +31,11 @@ def said(capsys, *arguments):
 
 def test_attractors(capsys, tmp_path):
     out = tmp_path / "attractors.nc"
-    printed = said(
-        capsys, "attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus", "--out", str(out)
-    )
+    command = ["attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus"]
+    printed = said(capsys, *command, "--out", str(out))
     found, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
     written = open_summary(out)
-    assert written.attrs["history"] == shlex.join(
-        ["bk", "attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus"]
-    )
+    assert written.attrs["history"] == shlex.join(["bk", *command])
     assert written.sizes["attractor"] == len(found)
     means = sorted(attractor.motion.mean_distance for attractor in found)
     assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)
