@@ -46,8 +46,7 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
     assert (found["branch_residual"] <= 1e-14).all()
     assert (abs(found["amplitude_exponent"] - 0.5) < 1e-5).all()
     assert (found["hysteresis"] < 1e-9).all()
-    ends = found["sweep_asymmetry"]
-    assert (ends.sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
+    assert (found["sweep_asymmetry"].sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
 
 
 def test_the_transition_is_that_of_the_stability_room(found):

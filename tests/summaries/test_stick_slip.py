@@ -19,23 +19,27 @@ from tests.grids import grid_of
 from tests.summaries.points import write_points
 
 STOP, START = 0, 1
+NONE = pytest.approx(np.nan, nan_ok=True)
 
 
 @pytest.mark.parametrize(
     ("stops", "batches", "mean", "error"),
     [
         ([1.0, 3.0, 7.0, 9.0, 13.0], 2, 3.0, 0.0),  # two batches of two cycles: means 3 and 3
-        ([0.0, 1.0, 2.0, 5.0, 8.0], 2, 2.0, 1.0),  # means 1 and 3: standard deviation sqrt(2), over sqrt(2)
-        ([0.0, 1.0, 4.0], 7, 2.0, 1.0),  # fewer cycles than batches: single cycles 1 and 3
-        ([5.0, 7.5], 4, 2.5, np.nan),
-        ([5.0], 4, np.nan, np.nan),
-        ([], 4, np.nan, np.nan),
+        (
+            [0.0, 1.0, 2.0, 5.0, 8.0],
+            2,
+            2.0,
+            pytest.approx(1.0),
+        ),  # means 1 and 3: standard deviation sqrt(2), over sqrt(2)
+        ([0.0, 1.0, 4.0], 7, 2.0, pytest.approx(1.0)),  # fewer cycles than batches: single cycles 1 and 3
+        ([5.0, 7.5], 4, 2.5, NONE),
+        ([5.0], 4, NONE, NONE),
+        ([], 4, NONE, NONE),
     ],
 )
 def test_cycle_time_of_hand_made_lists(stops, batches, mean, error):
-    found = cycle_time(np.array(stops), batches)
-    np.testing.assert_array_equal(found[0], mean)
-    assert found[1] == pytest.approx(error, nan_ok=True)
+    assert cycle_time(np.array(stops), batches) == (mean, error)
 
 
 @pytest.mark.parametrize(
