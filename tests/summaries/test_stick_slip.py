@@ -26,12 +26,8 @@ NONE = pytest.approx(np.nan, nan_ok=True)
     ("stops", "batches", "mean", "error"),
     [
         ([1.0, 3.0, 7.0, 9.0, 13.0], 2, 3.0, 0.0),  # two batches of two cycles: means 3 and 3
-        (
-            [0.0, 1.0, 2.0, 5.0, 8.0],
-            2,
-            2.0,
-            pytest.approx(1.0),
-        ),  # means 1 and 3: standard deviation sqrt(2), over sqrt(2)
+        # Means 1 and 3: standard deviation sqrt(2), over sqrt(2).
+        ([0.0, 1.0, 2.0, 5.0, 8.0], 2, 2.0, pytest.approx(1.0)),
         ([0.0, 1.0, 4.0], 7, 2.0, pytest.approx(1.0)),  # fewer cycles than batches: single cycles 1 and 3
         ([5.0, 7.5], 4, 2.5, NONE),
         ([5.0], 4, NONE, NONE),
