@@ -9,10 +9,8 @@ import pytest
 import xarray
 
 from burridge_knopoff import open_study
-from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study import all_points, load_study
+from tests.small_study import run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
 CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
@@ -21,14 +19,11 @@ MISSING = ("nonlinear", "plus", "0.0800")
 
 def make_study(folder):
     """Make the points of a study but one, and something for a summary."""
-    study = load_study(CONFIG, "few.yaml")
-    for law, initial, a in all_points(study):
-        if (law, initial, a) != MISSING:
-            trajectory = run(study.model(law, study.value(a)), study.state(initial), study.settings(law))
-            write_point(trajectory, folder / "points" / law / initial / f"a{a}.nc")
+    small = run_study(folder, CONFIG)
+    small.grid.path(*MISSING).unlink()
     (folder / "summary").mkdir()
     xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf(folder / "summary" / "some.nc")
-    write_study_record(folder, study, "few.yaml", CONFIG, "--configfile few.yaml")
+    write_study_record(folder, small.study, "few.yaml", CONFIG, "--configfile few.yaml")
 
 
 @pytest.fixture(scope="module")
