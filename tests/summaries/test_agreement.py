@@ -78,10 +78,8 @@ def test_two_synchronized_laws_agree(compare, runs):
     assert (dataset["agrees"] == 1).all()
     assert (dataset["kind"] == 0).all()
     assert np.isnan(dataset["parting_a"].item())
-    assert agreement.digest(dataset) == (
-        "minus, nonlinear law compared with the linearized law: they agree at all 2 values of a that were compared, "
-        "0.05 to 0.08.\n"
-    )
+    words = "they agree at all 2 values of a that were compared, 0.05 to 0.08."
+    assert agreement.digest(dataset) == f"minus, nonlinear law compared with the linearized law: {words}\n"
     for k, a in enumerate((0.05, 0.08)):
         first, other = (runs[law, a] for law in PAPER_LAWS)
         upward = [run.crossing_velocity[run.crossing_direction > 0] for run in (first, other)]
@@ -189,9 +187,8 @@ def test_each_law_is_compared_with_the_first(tmp_path):
     assert (same["event_order_time"] == 200.0).all()
     assert (same["agrees"] != 0).all()
     lines = agreement.digest(dataset).splitlines()[:2]
-    assert [line.split(":")[0] for line in lines] == [
-        f"minus, {other} law compared with the smooth law" for other in ("linearized", "same")
-    ]
+    begun = [f"minus, {other} law compared with the smooth law" for other in ("linearized", "same")]
+    assert [line.split(":")[0] for line in lines] == begun
     head, *rows = agreement.table(dataset).splitlines()
     assert head.split(",")[2:5] == [f"mean_distance_{law}" for law in laws]
     assert {"difference_linearized", "difference_same", "agrees_same"} <= set(head.split(","))
@@ -202,9 +199,8 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
     dataset = of_laws(tmp_path, {"linearized": {}})
     assert dataset.sizes["other_law"] == 0
     assert agreement.digest(dataset).startswith("The linearized law is the only one: there is nothing to compare.\n")
-    assert agreement.table(dataset).startswith(
-        "initial,a,mean_distance_linearized,kind_linearized,settled_linearized\nminus,0.05,"
-    )
+    head = "initial,a,mean_distance_linearized,kind_linearized,settled_linearized"
+    assert agreement.table(dataset).startswith(f"{head}\nminus,0.05,")
     write_summary(dataset, tmp_path / "agreement.nc")
     found = open_summary(tmp_path / "agreement.nc")
     assert found["difference"].shape == (0, 1, 2)

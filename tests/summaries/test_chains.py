@@ -75,13 +75,6 @@ def test_fractions_count_outcomes(files):
     assert "blocks" not in point.attrs
 
 
-def test_a_damaged_chain_file_is_named(files):
-    path = files[0].with_name("damaged.nc")
-    path.write_bytes(files[0].read_bytes()[:1000])
-    with pytest.raises(ValueError, match=r"damaged\.nc: has no seal at its end"):
-        chains.merge([open_summary(path)])
-
-
 def test_files_of_other_settings_do_not_mix(files):
     path = files[0].with_name("other.nc")
     write_summary(chain_file(3, 200.0), path)

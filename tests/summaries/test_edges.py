@@ -26,8 +26,9 @@ TOLD = {
 MODEL = Model(Chain(3), law_of("linearized", 0.1))
 
 
-def attractors():
-    """Return the attractors of one law: one at each a, whose state is that of a long run from the paper's `minus`."""
+@pytest.fixture(scope="module")
+def grid():
+    """Attractors of one law: one at each a, whose state is that of a long run from the paper's `minus`."""
     states = []
     for model in map(MODEL.at, A):
         runner = Runner(model)
@@ -38,7 +39,7 @@ def attractors():
     found = xr.Dataset({name: ("a", values) for name, values in TOLD.items()}, {"a": A, "block": [1, 2, 3]})
     for name, values in zip(("position", "velocity"), zip(*states, strict=True), strict=True):
         found[name] = ("a", "block"), np.array(values)
-    return found.expand_dims(law=["linearized"]).expand_dims("attractor", 2)
+    return found.expand_dims("attractor", 1).assign_coords(law="linearized")
 
 
 def at_all_values(found):
@@ -47,35 +48,26 @@ def at_all_values(found):
     missing = xr.zeros_like(values.isel(value=[0]))
     missing["branch"] -= 1
     values = xr.concat([values, missing], "value")
-    values["a"] = ("law", "value"), [[*A, np.nan]]
-    values["in_grid"] = ("law", "value"), [[1] * len(A) + [-1]]
+    values["a"] = "value", [*A, np.nan]
+    values["in_grid"] = "value", [1] * len(A) + [-1]
     for name, low in (("lifetime_low", 1e5), ("lifetime_high", np.inf)):
         values[name] = xr.where(values["kind"] == MotionKind.CHAOTIC, low, np.nan)
     return values
 
 
 @pytest.fixture(scope="module")
-def grid():
-    return attractors()
-
-
-def of_one_law(grid):
-    """Return the attractors of the first law, and those at all values of a."""
-    return grid.isel(law=0), at_all_values(grid).isel(law=0)
-
-
-@pytest.fixture(scope="module")
 def found(grid):
-    return one_law(MODEL, *of_one_law(grid))
+    return one_law(MODEL, grid, at_all_values(grid))
 
 
 def test_what_branches_do(grid):
-    changes = branch_changes(*of_one_law(grid))
-    assert [(change.low, change.high, change.change, change.from_branch, change.to_branch) for change in changes] == [
-        (1, 2, Change.END, 0, 1),
-        (1, 2, Change.BEGINNING, 0, 1),
-        (3, 4, Change.CHANGE, 1, 1),
-    ]
+    expected = [(1, 2, 0, 1, Change.END), (1, 2, 0, 1, Change.BEGINNING), (3, 4, 1, 1, Change.CHANGE)]
+    assert told_of(branch_changes(grid, at_all_values(grid))) == expected
+
+
+def told_of(changes):
+    names = ("low", "high", "from_branch", "to_branch", "change")
+    return [tuple(getattr(change, name) for name in names) for change in changes]
 
 
 def told(rows, in_grid):
@@ -85,8 +77,7 @@ def told(rows, in_grid):
     slots |= dict.fromkeys(("side", "symmetry", "section_period"), np.zeros((len(rows), 2), int))
     values = xr.Dataset({name: (("value", "attractor"), item) for name, item in slots.items()})
     values = values.assign(a=("value", np.arange(float(len(rows)))), in_grid=("value", in_grid))
-    count = sum(in_grid)
-    reached = [[10 * (k + 1), 10 * (k + 1) + 1] for k in range(count)]
+    reached = [[10 * k, 10 * k + 1] for k in range(1, sum(in_grid) + 1)]
     there = xr.Dataset(dict.fromkeys(("upward_branch", "downward_branch"), (("a", "attractor"), reached)))
     return there, values
 
@@ -107,13 +98,11 @@ def told(rows, in_grid):
     ],
 )  # fmt: skip
 def test_what_branches_do_between_values_of_the_grid(rows, in_grid, expected):
-    names = ("low", "high", "from_branch", "to_branch", "change")
-    found = branch_changes(*told(rows, in_grid))
-    assert [tuple(getattr(change, name) for name in names) for change in found] == expected
+    assert told_of(branch_changes(*told(rows, in_grid))) == expected
 
 
 def test_every_change_has_an_entry(grid, found):
-    for change in branch_changes(*of_one_law(grid)):
+    for change in branch_changes(grid, at_all_values(grid)):
         same = (found["change"] == change.change) & (found["from_branch"] == change.from_branch)
         same &= (found["grid_low"] == A[change.low]) & (found["grid_high"] == A[change.high])
         assert (same & (found["to_branch"] == change.to_branch)).any()
@@ -162,7 +151,7 @@ def test_orbits_are_stable_on_one_side_of_the_edge(found):
 def test_an_edge_without_an_orbit_has_no_numbers_of_one(grid):
     """Chaos on both sides of every edge: none is located, and each lies anywhere between two values of a."""
     chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
-    found = one_law(MODEL, *of_one_law(chaotic))
+    found = one_law(MODEL, chaotic, at_all_values(chaotic))
     assert found.sizes["orbit"] == 0
     assert found["a"].values == pytest.approx([0.08375] * 2)
     assert found["a_error"].values == pytest.approx([0.00375] * 2)

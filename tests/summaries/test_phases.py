@@ -27,12 +27,11 @@ def ruled(monkeypatch):
         x = (position - model.sliding_offset)[:, 0]
         return np.select([x > 0.04, x < -0.4], [0, -1], 2), np.zeros(len(x))
 
+    def known(found, model, *_):
+        return KnownAttractors(model, [Known] * 3, np.array([0, 7, 7]), np.array([0, 1, -1]))
+
     monkeypatch.setattr(phases, "label_states", label_states)
-    monkeypatch.setattr(
-        phases,
-        "known_attractors",
-        lambda found, model, *_: KnownAttractors(model, [Known] * 3, np.array([0, 7, 7]), np.array([0, 1, -1])),
-    )
+    monkeypatch.setattr(phases, "known_attractors", known)
     correlations = iter([1.0, -0.5, -0.7] * 100)
     monkeypatch.setattr(phases, "velocity_correlation", lambda model, start: next(correlations))
 
