@@ -44,6 +44,7 @@ ROOMS = ("summaries", "stability", "claims", "dataset", "model", "laws", "runnin
 TESTS = {
     "model": ("running", "stability"),
     "laws": ("model", "running/test_simulation.py"),
+    "dataset": ("library/test_open_study.py",),
     "running": ("dataset", "kernel/test_exponents.py"),
     "kernel": ("running", "stability/test_orbit.py"),
 }

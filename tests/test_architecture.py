@@ -39,17 +39,19 @@ def room_of(path):
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-@pytest.mark.parametrize("room", sorted({room_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}))
+ROOMS = {room_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}
+
+
+@pytest.mark.parametrize("room", sorted(ROOMS))
 def test_a_room_imports_from_below(room):
     floor = floors()
-    files = [path for path in PACKAGE.rglob("*.py") if room_of(path) == room]
-    for path in files:
+    for path in (path for path in PACKAGE.rglob("*.py") if room_of(path) == room):
         for other in imports(path) - {room}:
             assert floor[other] < floor[room], f"{path}: {other}"
 
 
 def test_every_room_is_in_the_picture():
-    assert set(floors()) == {room_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}
+    assert set(floors()) == ROOMS
 
 
 @pytest.mark.parametrize("name", sorted(set(NAMED)))
@@ -59,9 +61,8 @@ def test_every_file_that_is_named_is_there(name):
 
 def test_balls_do_not_leave_their_room():
     """What is computed in double precision must not pass for proved: only the summary of the proofs holds balls."""
-    users = {
-        path for path in PACKAGE.rglob("*.py") if re.search(r"^\s*(from|import) flint", path.read_text(), re.MULTILINE)
-    }
+    flint = re.compile(r"^\s*(from|import) flint", re.MULTILINE)
+    users = {path for path in PACKAGE.rglob("*.py") if flint.search(path.read_text())}
     assert {room_of(path) for path in users} == {"proof", "summaries"}
     assert [path.name for path in users if room_of(path) == "summaries"] == ["proof.py"]
 
@@ -69,11 +70,7 @@ def test_balls_do_not_leave_their_room():
 def test_the_display_and_the_package():
     """The package knows nothing of Snakemake."""
     for path in PACKAGE.rglob("*.py"):
-        names = {node.module for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom)}
-        names |= {
-            alias.name
-            for node in ast.walk(ast.parse(path.read_text()))
-            if isinstance(node, ast.Import)
-            for alias in node.names
-        }
-        assert not [name for name in names if name and name.split(".")[0].startswith("snakemake")], path
+        nodes = list(ast.walk(ast.parse(path.read_text())))
+        names = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+        names |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+        assert not [name for name in names if name.startswith("snakemake")], path

@@ -1,6 +1,6 @@
 """docs/tutorial.ipynb is docs/tutorial.md as a notebook; tests/test_tutorial.py holds what it shows."""
 
-import importlib.util
+import runpy
 
 import nbformat
 
@@ -8,14 +8,12 @@ from tests.pages import blocks
 
 
 def test_the_notebook_is_that_of_the_page(repository):
-    spec = importlib.util.spec_from_file_location("notebook", repository / "docs" / "notebook.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    text = module.NOTEBOOK.read_text()
-    assert module.notebook() == text, "run python docs/notebook.py"
+    module = runpy.run_path(str(repository / "docs" / "notebook.py"))
+    text = module["NOTEBOOK"].read_text()
+    assert module["notebook"]() == text, "run python docs/notebook.py"
     assert len(text) < 1_000_000
     cells = nbformat.reads(text, as_version=4).cells
-    page = blocks(module.PAGE.read_text())
+    page = blocks(module["PAGE"].read_text())
     codes = [cell for cell in cells if cell.cell_type == "code"]
     assert [block.text for block in page if block.info == "python"] == [
         f"{cell.source}\n" for cell in codes[1:] if not cell.source.startswith("Image(")

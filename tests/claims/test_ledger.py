@@ -13,21 +13,15 @@ import pytest
 import xarray
 
 from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
-from burridge_knopoff.claims.verdict import (
-    NOT_TESTABLE,
-    NotTestableError,
-    Range,
-    at_values,
-    by_interval,
-    by_value,
-    content_digest,
-    with_error,
-)
+from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Range, at_values, by_interval, by_value
+from burridge_knopoff.claims.verdict import content_digest as digest_of
+from burridge_knopoff.claims.verdict import with_error as shown
 from burridge_knopoff.study import ConfigError
+from tests.claims.said import CLAIMS
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
+from tests.refused import refused
 
-ROOT = Path(__file__).parents[2]
-GOOD = """
+EDGE = """
 edge:
   statement: Synchrony ends at 0.08.
   place: Fig. 3
@@ -35,58 +29,6 @@ edge:
   parameters: {initial: minus, upper: true, claimed: 0.08, tolerance: 0.005, loose: 0.01}
   figure: orbits
 """
-
-
-def read(tmp_path: Path, text: str) -> list:
-    file = tmp_path / "claims.yaml"
-    file.write_text(text)
-    return read_claims(file)
-
-
-def test_a_claim_knows_its_judge(tmp_path: Path) -> None:
-    (claim,) = read(tmp_path, GOOD)
-    assert (claim.name, claim.topic, claim.judge.__name__) == ("edge", "synchronization", "edge_of_synchrony")
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "expected"),
-    [
-        ("edge_of_synchrony", "edge_of_chaos", "judge: 'synchronization.edge_of_chaos' is not allowed: one of"),
-        ("edge_of_synchrony", "spans", "judge: 'synchronization.spans' is not allowed: one of"),
-        ("synchronization.edge", "chaos.edge", "judge: 'chaos.edge_of_synchrony' is not allowed"),
-        (", loose: 0.01", "", "parameters.loose: missing; needed by synchronization.edge_of_synchrony"),
-        ("loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, upper"),
-        ("tolerance: 0.005", "tolerance: -1", "tolerance: -1 is not allowed"),
-        ("upper: true", "upper: 1", "upper: 1 is not allowed"),
-        ("initial: minus", "initial: middle", "initial: middle is not allowed: minus | plus"),
-        ("initial: minus", "initial: [minus, plus]", "initial: ['minus', 'plus'] is not allowed: one name"),
-        ("claimed: 0.08", "claimed: true", "claimed: True is not allowed"),
-        ("claimed: 0.08", "claimed: .nan", "claimed: nan is not allowed"),
-        ("loose: 0.01", "loose: 0.001", "loose: 0.001 is not allowed: at least tolerance"),
-        (GOOD, "[", "not YAML (line 1)"),
-        (GOOD, "a: !!python/object:os.system {}", "not YAML (line 1)"),
-        (GOOD, "? [a, b]\n: 1", "(line 1) is not allowed as a key"),
-        (GOOD, "---\na: 1\n---\nb: 2", "not YAML (line 3)"),
-        (GOOD, "a: \0", "not YAML"),
-        (GOOD, "", "is not allowed: named entries"),
-        (GOOD, "- a", "is not allowed: named entries"),
-        ("edge:", '"edge\\n":', "'edge\\n' is not allowed: small letters"),
-        ("edge:", "1:", "is not allowed as a key"),
-        ("  place: Fig. 3\n", "", "place: missing"),
-        ("figure: orbits", "figure: ../orbits", "figure: '../orbits' is not allowed"),
-        ("  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
-        ("  figure", "  place: Fig. 4\n  figure", "place: stands twice"),
-    ],
-)
-def test_what_is_not_allowed_is_said_in_one_line(tmp_path: Path, old: str, new: str, expected: str) -> None:
-    assert old in GOOD
-    with pytest.raises(ConfigError) as error:
-        read(tmp_path, GOOD.replace(old, new))
-    assert expected in str(error.value)
-    assert "claims.yaml" in str(error.value)
-    assert "\n" not in str(error.value)
-
-
 RANGED = """
 regular:
   statement: All is regular.
@@ -97,53 +39,82 @@ regular:
 """
 
 
+def read(tmp_path: Path, text: str | bytes) -> list:
+    file = tmp_path / "claims.yaml"
+    file.write_bytes(text.encode() if isinstance(text, str) else text)
+    return read_claims(file)
+
+
+def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
+    edge, regular = read(tmp_path, EDGE + RANGED)
+    assert (edge.name, edge.topic, edge.judge.__name__) == ("edge", "synchronization", "edge_of_synchrony")
+    assert regular.parameters["a"] == Range(above=0.0)
+
+
 @pytest.mark.parametrize(
-    ("old", "new", "expected"),
+    ("text", "old", "new", "expected"),
     [
-        ("{above: 0}", "{}", "a: {} is not allowed: at least one end"),
-        ("{above: 0}", "{from: 0, above: 0}", "one of each side"),
-        ("{above: 0}", "{from: 1, to: 0}", "the first end below the last"),
-        ("{above: 0}", "{above: 1, to: 1}", "the first end below the last"),
-        ("{above: 0}", "{over: 0}", "a.over: unknown key"),
-        ("0.9", "90", "loose_share: 90 is not allowed"),
-        ("[minus]", "minus", "initial: 'minus' is not allowed: a list"),
-        ("[linearized]", "[cubic]", "laws[0]: 'cubic' is not allowed"),
-        ("[periodic]", "[]", "kinds: [] is not allowed"),
+        (EDGE, "edge_of_synchrony", "edge_of_chaos", "judge: 'synchronization.edge_of_chaos' is not allowed: one of"),
+        (EDGE, "edge_of_synchrony", "spans", "judge: 'synchronization.spans' is not allowed: one of"),
+        (EDGE, "synchronization.edge", "chaos.edge", "judge: 'chaos.edge_of_synchrony' is not allowed"),
+        (EDGE, ", loose: 0.01", "", "parameters.loose: missing; needed by synchronization.edge_of_synchrony"),
+        (EDGE, "loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, upper"),
+        (EDGE, "tolerance: 0.005", "tolerance: -1", "tolerance: -1 is not allowed"),
+        (EDGE, "upper: true", "upper: 1", "upper: 1 is not allowed"),
+        (EDGE, "initial: minus", "initial: middle", "initial: middle is not allowed: minus | plus"),
+        (EDGE, "initial: minus", "initial: [minus, plus]", "initial: ['minus', 'plus'] is not allowed: one name"),
+        (EDGE, "claimed: 0.08", "claimed: true", "claimed: True is not allowed"),
+        (EDGE, "claimed: 0.08", "claimed: .nan", "claimed: nan is not allowed"),
+        (EDGE, "loose: 0.01", "loose: 0.001", "loose: 0.001 is not allowed: at least tolerance"),
+        (EDGE, EDGE, "[", "not YAML (line 1)"),
+        (EDGE, EDGE, "a: !!python/object:os.system {}", "not YAML (line 1)"),
+        (EDGE, EDGE, "? [a, b]\n: 1", "(line 1) is not allowed as a key"),
+        (EDGE, EDGE, "---\na: 1\n---\nb: 2", "not YAML (line 3)"),
+        (EDGE, EDGE, "a: \0", "not YAML"),
+        (EDGE, EDGE, "", "is not allowed: named entries"),
+        (EDGE, EDGE, "- a", "is not allowed: named entries"),
+        (EDGE, "edge:", '"edge\\n":', "'edge\\n' is not allowed: small letters"),
+        (EDGE, "edge:", "1:", "is not allowed as a key"),
+        (EDGE, "  place: Fig. 3\n", "", "place: missing"),
+        (EDGE, "figure: orbits", "figure: ../orbits", "figure: '../orbits' is not allowed"),
+        (EDGE, "  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
+        (EDGE, "  figure", "  place: Fig. 4\n  figure", "place: stands twice"),
+        (RANGED, "{above: 0}", "{}", "a: {} is not allowed: at least one end"),
+        (RANGED, "{above: 0}", "{from: 0, above: 0}", "one of each side"),
+        (RANGED, "{above: 0}", "{from: 1, to: 0}", "the first end below the last"),
+        (RANGED, "{above: 0}", "{above: 1, to: 1}", "the first end below the last"),
+        (RANGED, "{above: 0}", "{over: 0}", "a.over: unknown key"),
+        (RANGED, "0.9", "90", "loose_share: 90 is not allowed"),
+        (RANGED, "[minus]", "minus", "initial: 'minus' is not allowed: a list"),
+        (RANGED, "[linearized]", "[cubic]", "laws[0]: 'cubic' is not allowed"),
+        (RANGED, "[periodic]", "[]", "kinds: [] is not allowed"),
     ],
 )
-def test_ranges_and_lists_are_checked(tmp_path: Path, old: str, new: str, expected: str) -> None:
-    (claim,) = read(tmp_path, RANGED)
-    assert claim.parameters["a"] == Range(above=0.0)
-    assert old in RANGED
-    with pytest.raises(ConfigError) as error:
-        read(tmp_path, RANGED.replace(old, new))
-    assert expected in str(error.value)
-    assert "\n" not in str(error.value)
+def test_what_is_not_allowed_is_said_in_one_line(tmp_path: Path, text: str, old: str, new: str, expected: str) -> None:
+    assert old in text
+    with refused(expected, "claims.yaml", error=ConfigError):
+        read(tmp_path, text.replace(old, new))
 
 
 def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
         read_claims(tmp_path / "missing.yaml")
-    (tmp_path / "claims.yaml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ConfigError, match=r"claims.yaml: cannot be read: not UTF-8 text"):
-        read_claims(tmp_path / "claims.yaml")
+        read(tmp_path, b"\xff\xfe\x00")
 
 
 @pytest.fixture(scope="module")
 def content() -> dict:
-    return ledger("test", read_claims(ROOT / "config/claims.yaml"), evidence(paper_world()), ["orbits"])
+    return ledger("test", CLAIMS.values(), evidence(paper_world()), ["orbits"])
 
 
 def test_json_is_strict_and_whole(content: dict) -> None:
-    def refuse(name: str) -> None:
-        raise AssertionError(name)
-
-    read = json.loads(as_json(content), parse_constant=refuse)
+    read = json.loads(as_json(content), parse_constant=pytest.fail)
     assert as_json(content).startswith(
         '{\n "study": "test",\n "v": 0.1,\n "contact": "one_sided",\n "start": "moving",\n'
     )
-    assert read == {**content, "digest": content_digest(content)}
-    assert content_digest(read) == read["digest"]
+    assert read == {**content, "digest": digest_of(content)}
+    assert digest_of(read) == read["digest"]
 
 
 def test_csv_has_a_line_for_each_figure(content: dict) -> None:
@@ -164,7 +135,7 @@ def test_what_is_proved_is_told_beside_its_number() -> None:
     proof = xarray.Dataset({"critical_a": (("law", "end"), [[0.0800999, 0.0801001]])}, {"law": ["linearized"]})
     world = {**paper_world(), "proof": proof}
     world["orbits"]["critical_a"].values[:] = 0.0801, 0.0802
-    claims = [claim for claim in read_claims(ROOT / "config/claims.yaml") if claim.name == "upper_edge"]
+    claims = [CLAIMS["upper_edge"]]
     content = ledger("test", claims, evidence(world), [])
     (claim,) = content["claims"]
     proved = [item for item in claim["measured"] if item["proved"]]
@@ -183,50 +154,36 @@ def test_what_is_proved_is_told_beside_its_number() -> None:
 def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     text = as_markdown(content, "figures")
     rows = [line for line in text.splitlines() if line.startswith("| ") and "claim | verdict" not in line]
-    assert len(rows) == len(content["claims"])
+    assert len(rows) == len(content["claims"]) == 41
+    assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
     # A bar inside a cell is escaped.
     assert all(row.replace("\\|", "").count("|") == 7 for row in rows)
     assert text.startswith("41 holds; 0 holds loosely; 0 depends on convention; 0 fails; 0 not testable.\n\n### Sync")
     claim = next(claim for claim in content["claims"] if claim["figure"])
-    claim |= {
-        "verdict": "fails",
-        "reason": "a|b",
-        "changes": "nowhere",
-        "turns": ["holds: near below 1 (2)", "holds: c"],
-    }
+    claim |= {"verdict": "fails", "reason": "a|b", "changes": "nowhere"}
+    claim |= {"turns": ["holds: near below 1 (2)", "holds: c"]}
+    text = as_markdown({**content, "claims": [claim]}, "figures")
+    assert text.count("###") == 1
     assert (
         f"| {claim['statement']} *{claim['place']}* | **fails** (here: holds) | a\\|b | nowhere | "
         "holds: near below 1 (2); holds: c | [orbits](figures/orbits.png) |"
-    ) in as_markdown({**content, "claims": [claim]}, "figures").splitlines()
-    assert as_markdown({**content, "claims": [claim]}, "figures").count("###") == 1
+    ) in text.splitlines()
     claims = [{**claim, "name": name, "verdict": NOT_TESTABLE, "reason": "Short runs."} for name in ("one", "two")]
     text = as_markdown({**content, "claims": claims}, "figures")
     assert text.endswith("\n\n### Not testable\n\n- Short runs. (2: one, two)\n")
     assert "|" not in text
 
 
-def test_counts_are_those_of_the_verdicts(content: dict) -> None:
-    assert content["counts"] == {
-        "holds": 41,
-        "holds loosely": 0,
-        "depends on convention": 0,
-        "fails": 0,
-        NOT_TESTABLE: 0,
-    }
-    assert len(content["claims"]) == 41
-    assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
-
-
 def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
-    assert with_error(0.140640595, 9.5e-6) == "0.1406406 ± 0.0000095"
-    assert with_error(5.7, 0.2) == "5.70 ± 0.20"
-    assert with_error(123.4, 20.0) == "123 ± 20"
-    assert with_error(-0.25, 0.01) == "−0.250 ± 0.010"
-    assert with_error(-1 / 3) == "−0.333333"
-    assert with_error(1 / 3, 1e-11) == "0.333333333333 ± 0.000000000010"
-    assert with_error(-1 / 3, 1e-12) == "−0.333333333333"
-    assert with_error(0.25) == with_error(0.25, 0.0) == with_error(0.25, math.nan) == "0.25"
-    assert with_error(math.nan) == "nan"
+    assert shown(0.140640595, 9.5e-6) == "0.1406406 ± 0.0000095"
+    assert shown(5.7, 0.2) == "5.70 ± 0.20"
+    assert shown(123.4, 20.0) == "123 ± 20"
+    assert shown(-0.25, 0.01) == "−0.250 ± 0.010"
+    assert shown(-1 / 3) == "−0.333333"
+    assert shown(1 / 3, 1e-11) == "0.333333333333 ± 0.000000000010"
+    assert shown(-1 / 3, 1e-12) == "−0.333333333333"
+    assert shown(0.25) == shown(0.25, 0.0) == shown(0.25, math.nan) == "0.25"
+    assert shown(math.nan) == "nan"
 
 
 def test_values_join_neighbours_and_count_many() -> None:
@@ -289,7 +246,7 @@ def test_a_study_without_the_papers_states_is_judged_without_an_error(missing: s
             dataset["initial"].attrs["flag_meanings"] = " ".join(meanings)
         summaries[key] = dataset
     states = {names[name]: state for name, state in CONFIG["initial"].items()}
-    found = ledger("other", read_claims(ROOT / "config/claims.yaml"), evidence(summaries, initial=states), [])
+    found = ledger("other", CLAIMS.values(), evidence(summaries, initial=states), [])
     reasons = [claim["reason"] for claim in found["claims"] if claim["verdict"] == NOT_TESTABLE]
     for name in missing:
         assert f"Not testable here: the study has no initial state {name}." in reasons

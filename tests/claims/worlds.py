@@ -20,7 +20,6 @@ STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
 PAIR = ("other_law", "initial", "a")
 BLOCK = (*POINT, "block")
-AXES = ("law", "initial", "a")
 BLOCKS = np.array([1, 2, 3])
 SYNCHRONY = (A >= 0.005) & (A <= 0.08)
 CONFIG = {
@@ -107,7 +106,7 @@ def _dataset(variables: dict, **coordinates: object) -> xarray.Dataset:
         name: (dimensions, np.array(np.broadcast_to(values, [sizes[dimension] for dimension in dimensions])))
         for name, (dimensions, values) in variables.items()
     }
-    return xarray.Dataset(data, {name: values for name, values in known.items() if name in used or name not in AXES})
+    return xarray.Dataset(data, {name: values for name, values in known.items() if name in used or name not in POINT})
 
 
 def _mean_distance() -> xarray.Dataset:
@@ -207,18 +206,10 @@ def _refined() -> xarray.Dataset:
 
 def _edges() -> xarray.Dataset:
     """Return four edges of each law at which a locked orbit, at a grazing, gives way to chaos."""
-    count = 8
-    law = np.repeat(np.arange(2, dtype="i1"), 4)
-    low = np.tile(A[A >= 0.1][:4], 2)
-    flags = {
-        "law": law,
-        "kind": np.zeros(count, "i1"),
-        "motion_before": np.full(count, PERIODIC, "i1"),
-        "motion_after": np.full(count, CHAOTIC, "i1"),
-        "to_branch": np.full(count, 1, "i2"),
-        "grid_low": low,
-    }
-    return xarray.Dataset({name: ("edge", values) for name, values in flags.items()}, attrs={"laws": " ".join(LAWS)})
+    told = {"law": np.repeat([0, 1], 4), "kind": 0, "motion_before": PERIODIC, "motion_after": CHAOTIC, "to_branch": 1}
+    told |= {"grid_low": np.tile(A[A >= 0.1][:4], 2)}
+    edges = {name: ("edge", np.array(np.broadcast_to(value, 8))) for name, value in told.items()}
+    return xarray.Dataset(edges, attrs={"laws": " ".join(LAWS)})
 
 
 def _phases() -> xarray.Dataset:

@@ -10,10 +10,8 @@ from itertools import pairwise
 import pytest
 
 from burridge_knopoff.cli import COMMANDS, build_parser, main
-from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study import load_study
+from tests.small_study import run_study
 
 
 def examples(command):
@@ -30,11 +28,7 @@ def folder(tmp_path_factory):
     results = folder / "results" / "paper"
     given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
     given |= {"transient": 10, "window": 20, "batches": 2}
-    study = load_study(given, "paper.yaml")
-    (law,), (initial,), (a,) = study.laws, study.initial, study.grid
-    path = results / f"points/{law}/{initial}/a{a}.nc"
-    write_point(run(study.model(law, study.grid[a]), study.state(initial), study.settings(law)), path)
-    write_study_record(results, study, folder / "paper.yaml", given, "")
+    write_study_record(results, run_study(results, given).study, folder / "paper.yaml", given, "")
     return folder
 
 

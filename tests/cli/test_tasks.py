@@ -7,17 +7,11 @@ import pytest
 import xarray as xr
 
 import burridge_knopoff
+from burridge_knopoff import Chain, Model, Settings, closed_motion, law_of, synchronized_orbit, transverse_multiplier
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.stability.closed_motion import closed_motion
-from burridge_knopoff.stability.family import synchronized_orbit
-from burridge_knopoff.stability.orbit import transverse_multiplier
 from burridge_knopoff.stability.settings import MOTION, SearchSettings
 from burridge_knopoff.summaries.lyapunov import motion_of_run
 
@@ -37,14 +31,11 @@ def said(capsys, *arguments):
 
 def test_attractors(capsys, tmp_path):
     out = tmp_path / "attractors.nc"
-    printed = said(
-        capsys, "attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus", "--out", str(out)
-    )
+    command = ["attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus"]
+    printed = said(capsys, *command, "--out", str(out))
     found, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
     written = open_summary(out)
-    assert written.attrs["history"] == shlex.join(
-        ["bk", "attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus"]
-    )
+    assert written.attrs["history"] == shlex.join(["bk", *command])
     assert written.sizes["attractor"] == len(found)
     means = sorted(attractor.motion.mean_distance for attractor in found)
     assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)

@@ -1,9 +1,7 @@
 """Uniform sliding: eigenvalues, and the growth rates of the simulation."""
 
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.figures.equilibrium import draw
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.equilibrium import summarize
 
@@ -16,4 +14,4 @@ def test_equilibrium_draws_eigenvalues_and_simulated_rates():
     assert drawn[3] == dataset["growth_rate"].sel(law="nonlinear").values.tolist()
     real = dataset["eigenvalue"].sel(part="real", law="nonlinear").max("mode")
     assert drawn[2] == real.values.tolist()
-    assert len([line for line in plane.get_lines() if len(line.get_xdata()) == 3]) == 12
+    assert [len(line.get_xdata()) for line in plane.get_lines()].count(3) == 12

@@ -35,20 +35,21 @@ def attractors():
     )
 
 
+WITH_A_GAP = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
+
+
 def test_a_gap_where_a_run_has_no_result(attractors):
-    values = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
-    panels = draw(means(values), attractors).axes
+    panels = draw(means(WITH_A_GAP), attractors).axes
     known, run = (line for line in panels[0].get_lines() if len(line.get_ydata()) in (2, 3))
-    assert np.array_equal(run.get_ydata(), values[0, 0], equal_nan=True)
+    assert np.array_equal(run.get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
     assert known.get_ydata().tolist() == [0.1, 0.2]
     assert panels[0].get_title(loc="left") == "(a) linearized law"
 
 
 def test_runs_alone_where_attractors_are_left_out():
-    values = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
-    panels = draw(means(values)).axes
+    panels = draw(means(WITH_A_GAP)).axes
     assert [panel.get_title(loc="left") for panel in panels] == ["(a) linearized law", "(b) nonlinear law"]
-    assert np.array_equal(panels[0].get_lines()[0].get_ydata(), values[0, 0], equal_nan=True)
+    assert np.array_equal(panels[0].get_lines()[0].get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
 
 
 def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white(attractors):

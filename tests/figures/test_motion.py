@@ -13,8 +13,10 @@ def point():
     return simulate("linearized", 0.08, "plus", transient=50.0, window=50.0, batches=2).to_dataset()
 
 
-def test_motion_draws_every_block(point):
+def test_motion_draws_every_block_in_a_style_that_is_nobody_elses(point):
+    before = dict(mpl.rcParams)
     figure = motion.draw({"plus": point})
+    assert dict(mpl.rcParams) == before
     for panel, name in zip(figure.axes, ("velocity", "position"), strict=True):
         assert len(panel.get_lines()) == 3
         assert (panel.get_lines()[2].get_ydata() == point[name].values[:, 2]).all()
@@ -24,12 +26,6 @@ def test_distance_draws_both_scales(point):
     figure = distance.draw({"plus": point})
     assert (figure.axes[0].get_lines()[0].get_ydata() == point["distance"].values).all()
     assert figure.axes[1].get_yscale() == "log"
-
-
-def test_the_callers_style_is_untouched(point):
-    before = dict(mpl.rcParams)
-    motion.draw({"plus": point})
-    assert dict(mpl.rcParams) == before
 
 
 @pytest.mark.parametrize("suffix", ["pdf", "png"])

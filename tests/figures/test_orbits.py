@@ -2,10 +2,8 @@
 
 import xarray as xr
 
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.figures.orbits import draw
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.orbits import summarize
 

@@ -8,22 +8,18 @@ from burridge_knopoff.figures.stick_slip import draw
 from burridge_knopoff.figures.style import write_figure
 
 
-def cycles(blocks, initial=("minus",)):
+def cycles(blocks):
     """A summary of stick-slip cycles with other numbers for every block, and a gap for one that never stops."""
     a = np.array([0.0, 0.1, 0.2])
-    names = ("law", "initial", "a", "block")
-    shape = (2, len(initial), 3, blocks)
-    block = np.arange(1.0, blocks + 1)
-    values = {
-        name: (names, np.broadcast_to(block * (1.0 + a[:, None]), shape).copy())
-        for name in ("stop_rate", "cycle_time", "cycle_time_error", "stick_fraction", "velocity_frequency")
-    }
-    values["velocity_frequency_error"] = (names, np.full(shape, 0.01))
-    values["cycle_time"][1][:, :, 0, 0] = np.nan
-    values["stop_rate"][1][:, :, 0] = 0.0
-    values["velocity_correlation"] = (names[:3], np.full(shape[:3], -0.5))
-    labels = {"law": ["linearized", "nonlinear"], "initial": list(initial), "a": a, "block": np.arange(1, blocks + 1)}
-    return xr.Dataset(values, labels)
+    labels = {"law": ["linearized", "nonlinear"], "initial": ["minus"], "a": a, "block": np.arange(1, blocks + 1)}
+    block = np.tile(np.arange(1.0, blocks + 1) * (1.0 + a[:, None]), (2, 1, 1, 1))
+    names = ("stop_rate", "cycle_time", "cycle_time_error", "stick_fraction", "velocity_frequency")
+    found = xr.Dataset({name: (tuple(labels), block.copy()) for name in names}, labels)
+    found["cycle_time"][:, :, 0, 0] = np.nan
+    found["stop_rate"][:, :, 0] = 0.0
+    correlation = xr.full_like(found["stop_rate"].isel(block=0, drop=True), -0.5)
+    error = xr.full_like(found["stop_rate"], 0.01)
+    return found.assign(velocity_frequency_error=error, velocity_correlation=correlation)
 
 
 @pytest.mark.parametrize(("blocks", "shown"), [(2, [1, 2]), (3, [1, 2, 3]), (6, [1, 3, 6])])

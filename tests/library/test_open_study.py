@@ -1,5 +1,6 @@
 """A study as one tree: points and summaries as their files say, numbers over the grid, and what is missing."""
 
+import shutil
 import subprocess
 import sys
 
@@ -8,34 +9,21 @@ import pytest
 import xarray
 
 from burridge_knopoff import open_study
-from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study import all_points, load_study
+from tests.small_study import run_study
 
-CONFIG = {
-    "study": "few",
-    "a": [0.05, 0.08, 0.22],
-    "initial": {"minus": {}, "plus": {}},
-    "transient": 20,
-    "window": 60,
-    "batches": 2,
-    "event_window": 50,
-}
+CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
+CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
 MISSING = ("nonlinear", "plus", "0.0800")
 
 
 def make_study(folder):
     """Make the points of a study but one, and something for a summary."""
-    study = load_study(CONFIG, "few.yaml")
-    for law, initial, a in all_points(study):
-        if (law, initial, a) != MISSING:
-            path = folder / "points" / law / initial / f"a{a}.nc"
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_point(run(study.model(law, study.value(a)), study.state(initial), study.settings(law)), path)
+    small = run_study(folder, CONFIG)
+    small.grid.path(*MISSING).unlink()
     (folder / "summary").mkdir()
     xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf(folder / "summary" / "some.nc")
-    write_study_record(folder, study, "few.yaml", CONFIG, "--configfile few.yaml")
+    write_study_record(folder, small.study, "few.yaml", CONFIG, "--configfile few.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +78,7 @@ def test_without_points(results):
 
 @pytest.mark.parametrize("name", ["points/linearized/plus/a0.0500.nc", "summary/some.nc"])
 def test_a_file_that_cannot_be_read_is_named(results, tmp_path, name):
-    subprocess.run(["cp", "-a", f"{results}/.", str(tmp_path)], check=True)
+    shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     (tmp_path / name).write_bytes(b"no netCDF")
     with pytest.raises(ValueError, match="cannot be read") as caught:
         open_study(tmp_path)

@@ -15,27 +15,17 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study import Study
-from tests.small_study import run_study
+from tests.small_study import SMALL, STUDIES, run_study
 
 CLAIMS = Path(__file__).parent / "claims.json"
 
 POOR = {
+    **{key: SMALL[key] for key in ("transient", "batches", "refine")},
+    **STUDIES["two_blocks"],
     "study": "poor",
     "a": [0.1, 0.2],
-    "initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}},
-    "transient": 100,
     "window": 100,
-    "batches": 2,
-    "attractors": {
-        "samples": 2,
-        "fraction_samples": 2,
-        "lifetime": 500,
-        "transient": 100,
-        "window": 100,
-        "time_limit": 1000,
-        "pushes": 4,
-    },
-    "refine": {"resolution": 1},
+    "attractors": {**SMALL["attractors"], "fraction_samples": 2, "lifetime": 500},
     "basins": {"a": {"linearized": [], "nonlinear": []}},
 }
 
@@ -78,17 +68,15 @@ def poor(tmp_path_factory) -> Poor:
 
 def _fail(found) -> None:
     """Let the run of the linearized law at the second a be one that did not complete."""
-    where = {"law": 0, "initial": 0, "a": 1}
-    for name in ("mean_distance", "lyapunov"):
-        found[name]["status"][where] = Status.DIVERGED
-        found[name]["mean_distance"][where] = np.nan
-    found["mean_distance"]["mean_distance_error"][where] = np.nan
-    for name in ("lyapunov_exponent", "lyapunov_error"):
-        found["lyapunov"][name][where] = np.nan
-    found["lyapunov"]["kind"][where] = -1
-    for name in ("difference", "difference_error", "section_distance"):
-        found["agreement"][name][{"other_law": 0, "initial": 0, "a": 1}] = np.nan
-    found["agreement"]["agrees"][{"other_law": 0, "initial": 0, "a": 1}] = -1
+    lost = {"status": Status.DIVERGED, "mean_distance": np.nan}
+    for summary, law, values in (
+        ("mean_distance", "law", {**lost, "mean_distance_error": np.nan}),
+        ("lyapunov", "law", {**lost, "lyapunov_exponent": np.nan, "lyapunov_error": np.nan, "kind": -1}),
+        ("agreement", "other_law", dict.fromkeys(("difference", "difference_error", "section_distance"), np.nan)),
+        ("agreement", "other_law", {"agrees": -1}),
+    ):
+        for name, value in values.items():
+            found[summary][name][{law: 0, "initial": 0, "a": 1}] = value
 
 
 @pytest.fixture

@@ -15,27 +15,14 @@ def test_basin_maps_hold_label_and_time_of_every_pixel():
     time = np.array([[10.4, 200.6, 0.2], [np.nan, 70000.0, 5.0]], dtype="f4")
     plane = ("map", "last_position", "first_position")
     basins = xr.Dataset(
-        {
-            "branch": (plane, branch[None]),
-            "side": (plane, side[None]),
-            "decision_time": (plane, time[None]),
-            "uncertainty_exponent": ("map", [0.5]),
-            "uncertainty_exponent_error": ("map", [np.nan]),
-        },
-        {
-            "law": ("map", [1], {"flag_meanings": "linearized nonlinear"}),
-            "a": ("map", [0.08]),
-            "first_position": [-1.0, 0.0, 1.0],
-            "last_position": [0.0, 1.0],
-        },
+        {"branch": (plane, branch[None]), "side": (plane, side[None]), "decision_time": (plane, time[None])},
+        {"first_position": [-1.0, 0.0, 1.0], "last_position": [0.0, 1.0], "a": ("map", [0.08])},
     )
-    known = xr.Dataset(
-        {
-            "branch": (("law", "a", "attractor"), [[[0, 3, 7]]]),
-            "branch_number": ("number", [0, 3, 7]),
-            "branch_name": ("number", ["synchronized", "branch 3", "branch 7"]),
-        }
-    )
+    basins["law"] = "map", [1], {"flag_meanings": "linearized nonlinear"}
+    basins["uncertainty_exponent"], basins["uncertainty_exponent_error"] = ("map", [0.5]), ("map", [np.nan])
+    names = ["synchronized", "branch 3", "branch 7"]
+    known = xr.Dataset({"branch_number": ("number", [0, 3, 7]), "branch_name": ("number", names)})
+    known["branch"] = ("law", "a", "attractor"), [[[0, 3, 7]]]
     one = basin_maps(basins, known, {"plus": (0.9, -0.9)})["maps"][0]
     label = np.frombuffer(base64.b64decode(one["label"]), dtype="u1").reshape(2, 3)
     names = np.array([item["name"] for item in one["classes"]])[label]

@@ -19,6 +19,7 @@ class Page(HTMLParser):
         self.elements, self.open, self.text = [], [], []
         self.feed(html)
         assert self.open == []
+        self.whole_text = " ".join(" ".join(self.text).split())
 
     def handle_starttag(self, tag, attrs):
         self.elements.append((tag, dict(attrs)))
@@ -47,7 +48,6 @@ def page(html):
 
 
 def test_what_is_missing_is_said_in_a_line(page):
-    text = " ".join(" ".join(page.text).split())
     for line in (
         "No synchronized orbit was computed",
         "This study has no maps of basins.",
@@ -55,18 +55,17 @@ def test_what_is_missing_is_said_in_a_line(page):
         "Longer chains were not part of this study",
         "Snakemake left no benchmark files",
     ):
-        assert line in text
+        assert line in page.whole_text
     charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
     assert not {"map", "chains", "multipliers", "asymmetry", "sections"} & set(charts)
     assert {"distance", "exponents", "agreement"} <= set(charts)
 
 
 def test_a_failed_run_stands_with_its_file_and_command(page):
-    text = " ".join(" ".join(page.text).split())
-    assert "did not complete: diverged" in text
+    assert "did not complete: diverged" in page.whole_text
     path = "points/linearized/pair/a0.2000.nc"
     assert any(attributes.get("href") == path for _, attributes in page.elements)
-    assert f"snakemake -c1 --force results/poor/{path} --configfile poor.yaml" in text
+    assert f"snakemake -c1 --force results/poor/{path} --configfile poor.yaml" in page.whole_text
 
 
 def test_texts_of_others_are_escaped(page):
@@ -83,8 +82,7 @@ def test_the_html_is_sound(page):
     targets = [attributes["href"] for tag, attributes in page.elements if tag in ("a", "use")]
     assert {target[1:] for target in targets if target.startswith("#")} <= set(ids)
     for _, attributes in page.elements:
-        for name in ("aria-labelledby",):
-            assert set(attributes.get(name, "").split()) <= set(ids)
+        assert set(attributes.get("aria-labelledby", "").split()) <= set(ids)
         for name in ("src", "href"):
             value = attributes.get(name, "")
             assert value.startswith(("data:", "#")) or not value or "//" not in value

@@ -10,18 +10,13 @@ from burridge_knopoff.report.section_points import BINS, section_counts
 def sections(velocity, count):
     laws = {"flag_values": [0, 1], "flag_meanings": "linearized nonlinear"}
     states = {"flag_values": [0], "flag_meanings": "plus"}
-    velocity = np.asarray(velocity)
-    return xr.Dataset(
-        {
-            "crossing_velocity": ("crossing", velocity),
-            "crossing_direction": ("crossing", np.where(velocity >= 0.0, 1, -1).astype("i1")),
-            "crossing_count": ("point", np.asarray(count, dtype="i4")),
-        },
-        {
-            "law": ("point", np.repeat([0, 1], len(count) // 2), laws),
-            "initial": ("point", np.zeros(len(count), dtype="i2"), states),
-        },
-    )
+    coordinates = {
+        "law": ("point", np.repeat([0, 1], len(count) // 2), laws),
+        "initial": ("point", np.zeros(len(count), dtype="i2"), states),
+    }
+    found = xr.Dataset({"crossing_count": ("point", np.asarray(count, dtype="i4"))}, coordinates)
+    direction = np.where(np.asarray(velocity) >= 0.0, 1, -1).astype("i1")
+    return found.assign(crossing_velocity=("crossing", velocity), crossing_direction=("crossing", direction))
 
 
 @pytest.mark.parametrize("lowest", [-0.3, -1e-9, 0.2])

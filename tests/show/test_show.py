@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import netCDF4
+import numpy as np
 import pytest
 from matplotlib.image import imread
 
@@ -38,9 +39,16 @@ def study(small_studies, tmp_path_factory):
     return results
 
 
+def shown(capsys, *arguments, code=0):
+    """Return what `bk show` prints, or the one line with which it refuses."""
+    assert main(["show", *map(str, arguments)]) == code
+    out, error = capsys.readouterr()
+    assert error.count("\n") == (code != 0)
+    return error or out
+
+
 def test_a_point_in_words(point, capsys):
-    assert main(["show", str(point)]) == 0
-    said = capsys.readouterr().out
+    said = shown(capsys, point)
     for words in (
         f"{point}: a run from plus, linearized law, a = 0.08\n",
         "3 blocks, open: coupling 1, pulling neighbours, threshold 1\n",
@@ -61,21 +69,19 @@ def test_a_point_in_words(point, capsys):
 
 
 def test_a_point_as_a_picture(point, tmp_path, capsys):
-    assert main(["show", str(point), "--plot", str(tmp_path / "plus.png")]) == 0
-    assert capsys.readouterr().out.endswith("plus.png: J, section points and velocities\n")
+    said = shown(capsys, point, "--plot", tmp_path / "plus.png")
+    assert said.endswith("plus.png: J, section points and velocities\n")
     picture = imread(tmp_path / "plus.png")[..., :3].min(axis=2)
-    rows, columns = picture.shape
     # There is ink in each of the four panels.
-    for half in (slice(0, rows // 2), slice(rows // 2, rows)):
-        for side in (slice(0, columns // 2), slice(columns // 2, columns)):
-            assert (picture[half, side] < 0.9).mean() > 0.01
+    for half in np.array_split(picture, 2):
+        for panel in np.array_split(half, 2, axis=1):
+            assert (panel < 0.9).mean() > 0.01
 
 
 def test_a_run_that_failed(tmp_path, capsys):
     path = tmp_path / "failed.nc"
     write_point(simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0), path)
-    assert main(["show", str(path), "--plot", str(tmp_path / "failed.png")]) == 0
-    said = capsys.readouterr().out
+    said = shown(capsys, path, "--plot", tmp_path / "failed.png")
     for words in ("diverged at tau = 22.479\n", "undetermined\n", "5 samples, tau = 0 to 20\n", "at 0 times\n"):
         assert words in said
     assert (tmp_path / "failed.png").stat().st_size > 10_000
@@ -98,22 +104,15 @@ def test_every_summary_in_words(study):
 @pytest.mark.parametrize("name", ["mean_distance", "basins"])
 def test_a_summary_as_its_figure(study, tmp_path, capsys, name):
     """With the summaries and the properties of the study that the figure takes besides."""
-    assert main(["show", str(study / f"summary/{name}.nc"), "--plot", str(tmp_path / "x.pdf")]) == 0
+    shown(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
     assert (tmp_path / "x.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
-    alone = tmp_path / "basins.nc"
-    shutil.copy(study / "summary/basins.nc", alone)
-    for arguments, words in (
-        ([alone, "--plot", "x.png"], "its figure takes attractors.nc besides"),
-        ([alone, "--plot", "x.doc"], "x.doc: '.doc' is not allowed: .png | .pdf | .svg"),
-        ([alone, "--plot", "no/x.png"], "there is no folder no"),
-    ):
-        assert main(["show", *map(str, arguments)]) == 2
-        said = capsys.readouterr().err
-        assert said.count("\n") == 1
-        assert words in said
+    alone = shutil.copy(study / "summary/basins.nc", tmp_path)
+    assert "its figure takes attractors.nc besides" in shown(capsys, alone, "--plot", "x.png", code=2)
+    assert "x.doc: '.doc' is not allowed: .png | .pdf | .svg" in shown(capsys, alone, "--plot", "x.doc", code=2)
+    assert "there is no folder no" in shown(capsys, alone, "--plot", "no/x.png", code=2)
 
 
 def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path, capsys):
@@ -133,10 +132,8 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path, "cannot be read"),
         (inside, f"remake it: snakemake -c2 -R {inside}"),
     ):
-        assert main(["show", str(path)]) == 2
-        said = capsys.readouterr().err
+        said = shown(capsys, path, code=2)
         assert said.startswith(f"bk show: {path}: ")
-        assert said.count("\n") == 1
         assert words in said
         assert ("remake" in said) == (path == inside)
     inside.unlink()

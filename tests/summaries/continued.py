@@ -2,12 +2,9 @@
 
 import numpy as np
 
-from burridge_knopoff import Chain, InitialState, Model, law_of
-from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.lifetime import Lifetime
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.settings import SearchSettings
 from tests.stability.stand_in import stand_in
 
 STATES = [InitialState("here", (0.0,) * 3, (0.1,) * 3), InitialState("back", (0.0,) * 3, (0.1, -0.1, 0.1))]

@@ -62,24 +62,17 @@ def test_the_digest_tells_each_branch(one_law):
     )
 
 
-def branches(*numbers):
-    return xr.Dataset({"branch": (("value", "attractor"), np.array(numbers))})
-
-
 def test_a_branch_between_has_a_number_of_its_own():
     numbers = [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
-    parts = [branches([0, 1], [3, -1], [4, 2]), branches([0, 2], [3, 1], [-1, 9])]
+    branches = [[0, 1], [3, -1], [4, 2]], [[0, 2], [3, 1], [-1, 9]]
+    parts = [xr.Dataset({"branch": (("value", "attractor"), np.array(part))}) for part in branches]
     assert with_branches_between(numbers, parts) == [{0: 0, 1: 1, 4: 4, 2: 6, 3: 7}, {0: 0, 2: 1, 3: 5, 1: 8, 9: 9}]
     assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
 
 
 def named(names):
-    return xr.Dataset(
-        {
-            "branch_number": ("number", list(names)),
-            "branch_name": ("number", np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}),
-        }
-    )
+    told = np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}
+    return xr.Dataset({"branch_number": ("number", list(names)), "branch_name": ("number", *told)})
 
 
 def test_names_are_those_at_the_values_of_the_grid():

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff import MotionKind, Symmetry
 from burridge_knopoff.stability.lifetime import Lifetime
-from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION, Refine
 from burridge_knopoff.summaries import all_laws, attractors, refined
@@ -58,12 +57,9 @@ def test_there_are_as_many_slots_as_attractors_at_one_a():
     """One where there is never more than one, and where there is none at all."""
     both = continuation("linearized")
     for count in (1, 0):
-        few = {
-            name: [row[:count] for row in getattr(both, name)] for name in ("attractors", "lifetimes", "branch", "side")
-        }
-        few |= {
-            name: [np.full(len(both.attractors[k][:count]), -1) for k in both.grid] for name in ("upward", "downward")
-        }
+        names = ("attractors", "lifetimes", "branch", "side")
+        few = {name: [row[:count] for row in getattr(both, name)] for name in names}
+        few["upward"] = few["downward"] = [np.full(len(both.attractors[k][:count]), -1) for k in both.grid]
         found = attractors.one_law(replace(both, **few), STATES, SETTINGS, MOTION, "tested")
         assert found.sizes["attractor"] == 1
         for name in ("branch", "upward_branch", "downward_branch", "basin_count", "mean_distance"):
@@ -97,10 +93,8 @@ def test_chaos_that_is_shown_to_last_is_chaos(one_law):
 
 
 def test_the_values_put_in_between_have_a_file_of_their_own():
-    parts = [
-        refined.one_law(continuation(law), SETTINGS, MOTION, Refine(1e-3), "tested")
-        for law in ("linearized", "nonlinear")
-    ]
+    told = (SETTINGS, MOTION, Refine(1e-3), "tested")
+    parts = [refined.one_law(continuation(law), *told) for law in ("linearized", "nonlinear")]
     parts[1] = parts[1].isel(value=slice(0, 2))
     found = all_laws.merge(parts, [{0: 0, 1: 1}, {0: 0, 1: 5}], refined.VARIABLES, "Refined")
     np.testing.assert_array_equal(found["a"].values, [[0.05, 0.07, 0.1, 0.2], [0.05, 0.07, np.nan, np.nan]])

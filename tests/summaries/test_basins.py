@@ -62,12 +62,9 @@ def test_pairs_are_those_of_the_plane(ruled):
     expected = uncertainty_exponent(counts)
     assert found["uncertain_count"].values.tolist() == counts.different_count.tolist()
     assert found["pair_count"].values.tolist() == counts.known_count.tolist()
-    for name, part in (
-        ("uncertain_fraction", expected.fraction),
-        ("local_exponent", expected.local),
-        ("uncertainty_exponent", expected.alpha),
-        ("exponent_change", expected.change),
-    ):
+    parts = (expected.fraction, expected.local, expected.alpha, expected.change)
+    names = ("uncertain_fraction", "local_exponent", "uncertainty_exponent", "exponent_change")
+    for name, part in zip(names, parts, strict=True):
         np.testing.assert_array_equal(found[name].values, part[0])
         np.testing.assert_array_equal(found[f"{name}_error"].values, part[1])
     assert found["exponent_kind"].item() == expected.kind
@@ -79,10 +76,8 @@ def test_pairs_are_those_of_the_plane(ruled):
 
 def test_maps_are_put_together_and_told(ruled):
     near = [basins.pairs(None, model, *FOUND) for model in MODELS]
-    maps = [
-        (model, [basins.tile(None, model, k, *FOUND) for k in (0, 1)], pairs)
-        for model, pairs in zip(MODELS, near, strict=True)
-    ]
+    tiles = [[basins.tile(None, model, k, *FOUND) for k in (0, 1)] for model in MODELS]
+    maps = list(zip(MODELS, tiles, near, strict=True))
     near[0]["uncertainty_exponent"][...], near[0]["uncertainty_exponent_error"][...] = 0.8125, 0.025
     near[0]["exponent_kind"][...] = ExponentKind.SINGLE
     near[1]["exponent_change"][...], near[1]["exponent_change_error"][...] = 0.4375, 0.0625
@@ -93,17 +88,14 @@ def test_maps_are_put_together_and_told(ruled):
     assert found["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
     assert found["undetermined_count"].values.tolist() == [4, 4]
     for name in basins.PAIR_VARIABLES:
-        for k in (0, 1):
-            np.testing.assert_array_equal(found[name].values[k], near[k][name].values)
+        np.testing.assert_array_equal(found[name].values, [one[name].values for one in near])
     assert found["local_exponent"].dims == ("map", "separation_step")
     assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
-    assert found["law"].values.tolist() == [1, 0]
-    assert found["a"].values.tolist() == [0.1, 0.3]
-    assert found.attrs["first_range"].tolist() == [-1.0, 3.0]
-    assert found.attrs["last_range"].tolist() == [0.0, 2.0]
+    assert (found["law"].values.tolist(), found["a"].values.tolist()) == ([1, 0], [0.1, 0.3])
     assert found["decision_time"].values[0, 2].tolist() == [99.5, 100.5, 101.5, 102.5]
     expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "time_limit": 7.0}
     assert {key: found.attrs[key] for key in expected} == expected
+    assert [found.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
     shares = "undetermined 25.00 %, synchronized 25.00 %, branch 5 (-) 50.00 %"
     decided = f"decided at tau = {np.nanmean(found['decision_time'].values[0]):.0f} in the mean"
     varying = "no single uncertainty exponent: it changes by 0.44 +- 0.06 over the separations"

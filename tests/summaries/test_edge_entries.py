@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff import Chain, Model, MotionKind, Symmetry, find_periodic_orbit, law_of
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.periodic import find_periodic_orbit
 from burridge_knopoff.stability.pseudo_arclength import begin_branch
 from burridge_knopoff.stability.stretch import Stretch
 from burridge_knopoff.summaries import edge_entries
@@ -30,17 +27,10 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch):
 
     monkeypatch.setattr(edge_entries, "closed_motion", next_orbit)
     monkeypatch.setattr(edge_entries, "stretch", alone)
-    slot = ("value", "attractor")
-    one = xr.Dataset(
-        {
-            "a": ("value", [0.05]),
-            "in_grid": ("value", [1]),
-            "branch": (slot, [[0, 1, 2, 3]]),
-            "side": (slot, np.zeros((1, 4), int)),
-            "kind": (slot, np.full((1, 4), MotionKind.PERIODIC)),
-            **dict.fromkeys(("position", "velocity"), ((*slot, "block"), np.zeros((1, 4, 3)))),
-        }
-    )
+    slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4}
+    one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
+    state = ("value", "attractor", "block"), np.zeros((1, 4, 3))
+    one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=state, velocity=state)
     found, of_slot = edge_entries.followed(orbit.model, one, [])
     assert of_slot == {(0, 0): 0, (0, 1): 0, (0, 2): 1, (0, 3): 2}
     assert [item.upward[0].orbit.period / orbit.period for item in found] == pytest.approx([1.0, 1.01, 0.99])

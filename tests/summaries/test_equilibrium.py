@@ -74,20 +74,23 @@ def test_elsewhere_is_no_equilibrium():
     assert drift > 1e-4
 
 
-def test_a_small_push_grows_at_that_rate(found):
-    """Two whole runs, without the tangent flow: a push along the mode (1, 0, −1) after whole periods of that mode."""
-    a, push = 0.3, 1e-5
-    point = found.sel(law="linearized", a=a)
-    rest = point["equilibrium_position"].values
-    rate, frequency = point["eigenvalue"].sel(mode=3).values
-    # κ = 2: the mode's eigenvector is (1, 0, −1), its velocity the growth rate times its displacement at first.
-    period = 2 * np.pi / frequency
-    velocity = 0.1 + rate * push * np.array([1.0, 0.0, -1.0])
-    state = InitialState("pushed", tuple(rest + push * np.array([1.0, 0.0, -1.0])), tuple(velocity))
-    for n in (1, 3):
-        run = simulate("linearized", a, state, transient=0.0, window=n * period, batches=2, trajectory=0.0)
-        assert run.event_count == 0
-        assert run.position[-1, 0] - rest[0] == pytest.approx(push * np.exp(rate * n * period), rel=1e-8)
+def growth(model, mode, rate, duration, push):
+    """Return by what a push along a mode has grown: of a whole run without events, without the tangent flow."""
+    rest, shift = sliding_position(model), push * np.array(mode)
+    # Its velocity is the growth rate times its displacement at first.
+    state = InitialState("pushed", tuple(rest + shift), tuple(model.v + rate * shift))
+    run = simulate(model, state, Settings(transient=0.0, window=duration, batches=2, trajectory=0.0))
+    assert run.event_count == 0
+    return (run.position[-1, 0] - rest[0]) / push
+
+
+@pytest.mark.parametrize("periods", [1, 3])
+def test_a_small_push_grows_at_that_rate(found, periods):
+    rate, frequency = found.sel(law="linearized", a=0.3)["eigenvalue"].sel(mode=3).values
+    duration = periods * 2 * np.pi / frequency
+    # κ = 2: the mode's eigenvector is (1, 0, −1).
+    grown = growth(Model(Chain(3), law_of("linearized", 0.3)), (1.0, 0.0, -1.0), rate, duration, 1e-5)
+    assert grown == pytest.approx(np.exp(rate * duration), rel=1e-8)
 
 
 def test_the_same_numbers_again(found):
@@ -105,17 +108,14 @@ def test_the_same_numbers_again(found):
     ],
 )
 def test_the_growth_rate_is_that_of_a_simulated_push(law, rate):
-    """Two whole runs, without the tangent flow, at v = 0.5: the slower mirror-symmetric push grows, or decays, so."""
+    """At v = 0.5 the slower mirror-symmetric push grows, or decays, so."""
     model = Model(Chain(2), law, 0.5)
     found = eigenvalues(model)
     assert found.real == pytest.approx([rate] * 4, abs=1e-12)
     assert simulate_sliding(model, sliding_position(model))[1] == pytest.approx(rate, abs=1e-10)
     # K = [[2, −1], [−1, 2]]: the mode (1, 1) has κ = 1.
-    rest, push, period = sliding_position(model), 1e-6, 2 * np.pi / found[0].imag
-    state = InitialState("pushed", tuple(rest + push), tuple(0.5 + rate * push * np.ones(2)))
-    run = simulate(model, state, Settings(transient=0.0, window=period, batches=2, trajectory=0.0))
-    assert run.event_count == 0
-    assert np.log((run.position[-1, 0] - rest[0]) / push) / period == pytest.approx(rate, abs=1e-6)
+    period = 2 * np.pi / found[0].imag
+    assert np.log(growth(model, (1.0, 1.0), rate, period, 1e-6)) / period == pytest.approx(rate, abs=1e-6)
 
 
 def test_strong_damping_has_modes_that_do_not_oscillate():

@@ -7,6 +7,7 @@ import pytest
 YES_NO = {0: "no", 1: "yes"}
 STATUS = {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"}
 MOTION = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic", 4: "transient_chaos"}
+EDGE = {-1: "undetermined", 0: "grazing", 1: "fold", 2: "flip", 3: "neimark_sacker", 4: "pitchfork", 5: "crisis"}
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}
 AGREEMENT = {"kind": MOTION, "same_kind": VERDICT, "agrees": VERDICT}
@@ -22,15 +23,7 @@ EXPECTED = {
     "bifurcation": {"crossing_direction": DIRECTION},
     "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},
     "edges": {
-        "kind": {
-            -1: "undetermined",
-            0: "grazing",
-            1: "fold",
-            2: "flip",
-            3: "neimark_sacker",
-            4: "pitchfork",
-            5: "crisis",
-        },
+        "kind": EDGE,
         "change": {0: "beginning", 1: "end", 2: "change", 3: "passed"},
         "motion_before": MOTION,
         "motion_after": MOTION,
@@ -54,13 +47,10 @@ EXPECTED = {
 @pytest.mark.parametrize("name", EXPECTED)
 def test_flags(name):
     variables = importlib.import_module(f"burridge_knopoff.summaries.{name}").VARIABLES
-    found = {
-        key: (item.dtype, item.attributes["flag_values"].dtype, list(zip(values, meanings.split(), strict=True)))
-        for key, item in variables.items()
-        if "flag_values" in item.attributes
-        for values, meanings in [(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"])]
-    }
-    expected = EXPECTED[name]
-    assert found == {key: ("i1", "i1", list(meanings.items())) for key, meanings in expected.items()}
+    assert {key for key, item in variables.items() if "flag_values" in item.attributes} == set(EXPECTED[name])
     for key, item in variables.items():
-        assert ("units" in item.all_attributes()) == (key not in expected)
+        assert ("units" in item.all_attributes()) == (key not in EXPECTED[name])
+    for key, meanings in EXPECTED[name].items():
+        values, words = (variables[key].attributes[part] for part in ("flag_values", "flag_meanings"))
+        assert (variables[key].dtype, values.dtype) == ("i1", "i1")
+        assert list(zip(values.tolist(), words.split(), strict=True)) == list(meanings.items())

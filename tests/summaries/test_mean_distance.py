@@ -5,8 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff import MotionKind, simulate
 from burridge_knopoff.summaries import bifurcation, lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
 from tests.grids import PAPER_MODELS, grid_of
@@ -37,9 +36,8 @@ def test_settling_times_of_runs(tmp_path):
     settings = {"transient": 1500.0, "window": 100.0, "batches": 2}
     run = simulate("linearized", 0.08, "minus", **settings)
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
-    write_points(
-        grid, lambda own: dataclasses.replace(own, status="step_limit") if own.model.law.name[0] == "n" else own
-    )
+    ended = {"linearized": "completed", "nonlinear": "step_limit"}
+    write_points(grid, lambda own: dataclasses.replace(own, status=ended[own.model.law.name]))
     found = summarize(grid, 1e-6)["settling_time"]
     # J at synchrony dies out like the transverse multiplier to the power of the number of periods.
     settled = found.sel(law="linearized", initial="minus", a=0.08)
@@ -49,10 +47,14 @@ def test_settling_times_of_runs(tmp_path):
     assert np.isnan(found.sel(law="nonlinear")).all()
 
 
+def with_section(trajectory, velocity, direction, **values):
+    section = {"velocity": velocity, "direction": direction, "time": np.arange(len(velocity), dtype=float)}
+    return dataclasses.replace(trajectory, **{f"crossing_{key}": item for key, item in section.items()}, **values)
+
+
 def same_section(trajectory, **values):
     """Return a run with twenty upward section points at one velocity, as a closed orbit has them."""
-    section = {"velocity": np.full(20, 0.1), "direction": np.ones(20, np.int8), "time": np.arange(20.0)}
-    return dataclasses.replace(trajectory, **{f"crossing_{key}": item for key, item in section.items()}, **values)
+    return with_section(trajectory, np.full(20, 0.1), np.ones(20, np.int8), **values)
 
 
 @pytest.mark.parametrize(("thresholds", "synchronized"), [([1.0, 1.1, 1.0], 1), ([1.0, 1.0, 1.1], 0)])
@@ -89,16 +91,9 @@ def told(tmp_path):
     def alter(trajectory):
         exponent, upward, status, *_ = TOLD[trajectory.model.a]
         section = np.stack([upward, -1.0 - np.arange(len(upward))], axis=1).ravel()
-        return dataclasses.replace(
-            trajectory,
-            status=status,
-            mean_distance=trajectory.model.a,
-            lyapunov_exponent=np.array(exponent),
-            lyapunov_error=np.full(3, 1e-5),
-            crossing_time=np.arange(len(section), dtype=float),
-            crossing_velocity=section,
-            crossing_direction=np.tile(np.array([1, -1], np.int8), len(upward)),
-        )
+        told = {"status": status, "mean_distance": trajectory.model.a}
+        told |= {"lyapunov_exponent": np.array(exponent), "lyapunov_error": np.full(3, 1e-5)}
+        return with_section(trajectory, section, np.tile(np.array([1, -1], np.int8), len(upward)), **told)
 
     grid = grid_of(tmp_path, ["minus", "plus"], {f"{a:.4f}": a for a in TOLD}, **SHORT)
     return write_points(grid, alter)

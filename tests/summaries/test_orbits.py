@@ -46,8 +46,7 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
     assert (found["branch_residual"] <= 1e-14).all()
     assert (abs(found["amplitude_exponent"] - 0.5) < 1e-5).all()
     assert (found["hysteresis"] < 1e-9).all()
-    ends = found["sweep_asymmetry"]
-    assert (ends.sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
+    assert (found["sweep_asymmetry"].sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
 
 
 def test_the_transition_is_that_of_the_stability_room(found):
@@ -78,10 +77,7 @@ def test_the_transition_is_that_of_the_stability_room(found):
     assert one["amplitude_coefficient"].item() == pytest.approx(np.exp(line[1]), rel=1e-8)
     offsets = [-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2]
     assert one["sweep_offset"].values.tolist() == offsets
-    up, down = (
-        one["sweep_asymmetry"].sel(direction="upward").values,
-        one["sweep_asymmetry"].sel(direction="downward").values,
-    )
+    up, down = (one["sweep_asymmetry"].sel(direction=name).values for name in ("upward", "downward"))
     assert up == pytest.approx(sweep(family, critical + np.array(offsets)), abs=1e-9)
     assert down == pytest.approx(sweep(family, critical + np.array(offsets[::-1]))[::-1], abs=1e-9)
     assert one["hysteresis"].item() == np.abs(up - down).max()

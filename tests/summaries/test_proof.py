@@ -8,9 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from burridge_knopoff.laws import FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, FormulaLaw, Model, law_of
 from burridge_knopoff.proof.balls import ProofError
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.stability.family import Family
@@ -19,8 +17,7 @@ from burridge_knopoff.stability.transition import critical_a
 from burridge_knopoff.summaries import proof
 from burridge_knopoff.summaries.results import write_results
 
-PAPER = Model(Chain(3), law_of("linearized", 0.0))
-NONLINEAR = Model(Chain(3), law_of("nonlinear", 0.0))
+PAPER, NONLINEAR = (Model(Chain(3), law_of(law, 0.0)) for law in ("linearized", "nonlinear"))
 TOLD = 1e-13
 
 
@@ -102,10 +99,8 @@ def test_v_is_only_a_scale(linearized):
     for name in ("critical_a", "period", "multiplier"):
         assert (other[name] == linearized[name]).all()
     assert other["position"].values == pytest.approx(4.0 * linearized["position"].values, rel=1e-12)
-    assert 1.0 - other["least_spring_force"].values == pytest.approx(
-        4.0 * (1.0 - linearized["least_spring_force"].values)
-    )
-    assert 1.0 - other["least_friction"].values == pytest.approx(4.0 * (1.0 - linearized["least_friction"].values))
+    for name in ("least_spring_force", "least_friction"):
+        assert 1.0 - other[name].values == pytest.approx(4.0 * (1.0 - linearized[name].values))
 
 
 OTHERS = [

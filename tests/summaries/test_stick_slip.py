@@ -5,11 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
@@ -23,25 +19,23 @@ from tests.grids import grid_of
 from tests.summaries.points import write_points
 
 STOP, START = 0, 1
+NONE = pytest.approx(np.nan, nan_ok=True)
 
 
-def test_cycle_time_of_a_hand_made_list():
-    mean, error = cycle_time(np.array([1.0, 3.0, 7.0, 9.0, 13.0]), 2)
-    assert mean == 3.0
-    # Two batches of two cycles: means 3 and 3.
-    assert error == 0.0
-    mean, error = cycle_time(np.array([0.0, 1.0, 2.0, 5.0, 8.0]), 2)
-    # Batch means 1 and 3: standard deviation sqrt(2), over sqrt(2).
-    assert (mean, error) == (2.0, pytest.approx(1.0))
-    # Fewer cycles than batches: single cycles 1 and 3.
-    assert cycle_time(np.array([0.0, 1.0, 4.0]), 7) == (2.0, pytest.approx(1.0))
-
-
-@pytest.mark.parametrize(("stops", "mean"), [([], np.nan), ([5.0], np.nan), ([5.0, 7.5], 2.5)])
-def test_too_few_stops_have_no_cycle_time_or_no_error(stops, mean):
-    found = cycle_time(np.array(stops), 4)
-    assert found[0] == pytest.approx(mean, nan_ok=True)
-    assert np.isnan(found[1])
+@pytest.mark.parametrize(
+    ("stops", "batches", "mean", "error"),
+    [
+        ([1.0, 3.0, 7.0, 9.0, 13.0], 2, 3.0, 0.0),  # two batches of two cycles: means 3 and 3
+        # Means 1 and 3: standard deviation sqrt(2), over sqrt(2).
+        ([0.0, 1.0, 2.0, 5.0, 8.0], 2, 2.0, pytest.approx(1.0)),
+        ([0.0, 1.0, 4.0], 7, 2.0, pytest.approx(1.0)),  # fewer cycles than batches: single cycles 1 and 3
+        ([5.0, 7.5], 4, 2.5, NONE),
+        ([5.0], 4, NONE, NONE),
+        ([], 4, NONE, NONE),
+    ],
+)
+def test_cycle_time_of_hand_made_lists(stops, batches, mean, error):
+    assert cycle_time(np.array(stops), batches) == (mean, error)
 
 
 @pytest.mark.parametrize(
@@ -68,9 +62,8 @@ def test_stick_fraction_of_hand_made_lists(time, kind, ends_stuck, expected):
 def test_the_frequency_of_a_sine_is_found_far_below_the_resolution(frequency):
     time = np.linspace(0.0, 30.0, 601)
     values = 0.1 + 0.05 * np.sin(2 * np.pi * frequency * time + 1.0) + 0.01 * np.sin(2 * np.pi * 2.9 * time)
-    assert leading_frequency(values, 30.0) == pytest.approx(
-        frequency, abs=0.05 * 0.5 / 30.0 / (30.0 * frequency) ** 0.5
-    )
+    allowed = 0.05 * 0.5 / 30.0 / (30.0 * frequency) ** 0.5
+    assert leading_frequency(values, 30.0) == pytest.approx(frequency, abs=allowed)
 
 
 def test_no_frequency_without_a_cycle():
@@ -89,12 +82,10 @@ def test_four_samples_are_enough_for_a_frequency():
 
 
 def test_correlation():
-    one = np.sin(np.arange(500) * 0.1)
+    one, other = np.sin(np.arange(500) * 0.1), np.cos(np.arange(500) * 0.1)
     assert correlation(one, one) == 1.0
     assert correlation(one, 0.3 - 2.0 * one) == pytest.approx(-1.0, abs=1e-14)
-    assert correlation(one, np.cos(np.arange(500) * 0.1)) == pytest.approx(
-        np.corrcoef(one, np.cos(np.arange(500) * 0.1))[0, 1], abs=1e-14
-    )
+    assert correlation(one, other) == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-14)
     assert np.isnan(correlation(one, np.zeros(500)))
     assert np.isnan(correlation(np.full(500, 0.1), one))
     # Rounding has no correlation, in either of the two.
@@ -174,8 +165,7 @@ def test_frequencies_between_events_are_those_of_the_motion():
     """Held against samples of the whole motion, of a tenth of a unit."""
     settings = {"transient": 500.0, "window": 600.0, "batches": 2, "trajectory": 600.0, "trajectory_sampling": 0.1}
     run = simulate("linearized", 0.08, "plus", **settings)
-    names = ("event_time", "event_position", "event_velocity", "trajectory_time", "velocity")
-    whole = {name: getattr(run, name) for name in names}
+    whole = vars(run)
     kept = {**whole, "trajectory_time": run.trajectory_time[:100], "velocity": run.velocity[:100]}
     found, duration = long_velocity(kept, 0.1)
     assert duration == pytest.approx(np.ptp(kept["event_time"]))
