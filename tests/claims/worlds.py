@@ -9,6 +9,7 @@ from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
+from burridge_knopoff.summaries.branch_changes import Change
 from tests.grids import PAPER_MODELS
 from tests.sections import MOTION
 
@@ -22,6 +23,9 @@ PAIR = ("other_law", "initial", "a")
 BLOCK = (*POINT, "block")
 BLOCKS = np.array([1, 2, 3])
 SYNCHRONY = (A >= 0.005) & (A <= 0.08)
+# Kinds of motion of the runs, one row a state.
+_PLUS = np.where(A > 0.1, CHAOTIC, QUASIPERIODIC)
+KINDS = (np.where((A > 0.0) & (A < 0.1), SYNCHRONIZED, _PLUS), _PLUS)
 CONFIG = {
     "v": 0.1,
     "contact": "one_sided",
@@ -56,6 +60,7 @@ def paper_world() -> Summaries:
                 "difference": (PAIR, 1e-5),
                 "parting_a": (PAIR[:2], np.nan),
                 "settled": (POINT, np.int8(1)),
+                "kind": (POINT, np.stack(KINDS).astype("i1")),
             },
             other_law=["nonlinear"],
         ).assign_attrs(synchronization_threshold=1e-6),
@@ -125,13 +130,11 @@ def _mean_distance() -> xarray.Dataset:
 
 
 def _lyapunov() -> xarray.Dataset:
-    plus = np.where(A > 0.1, CHAOTIC, QUASIPERIODIC)
-    minus = np.where((A > 0.0) & (A < 0.1), SYNCHRONIZED, plus)
     exponent = np.zeros((len(A), 3))
     exponent[:, 0] = np.where(A > 0.1, 0.05, 1e-5)
     return _dataset(
         {
-            "kind": (POINT, np.stack([minus, plus]).astype("i1")),
+            "kind": (POINT, np.stack(KINDS).astype("i1")),
             "section_period": (POINT, np.stack([A < 0.1, np.zeros(len(A))]).astype("i2")),
             "lyapunov_exponent": ((*POINT, "exponent"), exponent),
             "lyapunov_error": ((*POINT, "exponent"), 1e-4),
@@ -176,6 +179,7 @@ def _attractors() -> xarray.Dataset:
             "kind": (slots, np.stack(kind, axis=1).astype("i1")),
             "mean_distance": (slots, [0.0, 0.14, 0.1]),
             "basin_count": (slots, np.int32(100)),
+            "undetermined_count": (slots[:2], np.int32(0)),
             "basin_fraction": (slots, 0.5),
             "stop_rate": ((*slots, "block"), [0.17, 0.34, 0.17]),
             "initial_branch": (conventions, np.array([np.select([SYNCHRONY, A < 0.1], [0, 2], 1), A * 0 + 1], "i2")),
@@ -207,7 +211,8 @@ def _refined() -> xarray.Dataset:
 def _edges() -> xarray.Dataset:
     """Return four edges of each law at which a locked orbit, at a grazing, gives way to chaos."""
     told = {"law": np.repeat([0, 1], 4), "kind": 0, "motion_before": PERIODIC, "motion_after": CHAOTIC, "to_branch": 1}
-    told |= {"grid_low": np.tile(A[A >= 0.1][:4], 2)}
+    low = np.tile(A[A >= 0.1][:4], 2)
+    told |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
     edges = {name: ("edge", np.array(np.broadcast_to(value, 8))) for name, value in told.items()}
     return xarray.Dataset(edges, attrs={"laws": " ".join(LAWS)})
 

@@ -192,5 +192,5 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
     )
     if np.isfinite(series):
         # It solves the differential equations, as the paper's stepping does.
-        reason += f" Not every integrator takes more: the study's own, series, takes {series:.2f}."
+        reason += f" Series, which solves the same equations, takes {series:.2f}."
     return Verdict(verdict, reason, measured)

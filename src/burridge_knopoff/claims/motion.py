@@ -73,31 +73,32 @@ def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
     """
     evidence.check_blocks()
     attractors = evidence.choose(evidence.summary("attractors"), a)
-    shares, measured, all_stop, unknown = {}, [], {}, []
+    some, every, states, measured, changes = {}, {}, {}, [], []
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
         there = found["branch"].values >= 0
-        rate = found["stop_rate"].values[there]
-        if not len(rate):
+        if not there.any():
             raise NotTestableError(f"no attractor is known under the {law} law with {a}")
-        stops = (found["stop_rate"].values > 0.0).any(axis=-1) & there
-        drawn = int(found["basin_count"].values.sum()), int(found["undetermined_count"].values.sum())
-        reached_stops = float(found["basin_count"].values[stops].sum() / sum(drawn)) if sum(drawn) else 1.0
-        shares[law] = min(float((rate > 0.0).any(axis=-1).mean()), reached_stops)
-        unknown.append(f"{drawn[1]} of {sum(drawn)} drawn states reach no motion that is known ({law})")
-        all_stop[law] = float((rate > 0.0).all(axis=-1).mean())
-        measured.append(
-            Measured(f"drawn states that reach an attractor in which some block stops, {law}", reached_stops)
-        )
-        measured.append(Measured(f"share of attractors in which every block stops, {law}", all_stop[law]))
+        stops, count = found["stop_rate"].values[there] > 0.0, found["basin_count"].values[there]
+        some[law], every[law] = float(stops.any(axis=-1).mean()), float(stops.all(axis=-1).mean())
+        lost = int(found["undetermined_count"].values.sum())
+        drawn = int(count.sum()) + lost
+        states[law] = float(count[stops.any(axis=-1)].sum() / drawn) if drawn else some[law]
+        measured += [
+            Measured(f"share of attractors in which some block stops, {law}", some[law]),
+            Measured(f"share of attractors in which every block stops, {law}", every[law]),
+            Measured(f"share of drawn states that reach one in which some block stops, {law}", states[law]),
+        ]
+        if lost:
+            changes.append(f"{lost} of {drawn} drawn states reach none that is known ({law})")
     reason = (
-        f"Some block stops again and again in all attractors that are known, which {shares_text(shares)} of the drawn "
-        f"states reach with {a}; every block in {shares_text(all_stop)} of them."
+        f"Some block stops again and again in {shares_text(some)} of the attractors with {a}, every block in "
+        f"{shares_text(every)}."
     )
-    changes = "; ".join(
-        [*unknown, *(["it does not hold of every single block"] if min(all_stop.values()) < 1.0 else [])]
-    )
-    return Verdict(worst(by_share(share, 0.9) for share in shares.values()), reason, measured, changes)
+    if min(every.values()) < 1.0:
+        changes.append("it does not hold of every single block")
+    verdict = worst(by_share(share, 0.9) for share in (*some.values(), *states.values()))
+    return Verdict(verdict, reason, measured, "; ".join(changes))
 
 
 def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation: float) -> Verdict:
