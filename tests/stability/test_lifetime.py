@@ -86,10 +86,16 @@ def chaos(partner=0):
 def test_trajectories_that_have_left_are_counted_with_their_times(scripted):
     other = stand_in(Symmetry.SYMMETRIC, 0.2, 1)
     reached = [0] * 29 + [1, 1, -1]
-    # Two are captured by the other attractor, and of one it is not known what it has reached.
+    # Two are captured by the other attractor, and of one it is not known what it has reached, nor when.
     found, asked = scripted([chaos(), other], reached, [20.0, 40.0, math.nan])
-    assert found == [Lifetime(3, 29 * TIME + 20.0 + 40.0 + TIME), None]
+    assert found == [Lifetime(3, 29 * TIME + 20.0 + 40.0 + 0.5 * TIME), None]
     assert asked == [(32, [TIME]), (32, 50.0, 2), (3, TIME, 1)]
+
+
+def test_who_leaves_after_the_time_of_watching_has_not_left(scripted):
+    other = stand_in(Symmetry.SYMMETRIC, 0.2, 1)
+    found, _ = scripted([chaos(), other], [0] * 29 + [1, 1, 1], [20.0, math.nan, math.nan])
+    assert found == [Lifetime(1, 31 * TIME + 20.0), None]
 
 
 def test_a_change_to_the_mirror_image_is_no_end(scripted):

@@ -77,6 +77,14 @@ def test_synchrony_is_followed_by_synchrony_alone():
     assert matched(outlines([still]), outlines([far]), 1.0) == {0: 0}
 
 
+def test_several_synchronized_attractors_are_several_branches():
+    one, other = (at(place, symmetry=Symmetry.SYNCHRONIZED, mean=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
+    swapped = [replace(other, partner=0), replace(one, partner=1)]
+    branch, side = branches([0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], 0.1, 1.0)
+    assert rows(branch) == [[0, 1], [1, 0], [1]]
+    assert not np.concatenate(side).any()
+
+
 def test_branches_at_a_pitchfork():
     """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
     before = [at(0.0, symmetry=Symmetry.SYNCHRONIZED, mean=0.0), at(1.0, partner=1, mean=0.14)]

@@ -130,6 +130,11 @@ def test_kinds(mean_distance, period, exponents, error, kind):
     assert motion_kind(mean_distance, period, np.array(exponents), errors, MOTION) == kind
 
 
+def test_the_tolerance_of_slow_drivers_is_smaller():
+    assert [MOTION.at_speed(v).period_tolerance for v in (0.1, 10.0, 0.01)] == [1e-6, 1e-6, pytest.approx(1e-7)]
+    assert MOTION.at_speed(0.01).synchronization_threshold == MOTION.synchronization_threshold
+
+
 def test_sections_that_repeat_after_however_many_points():
     random = np.random.default_rng(3)
     orbit = random.random(150)
@@ -138,6 +143,10 @@ def test_sections_that_repeat_after_however_many_points():
     golden = (np.sqrt(5) - 1) / 2
     assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
     assert not section_closed(random.random(2000), 1e-6)
+    # Many points lie near each other everywhere, and those of small motion: only closer than that tells an orbit.
+    assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2_000_000)), 1e-6)
+    assert not section_closed(1e-4 * np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
+    assert section_closed(1e-4 * np.tile(orbit, 8), 1e-6)
     assert not section_closed(np.ones(5), 1e-6)
     # Of the second half all but a twentieth have a neighbour, among twelve points at least.
     assert [section_closed(np.ones(count), 1e-6) for count in (22, 24)] == [False, True]

@@ -53,8 +53,8 @@ def test_without_attractors_nobody_knows_which_runs_settled(compare):
     xarray.testing.assert_identical(other.drop_vars("settled"), known.drop_vars("settled"))
 
 
-def attractors_of(grid, mean=0.0, error=0.0, branch=0):
-    """Return attractors of one ⟨J⟩ and branch at all a, to which all states lead under the conventions of the study."""
+def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1):
+    """Return attractors of one ⟨J⟩, branch and kind at all a, to which all states lead by the study's conventions."""
     laws, states, a = grid.laws, list(grid.initial), list(grid.a.values())
     labels = {"law": list(laws), "contact": ["here", "there"], "start": ["now", "then"], "initial": states, "a": a}
     slot = xarray.DataArray(np.zeros((len(laws), len(a), 2)), dims=("law", "a", "attractor"))
@@ -64,12 +64,13 @@ def attractors_of(grid, mean=0.0, error=0.0, branch=0):
         {
             "branch": slot.copy(data=np.broadcast_to([-1, branch], slot.shape)),
             "side": slot.astype(int),
+            "kind": slot.astype(int) + kind,
             "mean_distance": slot + mean,
             "mean_distance_error": slot + error,
             "initial_branch": own,
             "initial_side": xarray.zeros_like(own),
         },
-        attrs={"contact_convention": "there", "start_convention": "now"},
+        attrs={"contact_convention": "there", "start_convention": "now", "resolution": 1e-3},
     )
 
 
@@ -140,6 +141,33 @@ def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error
     told = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
     _, found = compare(told, mean=mean, error=error, branch=branch)
     assert (found["settled"] == settled).all()
+
+
+@pytest.mark.parametrize(
+    ("own", "of_attractor", "mean", "kind"),
+    [
+        # What a run leaves open its attractor tells, if the run has come to it.
+        (2, {"kind": 1, "branch": 4, "mean": 0.2}, 0.2, 1),
+        (-1, {"kind": 2, "branch": 4, "mean": 0.2}, 0.2, 2),
+        (2, {"kind": 1, "branch": 4, "mean": 0.3}, 0.2, 2),
+        (2, {"kind": 1, "branch": -1, "mean": 0.2}, 0.2, 2),
+        # What it tells stands, and chaos of an attractor is no word on a run.
+        (1, {"kind": 2, "branch": 4, "mean": 0.2}, 0.2, 1),
+        (3, {"kind": 1, "branch": 4, "mean": 0.2}, 0.2, 3),
+        (2, {"kind": 3, "branch": 4, "mean": 0.2}, 0.2, 2),
+        # On its way to synchrony, and not there.
+        (1, {"kind": 0}, 9e-4, 0),
+        (1, {"kind": 0}, 1.1e-3, 1),
+        (-1, {"kind": 0}, np.nan, -1),
+    ],
+)
+def test_the_kind_of_a_run_is_that_of_its_attractor_where_it_is_open(runs, compare, own, of_attractor, mean, kind):
+    grid, _ = compare({key: {"mean_distance": mean, "mean_distance_error": 0.0} for key in runs})
+    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
+    kinds["kind"][...] = own
+    about = {"synchronization_threshold": 1e-6, "agreement": AGREEMENT}
+    found = agreement.summarize(grid, kinds, attractors_of(grid, **of_attractor), **about)
+    assert (found["kind"] == kind).all()
 
 
 def test_a_run_without_result_agrees_with_nothing(compare):
@@ -217,7 +245,10 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
         ((1.0, 1.16), (0.03, 0.04), (2, 2), 0),
         ((0.0, 1e-6), (0.0, 0.0), (0, 0), 1),  # no more than the threshold of synchrony
         ((0.0, 2e-6), (0.0, 0.0), (1, 1), 0),
-        ((1.0, 1.0), (0.0, 0.0), (1, 2), 0),
+        # A torus and a closed orbit without synchrony are one kind here.
+        ((1.0, 1.0), (0.0, 0.0), (1, 2), 1),
+        ((1.0, 1.0), (0.0, 0.0), (0, 1), 0),
+        ((1.0, 1.0), (0.0, 0.0), (2, 3), 0),
         ((1.0, 1.0), (0.0, 0.0), (1, -1), -1),
         ((1.0, 1.0), (0.0, 0.0), (-1, -1), -1),
     ],
@@ -232,7 +263,9 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     values |= {name: np.zeros((1, 2)) for name in filled} | {"parting_a": np.zeros(1)}
     judge(values, np.array([0.1, 0.2]), 1e-6, AGREEMENT)
     assert values["agrees"].tolist() == [[agrees, 1]]
-    assert values["same_kind"].tolist() == [[-1 if -1 in kinds else int(kinds[0] == kinds[1]), 1]]
+    assert values["same_kind"].tolist() == [
+        [-1 if -1 in kinds else int(kinds in {(k, k) for k in range(4)} | {(1, 2)}), 1]
+    ]
     assert values["difference"].tolist() == [[means[1] - means[0], 0.0]]
     assert values["difference_error"].tolist() == [[np.hypot(*errors), 0.0]]
     assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
