@@ -1,7 +1,6 @@
 """Progress of a study for people: `snakemake --logger study`, set in workflow/profiles/default.
 
-On a terminal a display with a line for each stage, elsewhere a progress line now and then, and at the end what the run
-left. Everything else goes through Snakemake's own handler, filter and format.
+A display while it runs and, at its end, what it left. All else goes through Snakemake's own handler, filter and format.
 """
 
 from __future__ import annotations
@@ -66,7 +65,7 @@ class LogHandler(LogHandlerBase):
         except Exception:
             # A defect of the display must neither end the thread of the log nor hide a message.
             self.handleError(record)
-        self._write(record if words is None else _line(words, record))
+        self._say(words, record)
 
     def _instead(self, record: Any) -> str | None:
         """Return what is said instead of a record, "" for nothing; None if it is said as it is."""
@@ -83,10 +82,10 @@ class LogHandler(LogHandlerBase):
         match getattr(record, "event", None):
             case LogEvent.RESOURCES_INFO:
                 # `nodes` with jobs on a cluster; without a limit it is a number too large to tell anything.
-                cores = getattr(record, "cores", None) or getattr(record, "nodes", None) or sys.maxsize
-                self._cores = cores if cores < sys.maxsize else self._cores
+                if (cores := record.__dict__.get("cores") or record.__dict__.get("nodes", 0)) and cores < sys.maxsize:
+                    self._cores = cores
             case LogEvent.RUN_INFO:
-                self._begun = self.common_settings.dryrun
+                self._begun = self._begun or self.common_settings.dryrun
             case LogEvent.JOB_STARTED if not self._begun:
                 self._expect()
             case LogEvent.JOB_INFO if record.output:
@@ -115,10 +114,13 @@ class LogHandler(LogHandlerBase):
         self._say(beginning(run, time.time()))
         if self._quiet:
             return
-        terminal = self._text.can_color_tty()
-        self._display = Picture(run, self._text, self._text.nocolor) if terminal else Lines(run, self._say)
+        self._display = Picture(run, self._text) if self._text.can_color_tty() else Lines(run, self._say)
 
-    def _write(self, record: LogRecord) -> None:
+    def _say(self, words: str | None, record: LogRecord | None = None) -> None:
+        """Write a line, at the level of a record, or the record itself if there are no words."""
+        if words is not None:
+            kept = record.__dict__ if record else {"levelno": INFO, "levelname": "INFO"}
+            record = makeLogRecord({**kept, "event": None, "msg": words, "args": None})
         try:
             self._text.handle(record)
         except BrokenPipeError:
@@ -126,9 +128,6 @@ class LogHandler(LogHandlerBase):
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, self._text.stream.fileno())
             os.close(nowhere)
-
-    def _say(self, line: str) -> None:
-        self._write(_line(line))
 
     def close(self) -> None:
         """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""
@@ -157,12 +156,5 @@ class LogHandler(LogHandlerBase):
                 write_past(run, self._begin)
             return closing_lines(run, time.time() - self._begin, stopped=self._stopped)
         except Exception as error:
-            return [
-                f"{'the time of a run' if self.common_settings.dryrun else 'what the run left'} cannot be told: {error}"
-            ]
-
-
-def _line(words: str, record: LogRecord | None = None) -> LogRecord:
-    """Return the record of one line, at the level of another record."""
-    kept = record.__dict__ if record else {"levelno": INFO, "levelname": "INFO"}
-    return makeLogRecord({**kept, "event": None, "msg": words, "args": None})
+            what = "the time of a run" if self.common_settings.dryrun else "what the run left"
+            return [f"{what} cannot be told: {error}"]

@@ -23,8 +23,6 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
     """Return the last lines of a run that took so many seconds.
 
     stopped : whether Snakemake ended with an error, as after a signal that came when the last job was done
-
-    Summaries are read only if they are wanted and all jobs were done: older ones say nothing about the run.
     """
     results, failed, done = Path(run.results), run.of(FAILED), run.of(DONE)
     missed = len(run.jobs) - len(failed) - len(done)
@@ -40,6 +38,7 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
             *(made, "the same command goes on where this run stopped"),
         ]
     lines = [f"study {results.name}: done in {elapsed(seconds)}", made]
+    # Older summaries say nothing about the run.
     for rule, (name, read) in _READERS.items():
         if rule in run.wanted:
             try:
@@ -72,29 +71,29 @@ def _claims(path: Path) -> list[str]:
     return lines
 
 
-def _flags(path: Path, name: str) -> tuple[Counter[str], int]:
-    """Return how often each meaning of a flag variable occurs, and how many values there are."""
+def _flags(path: Path, name: str) -> Counter[str]:
+    """Return how often each meaning of a flag variable occurs."""
     import netCDF4
 
     with netCDF4.Dataset(path) as dataset:
         dataset.set_auto_mask(False)
         variable = dataset[name]
         meanings = dict(zip(np.atleast_1d(variable.flag_values), variable.flag_meanings.split(), strict=True))
-        return Counter(meanings[value] for value in variable[:].flat), variable.size
+        return Counter(meanings[value] for value in variable[:].flat)
 
 
 def _incomplete(path: Path) -> list[str]:
-    counts, total = _flags(path, "status")
-    completed = counts.pop("completed", 0)
+    counts = _flags(path, "status")
+    total, completed = counts.total(), counts.pop("completed", 0)
     reasons = ", ".join(f"{name} {count}" for name, count in sorted(counts.items()))
     words = f"{total - completed} of {total} did not complete: {reasons} (status in {path})"
     return [f"points: {words if reasons else f'all {total} completed'}"]
 
 
 def _undetermined(path: Path) -> list[str]:
-    counts, total = _flags(path, "kind")
-    number = counts["undetermined"]
-    return [f"points: kind of motion undetermined at {number} of {total} (kind in {path})"] if number else []
+    counts = _flags(path, "kind")
+    said = f"kind of motion undetermined at {counts['undetermined']} of {counts.total()} (kind in {path})"
+    return [f"points: {said}"] if counts["undetermined"] else []
 
 
 #: {rule: (its file below results, the lines about it)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from logging import StreamHandler
 from typing import Any
 
 from rich.console import Console, Group
@@ -111,10 +110,10 @@ class Lines(threading.Thread):
 class Picture:
     """Draws a line for each stage at the bottom of a terminal; what a handler of the log writes scrolls by over it."""
 
-    def __init__(self, run: Run, text: StreamHandler[Any], nocolor: bool) -> None:
+    def __init__(self, run: Run, text: Any) -> None:
         self._run, self._text, self._stream, self._begin = run, text, text.stream, time.time()
         # Long lines are left to the terminal: a command in a message can be copied.
-        self._console = Console(file=text.stream, no_color=nocolor, highlight=False, soft_wrap=True)
+        self._console = Console(file=text.stream, no_color=text.nocolor, highlight=False, soft_wrap=True)
         self._live = Live(
             get_renderable=self.drawn,
             console=self._console,
@@ -129,11 +128,11 @@ class Picture:
     def drawn(self) -> Group:
         """Return the picture of now: stages, all jobs with the time left, and the jobs that run long."""
         now, table, counts = time.time(), Table.grid(padding=(0, 1)), self._run.counts()
-        for row in counts:
-            stage, states = row
-            at_work = f"{states[RUNNING]} running" if states[RUNNING] and row is not counts[-1] else ""
+        for stage, states in counts:
+            is_all = states is counts[-1][1]
+            at_work = f"{states[RUNNING]} running" if states[RUNNING] and not is_all else ""
             words = stage, f"{states[DONE]} of {states.total()}", at_work
-            name, *cells = (Text(word, "bold" if at_work or row is counts[-1] else "dim") for word in words)
+            name, *cells = (Text(word, "bold" if at_work or is_all else "dim") for word in words)
             bar = [ProgressBar(states.total(), states[DONE], BAR_WIDTH)] if self._console.width >= NARROW else []
             table.add_row(name, *bar, *cells)
         table.columns[-2].justify = "right"

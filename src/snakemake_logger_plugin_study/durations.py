@@ -1,8 +1,7 @@
 """What jobs take: durations and sizes that the tree ships, corrected by what jobs have taken here.
 
-`durations.json`, made by `benchmarks/durations.py`, holds for each kind of job seconds and bytes, each as a fixed part
-and one in proportion to its work, and the seconds of the calibration on the same machine: the ratio to those that it
-takes here tells how fast this machine is.
+`durations.json`, made by `benchmarks/durations.py`, holds the costs of each kind of job and the seconds of the
+calibration on the same machine: the ratio to those that it takes here tells how fast this machine is.
 """
 
 from __future__ import annotations
@@ -50,12 +49,10 @@ class Durations:
     factors: Mapping[str, float] = field(default_factory=dict)
 
     def cost(self, kind: str, work: float) -> tuple[float, float]:
-        """Return the seconds that a job takes, of all its threads together, and the bytes of the files that it makes.
-
-        What is not known, as of a law of one's own, costs as much as the slowest kind of its rule.
-        """
+        """Return the seconds that a job takes, of all threads together, and the bytes of the files that it makes."""
         known = self.costs.get(kind)
         if known is None:
+            # As of a law of one's own: the slowest kind of the rule.
             rule = kind.partition(" ")[0]
             alike = [cost for name, cost in self.costs.items() if name.partition(" ")[0] == rule]
             known = max(alike, key=lambda cost: cost[1], default=UNKNOWN)
@@ -72,9 +69,7 @@ class Durations:
         weight, of_kind = WEIGHT * self.speed, WEIGHT_OF_KIND * self.speed
         speed = (sum(taken.values()) + weight) / (sum(thought.values()) + weight)
         factors = {
-            kind: self.factors.get(kind, self.speed)
-            * (taken[kind] + of_kind * speed)
-            / (thought[kind] + of_kind)
+            kind: self.factors.get(kind, self.speed) * (taken[kind] + of_kind * speed) / (thought[kind] + of_kind)
             for kind in taken.keys() | self.factors.keys()
         }
         return Durations(self.costs, self.speed * speed, factors)
@@ -90,47 +85,41 @@ def calibrate() -> float:
     return min(timeit.repeat(run, number=1, repeat=RUNS))
 
 
-def work_of(study: Study, rule: str, wildcards: Mapping[str, str], kept: str | None = None) -> tuple[str, float]:
-    """Return the kind of a job, which shares its durations, and how much it has to do, in units of that kind.
+def work_of(
+    units: Mapping[str, float], rule: str, wildcards: Mapping[str, str], kept: str | None = None
+) -> tuple[str, float]:
+    """Return the kind of a job, which shares its durations, and how much it has to do, in units of its rule.
 
     kept : folder in which a long job keeps what it has found at values of a, and between them
     """
     kind = f"{rule} {wildcards[_BY_WILDCARD[rule]]}" if rule in _BY_WILDCARD else rule
-    work = float(_units(study, rule))
-    if kept and len(study.grid) > 1:
-        done = sum(1 for _ in Path(kept, _LAST[rule]).glob("*")) / (len(study.grid) - 1)
+    work = float(units.get(rule, units["all points"]))
+    if kept and units["gaps"]:
+        done = sum(1 for _ in Path(kept, _LAST[rule]).glob("*")) / units["gaps"]
         work *= 1.0 - _SPARED * min(1.0, done)
     return kind, work
 
 
-def _units(study: Study, rule: str) -> float:
-    """Return the work of a job as far as the config tells; of what reads or draws all points, their number."""
-    config, grid, chains, phases = study.config, study.grid, study.config["chains"], study.config["phases"]
+def units_of(study: Study) -> dict[str, float]:
+    """Return {rule: what a job of it has to do}; those of other rules read, or draw, "all points"."""
+    config, values, chains = study.config, study.grid.values(), study.config["chains"]
+    search, basins, phases, pairs = config["attractors"], config["basins"], config["phases"], chains["two_blocks"]
     time = config["transient"] + config["window"]
-    match rule:
-        case "simulate" | "simulate_solver":
-            return study.blocks * time
-        case "attractors_of_law":
-            search = config["attractors"]
-            widest = max((after - before for before, after in pairwise(grid.values())), default=0.0)
-            values = len(grid) + (_VALUES_BETWEEN if config["refine"]["resolution"] < widest else 0.0)
-            return study.blocks * search["samples"] * (search["transient"] + search["window"]) * values
-        case "edges_of_law":
-            return len(grid)
-        case "basin_tile":
-            return config["basins"]["pixels"] ** 2 / config["basins"]["tiles"]
-        case "basin_pairs":
-            return config["basins"]["pairs"]
-        case "basins":
-            return len(study.basin_maps)
-        case "phases_of_law":
-            return phases["samples"] * prod(len(phases[name]) for name in ("a", "amplitude", "phase_difference"))
-        case "two_blocks":
-            runs = chains["two_blocks"]["samples"] * len(chains["two_blocks"]["a"]) * len(study.laws)
-            return runs * time
-        case "watch_chain":
-            samples = chains["samples"] + chains["symmetric_samples"]
-            return samples * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"]
-        case "proof":
-            return len(study.proved_laws)
-    return len(all_points(study))
+    widest = max((after - before for before, after in pairwise(values)), default=0.0)
+    searched = len(values) + (_VALUES_BETWEEN if config["refine"]["resolution"] < widest else 0.0)
+    samples = chains["samples"] + chains["symmetric_samples"]
+    return {
+        "simulate": study.blocks * time,
+        "simulate_solver": study.blocks * time,
+        "attractors_of_law": study.blocks * search["samples"] * (search["transient"] + search["window"]) * searched,
+        "two_blocks": pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,
+        "watch_chain": samples * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
+        "phases_of_law": phases["samples"] * prod(len(phases[name]) for name in ("a", "amplitude", "phase_difference")),
+        "edges_of_law": len(values),
+        "basin_tile": basins["pixels"] ** 2 / basins["tiles"],
+        "basin_pairs": basins["pairs"],
+        "basins": len(study.basin_maps),
+        "proof": len(study.proved_laws),
+        "all points": len(all_points(study)),
+        "gaps": len(values) - 1,
+    }

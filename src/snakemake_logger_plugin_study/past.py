@@ -12,7 +12,7 @@ from typing import Any
 from burridge_knopoff.provenance.files import write_text
 from snakemake_logger_plugin_study.run import DONE, Run
 
-NAME = "logs/jobs.json"
+RECORD = "logs/jobs.json"
 
 
 def read_record(results: str | Path) -> dict[str, Any]:
@@ -24,7 +24,7 @@ def read_record(results: str | Path) -> dict[str, Any]:
     earlier : {name: {kind, work, seconds, size}} of the jobs of runs before
     """
     try:
-        record = json.loads(Path(results, NAME).read_text(encoding="utf-8"))
+        record = json.loads(Path(results, RECORD).read_text(encoding="utf-8"))
         return record if record.keys() == {"cores", "speed", "begin", "jobs", "earlier"} else {}
     except (OSError, ValueError, AttributeError):
         return {}
@@ -58,4 +58,4 @@ def write_past(run: Run, begin: float) -> None:
         names = {job.name for job in done.values()}
         earlier = {name: job for name, job in read_past(run.results).items() if name not in names}
         record = {"cores": run.cores, "speed": run.durations.speed, "begin": begin, "jobs": jobs, "earlier": earlier}
-        write_text(Path(run.results, NAME), json.dumps(record) + "\n")
+        write_text(Path(run.results, RECORD), json.dumps(record) + "\n")

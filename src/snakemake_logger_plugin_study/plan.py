@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, work_of
+from snakemake.logging import logger
+
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, units_of, work_of
 from snakemake_logger_plugin_study.past import read_past
 from snakemake_logger_plugin_study.run import Job, Run
 
@@ -16,8 +18,7 @@ from snakemake_logger_plugin_study.run import Job, Run
 class Plan:
     """What the Snakefile says: of a study, whether it is to run or not, and of a run once it begins.
 
-    workflow : Snakemake's own. No event and nothing documented lists rules with their files, and jobs with what they
-        need: this is the one place that looks inside Snakemake.
+    workflow : Snakemake's own. No event tells which jobs need which: this is the one place that looks inside Snakemake.
     """
 
     results: str = ""
@@ -27,8 +28,6 @@ class Plan:
 
     def announce(self) -> None:
         """Take note of a run that begins; a warning tells if Snakemake's inside is another one, and no time is told."""
-        from snakemake.logging import logger
-
         try:
             self.run = self.look_ahead()
         except Exception as error:
@@ -39,32 +38,33 @@ class Plan:
         """Return the run of the jobs that are to run, with what is known of their durations."""
         if self.study is None:
             return Run()
-        jobs, dag = self._jobs(), self.workflow.dag
-        wanted = {job.rule.name for job in dag.bfs(dag.dependencies, *dag.targetjobs)}
-        history = [(job["kind"], job["work"], job["seconds"]) for job in read_past(self.results).values()]
-        speed = 1.0
+        dag, jobs = self.workflow.dag, self._jobs()
+        to_run = set(dag.needrun_jobs(exclude_finished=False))
+        # What comes after a job that is to run, and is not to run itself, is left out by --until.
+        left_out = {job.rule.name for job in dag.bfs(dag.depending, *to_run) if job not in to_run}
+        wanted = {job.rule.name for job in dag.jobs} - left_out
+        history, speed = read_past(self.results).values(), 1.0
         if jobs and not history:
             # Without a kernel nothing can run, but what is to run can be seen.
             with suppress(ImportError):
                 speed = calibrate() / SHIPPED["calibration"]
-        return Run(self.results, jobs, wanted, Durations(SHIPPED["costs"], speed).corrected(history))
+        known = ((job["kind"], job["work"], job["seconds"]) for job in history)
+        return Run(self.results, jobs, wanted, Durations(SHIPPED["costs"], speed).corrected(known))
 
     def _jobs(self) -> dict[int, Job]:
-        """Return {number: job} of the jobs that make files, in the order of the rules.
-
-        A file of rules is a stage, named after its first rule that only gathers, or the file.
-        """
+        """Return {number: job} of the jobs that make files, in the order of the rules."""
         dag, rules = self.workflow.dag, list(self.workflow.rules)
         order = {rule.name: place for place, rule in enumerate(rules)}
+        # A file of rules is a stage, named after its first rule that only gathers, or the file.
         stages = {rule.snakefile: rule.name for rule in reversed(rules) if not rule.output}
         numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
-        planned = {}
+        units, planned = units_of(self.study), {}
         for job in sorted(numbers, key=lambda job: (order[job.rule.name], numbers[job])):
             rule, wildcards = job.rule, job.wildcards_dict
             planned[numbers[job]] = Job(
                 " ".join([rule.name, *(f"{name}={value}" for name, value in wildcards.items())]),
                 stages.get(rule.snakefile, Path(str(rule.snakefile)).stem),
-                *work_of(self.study, rule.name, wildcards, job.params.get("kept")),
+                *work_of(units, rule.name, wildcards, job.params.get("kept")),
                 threads=int(job.threads),
                 priority=float(job.priority),
                 needs=frozenset(numbers[need] for need in dag.dependencies[job] if need in numbers),

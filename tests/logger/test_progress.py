@@ -89,32 +89,25 @@ class AJob(SimpleNamespace):
 
 
 class Dag:
-    """Jobs up to `orbits`, which needs `edges`, up to date; `points` makes no file, `report` comes after."""
+    """What `--until orbits` leaves to do: `edges` is up to date, `points` makes no file, `report` comes after."""
 
     def __init__(self, rules):
-        rules = {rule.name: rule for rule in rules}
-        self.made = [
-            AJob(
-                rule=rules[name], output=rules[name].output, wildcards_dict=wildcards, params={}, threads=1, priority=0
-            )
-            for name, wildcards in (
-                ("orbits", {}),
-                ("simulate", {"a": "0.05"}),
-                ("points", {}),
-                ("edges", {}),
-                ("report", {}),
-            )
+        wildcards = {"orbits": {}, "simulate": {"a": "0.05"}, "points": {}, "edges": {}, "report": {}}
+        options = {"params": {}, "threads": 1, "priority": 0}
+        self.jobs = [
+            AJob(rule=rules[name], output=rules[name].output, wildcards_dict=given, **options)
+            for name, given in wildcards.items()
         ]
-        orbits, simulate, points, edges, report = self.made
-        self.targetjobs = {orbits, points}
+        orbits, simulate, points, edges, report = self.jobs
         self.dependencies = {orbits: [simulate, edges], simulate: [], points: [simulate], edges: [], report: [orbits]}
+        self.depending = {orbits: [report], simulate: [orbits, points], points: [], edges: [orbits], report: []}
 
     def needrun_jobs(self, exclude_finished):
         assert not exclude_finished
-        return iter(self.made[:3])
+        return iter(self.jobs[:3])
 
     def jobid(self, job):
-        return 7 + self.made.index(job)
+        return 7 + self.jobs.index(job)
 
     def bfs(self, direction, *jobs):
         for job in jobs:
@@ -122,10 +115,10 @@ class Dag:
 
 
 FILES = {"points": "simulate", "simulate": "simulate", "orbits": "stability", "edges": "stability", "report": "report"}
-RULES = [
-    SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=[] if name == "points" else ["x"])
+RULES = {
+    name: SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=[] if name == "points" else ["x"])
     for name, file in FILES.items()
-]
+}
 
 
 def test_what_the_snakefile_announces(tmp_path, monkeypatch):
@@ -133,7 +126,7 @@ def test_what_the_snakefile_announces(tmp_path, monkeypatch):
     calibrated = iter([3.0 * SHIPPED["calibration"]])
     monkeypatch.setattr("snakemake_logger_plugin_study.plan.calibrate", lambda: next(calibrated))
     study = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
-    plan = Plan(str(tmp_path), SimpleNamespace(rules=RULES, dag=Dag(RULES)), study)
+    plan = Plan(str(tmp_path), SimpleNamespace(rules=RULES.values(), dag=Dag(RULES)), study)
     plan.announce()
     assert plan.run.jobs == {
         8: Job("simulate a=0.05", "points", "simulate", 30000.0),

@@ -3,7 +3,7 @@
 import pytest
 
 from burridge_knopoff.study import load_study
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, work_of
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, units_of, work_of
 from snakemake_logger_plugin_study.past import read_past, read_record, write_past
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
 
@@ -139,6 +139,6 @@ def test_what_a_search_has_kept_is_not_done_again(tmp_path, kept, share):
     (tmp_path / "refined").mkdir()
     for number in range(kept or 0):
         (tmp_path / "refined" / str(number)).write_text("")
-    of_law = study, "attractors_of_law", {"law": "nonlinear"}
+    of_law = units_of(study), "attractors_of_law", {"law": "nonlinear"}
     kind, work = work_of(*of_law, None if kept is None else str(tmp_path))
     assert (kind, work) == ("attractors_of_law nonlinear", pytest.approx(share * work_of(*of_law)[1]))
