@@ -38,11 +38,8 @@ class Plan:
         """Return the run of the jobs that are to run, with what is known of their durations."""
         if self.study is None:
             return Run()
-        dag, jobs = self.workflow.dag, self._jobs()
-        to_run = set(dag.needrun_jobs(exclude_finished=False))
-        # What comes after a job that is to run, and is not to run itself, is left out by --until.
-        left_out = {job.rule.name for job in dag.bfs(dag.depending, *to_run) if job not in to_run}
-        wanted = {job.rule.name for job in dag.jobs} - left_out
+        jobs = self._jobs()
+        wanted = {job.rule.name for job in self.workflow.dag.jobs}
         history, speed = read_past(self.results).values(), 1.0
         if jobs and not history:
             # Without a kernel nothing can run, but what is to run can be seen.

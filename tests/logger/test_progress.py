@@ -76,26 +76,19 @@ class AJob(SimpleNamespace):
 
 
 class Dag:
-    """What `--until orbits` leaves to do: `edges` is up to date, `points` makes no file, `report` comes after."""
+    """Three jobs: `orbits` after `simulate`, and after `edges` that is up to date; `points` makes no file."""
 
     def __init__(self):
-        files = {
-            "orbits": "stability",
-            "simulate": "simulate",
-            "points": "simulate",
-            "edges": "edges",
-            "report": "report",
-        }
+        files = {"orbits": "stability", "simulate": "simulate", "points": "simulate", "edges": "stability"}
         self.rules = [
             SimpleNamespace(name=name, snakefile=f"rules/{file}.smk", output=["x"] if name != "points" else [])
             for name, file in files.items()
         ]
         options = {"wildcards_dict": {}, "params": {}, "threads": 1, "priority": 0}
         self.jobs = [AJob(rule=rule, output=rule.output, **options) for rule in self.rules]
-        orbits, simulate, points, edges, report = self.jobs
+        orbits, simulate, points, edges = self.jobs
         simulate.wildcards_dict = {"a": "0.05"}
-        self.dependencies = {orbits: [simulate, edges], simulate: [], points: [simulate], edges: [], report: [orbits]}
-        self.depending = {orbits: [report], simulate: [orbits, points], points: [], edges: [orbits], report: []}
+        self.dependencies = {orbits: [simulate, edges], simulate: [], points: [simulate]}
 
     def needrun_jobs(self, exclude_finished):
         assert not exclude_finished
@@ -104,10 +97,6 @@ class Dag:
     def jobid(self, job):
         return 7 + self.jobs.index(job)
 
-    def bfs(self, direction, *jobs):
-        for job in jobs:
-            yield from (job, *self.bfs(direction, *direction[job]))
-
 
 def test_what_the_snakefile_announces(tmp_path, monkeypatch):
     """Stages are files of rules; jobs are those that make files, with what they need."""
@@ -115,7 +104,7 @@ def test_what_the_snakefile_announces(tmp_path, monkeypatch):
     monkeypatch.setattr("snakemake_logger_plugin_study.plan.calibrate", lambda: next(calibrated))
     study = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
     dag = Dag()
-    plan = Plan(str(tmp_path), SimpleNamespace(rules=[dag.rules[2], *dag.rules], dag=dag), study)
+    plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), study)
     plan.announce()
     assert list(plan.run.jobs.items()) == [
         (7, Job("orbits", "stability", "orbits", 4.0, needs=frozenset({8}))),
