@@ -24,9 +24,6 @@ SHIPPED: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 UNKNOWN = (1.5, 0.0, 50_000.0, 0.0)
 #: Seconds of jobs for which what was known before counts as much as what has finished: of all kinds, and of one.
 WEIGHT, WEIGHT_OF_KIND = 5.0, 2.0
-#: Of the calibration: runs, of which the fastest counts, and time units of each: short, to slip between other programs.
-RUNS, UNITS = 12, 5000.0
-
 #: Wildcards that decide how fast a job is.
 _BY_WILDCARD = {"simulate_solver": "solver", "attractors_of_law": "law", "edges_of_law": "law"}
 #: The search for attractors refines some gaps between values of a if any is wide enough: so many more, by measurement.
@@ -77,12 +74,13 @@ class Durations:
 
 def calibrate() -> float:
     """Return the seconds that a fixed simulation takes on this machine now; raises ImportError without a kernel."""
+    # The fastest of several that are short enough to slip between other programs.
     from burridge_knopoff import simulate
 
     def run() -> None:
-        simulate("linearized", 0.08, "plus", transient=0.001, window=UNITS)
+        simulate("linearized", 0.08, "plus", transient=0.001, window=5000.0)
 
-    return min(timeit.repeat(run, number=1, repeat=RUNS))
+    return min(timeit.repeat(run, number=1, repeat=12))
 
 
 def work_of(

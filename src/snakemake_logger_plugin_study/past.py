@@ -18,9 +18,9 @@ RECORD = "logs/jobs.json"
 def read_record(results: str | Path) -> dict[str, Any]:
     """Return the record of a folder of results; an empty one if there is none, or none that can be read.
 
-    cores, speed : of the last run
-    begin, jobs : when it began, and its jobs as mappings: name, kind, work, threads, priority, needs (their places in
-        this list), begin and end in seconds since the run began, size in bytes of the files that it made
+    cores, speed, begin : of the last run, and when it began
+    jobs : its jobs: name, kind, work, threads, priority, needs (their places in this list), begin and end in seconds
+        since the run began, size in bytes of the files that it made
     earlier : {name: {kind, work, seconds, size}} of the jobs of runs before
     """
     try:

@@ -55,18 +55,18 @@ class Plan:
         # A file of rules is a stage, named after its first rule that only gathers, or the file.
         stages = {rule.snakefile: rule.name for rule in reversed(rules) if not rule.output}
         numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
-        units, planned = units_of(self.study), {}
-        for job in sorted(numbers, key=lambda job: (order[job.rule.name], numbers[job])):
-            rule, wildcards = job.rule, job.wildcards_dict
-            planned[numbers[job]] = Job(
-                " ".join([rule.name, *(f"{name}={value}" for name, value in wildcards.items())]),
-                stages.get(rule.snakefile, Path(str(rule.snakefile)).stem),
-                *work_of(units, rule.name, wildcards, job.params.get("kept")),
+        units = units_of(self.study)
+        return {
+            numbers[job]: Job(
+                " ".join([job.rule.name, *(f"{name}={value}" for name, value in job.wildcards_dict.items())]),
+                stages.get(job.rule.snakefile, Path(str(job.rule.snakefile)).stem),
+                *work_of(units, job.rule.name, job.wildcards_dict, job.params.get("kept")),
                 threads=int(job.threads),
                 priority=float(job.priority),
                 needs=frozenset(numbers[need] for need in dag.dependencies[job] if need in numbers),
             )
-        return planned
+            for job in sorted(numbers, key=lambda job: (order[job.rule.name], numbers[job]))
+        }
 
 
 #: The Snakefile and the display are in one process.

@@ -122,21 +122,20 @@ def schedule(
     for number, job in jobs.items():
         for need in job.needs:
             after[need].append(number)
-    width = {number: min(job.threads, cores) for number, job in jobs.items()}
     order = {number: (-job.priority, place, number) for place, (number, job) in enumerate(jobs.items())}
     # Sorted lists are heaps.
     ready = sorted(order[number] for number in seconds if not missing[number])
     ends = dict(at_work or {})
     running = sorted((end, number) for number, end in ends.items())
-    free, now = cores - sum(width[number] for number in ends), 0.0
+    free, now = cores - sum(jobs[number].threads for number in ends), 0.0
     while ready or running:
-        while ready and (free >= width[ready[0][-1]] or not running):
+        while ready and (free >= jobs[ready[0][-1]].threads or not running):
             number = heapq.heappop(ready)[-1]
-            free -= width[number]
+            free -= jobs[number].threads
             ends[number] = now + seconds[number]
             heapq.heappush(running, (ends[number], number))
         now, number = heapq.heappop(running)
-        free += width[number]
+        free += jobs[number].threads
         for other in after[number]:
             missing[other] -= 1
             if not missing[other] and other in seconds:
