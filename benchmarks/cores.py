@@ -15,7 +15,7 @@ from pathlib import Path
 
 from progress import planned, recorded
 
-from snakemake_logger_plugin_study.forecast import schedule
+from snakemake_logger_plugin_study.run import schedule
 
 LONG = re.compile("(.+)_of_law (.+)")
 PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ kept.*)?$", re.MULTILINE)

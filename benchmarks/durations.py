@@ -13,8 +13,8 @@ from collections import defaultdict
 import numpy as np
 from scipy.optimize import nnls
 
-from snakemake_logger_plugin_study.durations import FILE, calibrate
-from snakemake_logger_plugin_study.past import all_jobs, read_record
+from snakemake_logger_plugin_study.durations import FILE, SHIPPED, calibrate
+from snakemake_logger_plugin_study.past import read_past
 
 #: Seconds and bytes below which no job is told from another.
 LEAST_SECONDS, LEAST_SIZE = 0.05, 1000.0
@@ -36,13 +36,12 @@ def main():
     """Measure, print and write."""
     jobs = defaultdict(list)
     for results in sys.argv[1:]:
-        for job in all_jobs(read_record(results)).values():
+        for job in read_past(results).values():
             jobs[job["kind"]].append(job)
-    shipped = json.loads(FILE.read_text()) if FILE.is_file() else {"calibration": 0.0, "costs": {}}
     calibration = calibrate()
     # What is kept was measured on a machine of another speed.
-    ratio = calibration / (shipped["calibration"] or calibration)
-    costs = {kind: [ratio * fixed, ratio * rate, *size] for kind, (fixed, rate, *size) in shipped["costs"].items()}
+    ratio = calibration / SHIPPED["calibration"]
+    costs = {kind: [ratio * fixed, ratio * rate, *size] for kind, (fixed, rate, *size) in SHIPPED["costs"].items()}
     for kind, same in sorted(jobs.items()):
         work = [job["work"] for job in same]
         seconds = fitted(work, [job["seconds"] for job in same], LEAST_SECONDS)

@@ -11,12 +11,14 @@ take as long as they did, on so many cores. Exit code 1 if a ratio is above 1.5.
 import argparse
 import sys
 
-from snakemake_logger_plugin_study.durations import shipped
-from snakemake_logger_plugin_study.forecast import Forecast, PlannedJob, schedule
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations
 from snakemake_logger_plugin_study.past import read_record
+from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, Job, Run, schedule
 
 #: The factor that is allowed, moments of a run that are looked at, and the least time that the display tells.
 FACTOR, MOMENTS, LEAST = 1.5, 400, 10.0
+#: What a record holds of a job that was known before it began, besides what it needs.
+PLANNED = ("name", "kind", "work", "threads", "priority")
 
 
 def recorded(results):
@@ -26,9 +28,8 @@ def recorded(results):
 
 def planned(record):
     """Return the jobs of a record by number, and the seconds that each took."""
-    names = ("name", "kind", "work", "threads", "priority")
     jobs = {
-        number: PlannedJob(*(job[name] for name in names), frozenset(job["needs"]))
+        number: Job(stage="", needs=frozenset(job["needs"]), **{name: job[name] for name in PLANNED})
         for number, job in enumerate(record["jobs"])
     }
     return jobs, {number: job["end"] - job["begin"] for number, job in enumerate(record["jobs"])}
@@ -40,14 +41,14 @@ def told(record, cores=None):
     ends = {number: job["end"] for number, job in enumerate(record["jobs"])}
     if cores is not None:
         ends = schedule(jobs, seconds, cores)
-    begins = {number: end - seconds[number] for number, end in ends.items()}
-    forecast = Forecast(jobs, shipped(), record["speed"])
-    begin, end = min(begins.values()), max(ends.values())
+    for number, job in jobs.items():
+        job.begin, job.end = ends[number] - seconds[number], ends[number]
+    begin, end = min(job.begin for job in jobs.values()), max(ends.values())
+    run = Run("", jobs, (), Durations(SHIPPED["costs"], record["speed"]), cores or record["cores"])
     for moment in (begin + (end - begin) * step / MOMENTS for step in range(MOMENTS)):
-        begun = [number for number in jobs if begins[number] <= moment]
-        running = {number: begins[number] for number in begun if ends[number] > moment}
-        done = {number: seconds[number] for number in begun if number not in running}
-        yield moment - begin, forecast.time_left(moment, cores or record["cores"], running, done), end - moment
+        for job in jobs.values():
+            job.state = WAITING if job.begin > moment else RUNNING if job.end > moment else DONE
+        yield moment - begin, run.forecast(moment), end - moment
 
 
 def ratio(first, second):

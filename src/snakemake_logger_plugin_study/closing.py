@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,51 +12,39 @@ import numpy as np
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, untestable
 from burridge_knopoff.study.job_log import failure
 from burridge_knopoff.study.words import counted
-from snakemake_logger_plugin_study.tally import DONE, FAILED, Tally
-from snakemake_logger_plugin_study.wording import elapsed
+from snakemake_logger_plugin_study.display import elapsed
+from snakemake_logger_plugin_study.run import DONE, FAILED, Run
 
-#: Verdicts whose claims are named, not only counted.
-NAMED_VERDICTS = (FAILS, CONVENTION)
-#: Names in a line, and failed jobs with a line each, at most.
-MOST_NAMES, MOST_FAILED = 8, 10
-#: So few files are named one by one.
-FEW_FILES = 3
+#: Names in a line, failed jobs with a line each, and files that are named one by one, at most.
+MOST_NAMES, MOST_FAILED, FEW_FILES = 8, 10, 3
 
 
-def closing_lines(
-    results: str | Path, seconds: float, tally: Tally, wanted: Collection[str], *, stopped: bool = False
-) -> list[str]:
-    """Return the last lines of a run, plain text.
+def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[str]:
+    """Return the last lines of a run that took so many seconds.
 
-    results : folder of the study, results/<study>
-    seconds : how long the run took
-    wanted : rules of all files that the run was to make or found up to date
     stopped : whether Snakemake ended with an error, as after a signal that came when the last job was done
-
-    Summaries are read only if they are wanted and all jobs were done: older ones say nothing about the run. A file that
-    cannot be read gives a line that says so.
     """
-    results = Path(results)
-    failed, done = tally.jobs(FAILED), tally.jobs(DONE)
-    missed = tally.counts()[-1].total - len(failed) - len(done)
+    results, failed, done = Path(run.results), run.of(FAILED), run.of(DONE)
+    missed = len(run.jobs) - len(failed) - len(done)
     made = _made(results, [path for job in done for path in job.output])
     if failed or missed or stopped:
         counts = ((len(failed), "failed"), (missed, "did not run"))
-        reasons = [f"{counted(count, 'job')} {what}" for count, what in counts if count]
-        lines = [f"study {results.name}: stopped after {elapsed(seconds)}: {', '.join(reasons) or 'not at its end'}"]
+        reasons = ", ".join(f"{counted(count, 'job')} {what}" for count, what in counts if count)
         told = sorted((job.name, job.log) for job in failed)
-        lines += [failure(*job) for job in told[:MOST_FAILED]]
-        if len(told) > MOST_FAILED:
-            lines.append(f"failed: and {len(told) - MOST_FAILED} more")
-        return [*lines, made, "the same command goes on where this run stopped"]
+        return [
+            f"study {results.name}: stopped after {elapsed(seconds)}: {reasons or 'not at its end'}",
+            *(failure(*job) for job in told[:MOST_FAILED]),
+            *([f"failed: and {len(told) - MOST_FAILED} more"] if len(told) > MOST_FAILED else []),
+            *(made, "the same command goes on where this run stopped"),
+        ]
     lines = [f"study {results.name}: done in {elapsed(seconds)}", made]
+    # Older summaries say nothing about the run.
     for rule, (name, read) in _READERS.items():
-        path = results / name
-        if rule in wanted:
+        if rule in run.wanted:
             try:
-                lines += read(path)
-            except (OSError, RuntimeError, ValueError, KeyError, IndexError, TypeError, AttributeError) as error:
-                lines.append(f"{path}: cannot be read ({error})")
+                lines += read(results / name)
+            except Exception as error:
+                lines.append(f"{results / name}: cannot be read ({error})")
     return lines
 
 
@@ -66,7 +54,7 @@ def _made(results: Path, made: Sequence[str]) -> str:
     inside = [Path(path).relative_to(results).parts for path in made if Path(path).is_relative_to(results)]
     folders = Counter(parts[0] for parts in inside if len(parts) > 1)
     names = [parts[0] for parts in inside if len(parts) == 1]
-    return f"files made in {results}: {', '.join([*(f'{name} {folders[name]}' for name in folders), *names])}"
+    return f"files made in {results}: {', '.join([*(f'{name} {count}' for name, count in folders.items()), *names])}"
 
 
 def _claims(path: Path) -> list[str]:
@@ -76,7 +64,7 @@ def _claims(path: Path) -> list[str]:
         return [f"claims of the paper: none is judged ({ledger})", f"  {next(iter(reasons))}"]
     counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
     lines = [f"claims of the paper: {counts} ({ledger})"]
-    for verdict in NAMED_VERDICTS:
+    for verdict in (FAILS, CONVENTION):
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
         lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{more}"] if names else []
@@ -97,10 +85,9 @@ def _flags(path: Path, name: str) -> Counter[str]:
 def _incomplete(path: Path) -> list[str]:
     counts = _flags(path, "status")
     total, completed = counts.total(), counts.pop("completed", 0)
-    if completed == total:
-        return [f"points: all {total} completed"]
     reasons = ", ".join(f"{name} {count}" for name, count in sorted(counts.items()))
-    return [f"points: {total - completed} of {total} did not complete: {reasons} (status in {path})"]
+    words = f"{total - completed} of {total} did not complete: {reasons} (status in {path})"
+    return [f"points: {words if reasons else f'all {total} completed'}"]
 
 
 def _undetermined(path: Path) -> list[str]:

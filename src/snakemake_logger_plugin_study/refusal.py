@@ -10,7 +10,7 @@ from pathlib import Path
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study import ConfigError, read_config
 
-# What Snakemake takes for the name of a key.
+#: What Snakemake takes for the name of a key.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
 
 #: Messages of Snakemake that no event and no field tells apart, and what is said instead.
@@ -21,10 +21,7 @@ _REWORDED = (
     (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
     # What a function of a rule raised: one line made for people, among the wildcards and the lines of code.
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
-    (
-        re.compile(r"^No rule to produce (.+?) \(if you use input functions", re.MULTILINE),
-        r"\1: neither a rule nor a file of this study",
-    ),
+    (re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE), r"\1: neither a rule nor a file of this study"),
 )
 
 
@@ -45,38 +42,26 @@ def several_files(paths: Sequence[str | Path]) -> str:
     )
 
 
-def given_cores(arguments: Sequence[str]) -> int:
-    """Return the cores that a command line gives; 0 if it gives no number: Snakemake takes one for a dry run."""
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("--cores", "-c", "--jobs", "-j", type=int, default=0)
-    try:
-        return parser.parse_known_args(arguments)[0].cores
-    except (argparse.ArgumentError, SystemExit):
-        return 0
+def checked_cores(arguments: Sequence[str]) -> int:
+    """Return the cores that a command line gives, 0 if it gives no number: Snakemake takes one for a dry run.
 
-
-def check_command_line(arguments: Sequence[str]) -> None:
-    """Raise ConfigError, one line, for a config file that cannot be read and for what --config does not take.
-
-    Snakemake makes its log handlers first and reads the config files next; nothing of the project runs in between.
+    Raises ConfigError, one line, for a config file that cannot be read and for what --config does not take: Snakemake
+    makes its log handlers first and reads the config files next, and nothing of the project runs in between.
     """
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("--configfile", "--configfiles", nargs="+", action="extend", default=[])
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--configfile", "--configfiles", nargs="*", action="extend", default=[])
     parser.add_argument("--config", "-C", nargs="*", action="extend", default=[])
-    try:
-        options, _ = parser.parse_known_args(arguments)
-    except argparse.ArgumentError:
-        # Snakemake's own parser says what is wrong.
-        return
+    parser.add_argument("--cores", "-c", "--jobs", "-j", nargs="?", const="", default="")
+    options, _ = parser.parse_known_args(arguments)
     if len(options.configfile) > 1:
         raise ConfigError(several_files(options.configfile))
     for path in options.configfile:
         if "__use_yte__" in read_config(Path(path)):
-            raise ConfigError(
-                f"{display_path(path)}: __use_yte__: unknown key; a study is plain YAML, without templates"
-            )
+            reason = "unknown key; a study is plain YAML, without templates"
+            raise ConfigError(f"{display_path(path)}: __use_yte__: {reason}")
     for entry in options.config:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):
             short = f"; {name} has its place in the config file" if len(name) == 1 else ""
             raise ConfigError(f"--config: {entry!r} is not allowed: key=value, the key of two letters or more{short}")
+    return int(options.cores) if options.cores.isdecimal() else 0

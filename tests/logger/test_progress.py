@@ -1,10 +1,10 @@
-"""The progress display: counts and time left from hand-made events, its words, and that no message is lost."""
+"""The progress display: its words, what the Snakefile tells it, and that no message is lost."""
 
 import io
-import logging
 import os
 import sys
 from inspect import getsource, signature
+from logging import ERROR, INFO, WARNING, makeLogRecord
 from types import SimpleNamespace
 
 import pytest
@@ -15,198 +15,133 @@ from snakemake_interface_logger_plugins.common import LogEvent
 import snakemake_logger_plugin_study as plugin
 from burridge_knopoff.study import load_study
 from burridge_knopoff.study.job_log import SILENT
-from snakemake_logger_plugin_study.durations import shipped
-from snakemake_logger_plugin_study.forecast import Cost, PlannedJob
+from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations
 from snakemake_logger_plugin_study.past import write_past
-from snakemake_logger_plugin_study.plain import PlainDisplay
 from snakemake_logger_plugin_study.plan import Plan
-from snakemake_logger_plugin_study.refusal import reworded
-from snakemake_logger_plugin_study.tally import DONE, FAILED, Job, Rule, Tally
-from snakemake_logger_plugin_study.wording import cost, duration, progress_line, time_left
+from snakemake_logger_plugin_study.refusal import checked_cores, reworded
+from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
 
 
-def tally(*done, cores=2, running=(), failed=(), **rules):
-    """Return a tally of these rules after (rule, begin, end) were done, (rule, begin) run, and these rules failed."""
-    made = Tally(rules, cores)
-    begun = [*((*job, DONE) for job in done), *((*job, 0.0, "running") for job in running)]
-    begun += [(rule, 0.0, 0.0, FAILED) for rule in failed]
-    for number, (rule, begin, end, state) in enumerate(begun):
-        made.start(number, rule, Job(rule, begin))
-        made.end(number, state, end)
-    return made
-
-
-def needing(stage, total, *needs):
-    return Rule(stage, total, frozenset(needs))
-
-
-def test_the_time_left_is_told_from_the_state_of_all_jobs():
-    made = tally(("simulate", 0.0, 2.0), running=[("simulate", 2.0)], simulate=Rule("points", 3))
-    assert made.time_left(3.0) is None
-    asked = []
-    made.forecast = SimpleNamespace(time_left=lambda *state: asked.append(state) or 30.0)
-    made.start(2, "simulate", Job("simulate", 2.5, timed=False))
-    made.end(2, DONE, 2.6)
-    assert made.time_left(3.0) == 30.0
-    assert asked == [(3.0, 2, {1: 2.0}, {0: 2.0, 2: float("inf")}, [])]
-    # It is counted down until it is worked out again.
-    assert made.time_left(3.5) == 29.5
-    made.end(1, FAILED)
-    assert made.time_left(5.5) == 30.0
-    assert asked[1:] == [(5.5, 2, {}, {0: 2.0, 2: float("inf")}, [1])]
-
-
-def test_what_a_failed_job_blocks_is_not_waited_for():
-    rules = {
-        "simulate": Rule("points", 2),
-        "mean_distance": needing("summary", 1, "simulate"),
-        "figure": needing("figures", 1, "mean_distance"),
-        "orbits": Rule("orbits", 1),
-    }
-    made = tally(failed=["simulate"], running=[("simulate", 0.0)], **rules)
-    assert made.blocked() == {"mean_distance": 1, "figure": 1}
-    made.end(0, FAILED)
-    assert len(made.jobs(FAILED)) == 2
-    # Tried again, as on a cluster; and a job that needed none of the failed ones.
-    for number in (0, 1):
-        made.start(number, "simulate", Job("simulate", 20.0))
-    assert (made.jobs(FAILED), made.blocked()) == ([], {})
-    made.end(0, FAILED)
-    made.start(2, "mean_distance", Job("mean_distance", 20.0))
-    assert made.blocked() == {"mean_distance": 0, "figure": 1}
-
-
-def test_a_job_that_was_not_planned_is_added():
-    made = tally()
-    made.start(7, "other", Job("other", 0.0))
-    assert made.counts() == [("other", 0, 1, 1), ("all", 0, 1, 1)]
-    for number in (7, 7, 8):
-        made.end(number, DONE, 1.0)
-    assert made.counts()[-1] == ("all", 1, 1, 0)
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [
-        *((0, "a few seconds"), (12, "10 s"), (48, "50 s"), (56, "1 min"), (170, "3 min")),
-        *((5300, "88 min"), (9000, "2.5 h")),
-    ],
-)
-def test_durations_in_words(seconds, words):
-    assert duration(seconds) == words
-
-
-def test_time_left_in_words():
-    assert [time_left(seconds) for seconds in (None, 170.0, 3.0)] == ["", "about 3 min left", "a few seconds left"]
+def test_durations_in_words():
+    told = {0: "a few seconds", 12: "about 10 s", 48: "about 50 s", 56: "about 1 min", 170: "about 3 min"}
+    told |= {5300: "about 88 min", 9000: "about 2.5 h"}
+    assert {seconds: about(seconds) for seconds in told} == told
+    told = {0.4: "0 s", 59.6: "1 min 0 s", 312: "5 min 12 s", 7500: "2 h 5 min"}
+    assert {seconds: elapsed(seconds) for seconds in told} == told
 
 
 def test_a_cost_in_words():
-    told = "a run takes about 3 min on 2 cores: about 5 min of CPU time, and 41 MB of disk"
-    assert cost(Cost(170.0, 300.0, 4.1e7), 2) == told
-    assert (
-        cost(Cost(3.0, 3.0, 2.5e9), 1)
-        == "a run takes a few seconds on 1 core: a few seconds of CPU time, and 2.5 GB of disk"
+    durations = Durations(
+        {"short": (3.0, 0.0, 5e5, 0.0), "long": (0.0, 10.0, 0.0, 2e6), "huge": (3.0, 0.0, 2.5e9, 0.0)}
     )
+    jobs = {0: Job("", "", "short"), 1: Job("", "", "long", 20.3, threads=2)}
+    told = "a run takes about 2 min on 2 cores: about 3 min of CPU time, and 41 MB of disk"
+    assert cost(Run("", jobs, (), durations, 2)) == told
+    told = "a run takes a few seconds on 1 core: a few seconds of CPU time, and 2.5 GB of disk"
+    assert cost(Run("", {0: Job("", "", "huge")}, (), durations, 1)) == told
 
 
-def test_a_progress_line():
-    rules = {"simulate": Rule("points", 484), "mean_distance": needing("summary", 46, "simulate")}
-    done = [("simulate", 0.0, 1.0)] * 120
-    made = tally(*done, running=[("simulate", 0.0)], **rules)
-    assert progress_line(made, 1.0) == "points 120 of 484, all 120 of 530 (22 %)"
-    made = tally(*done, failed=["simulate"], **rules)
-    made.forecast = SimpleNamespace(time_left=lambda *state: 180.0)
-    assert progress_line(made, 1.0) == "all 120 of 530 (22 %), 1 failed, 46 cannot run, about 3 min left"
+def test_a_line_at_the_begin_and_now_and_then(monkeypatch):
+    monkeypatch.setattr(Run, "forecast", lambda self, now: 180.0)
+    points = [Job("", "points", state=DONE if number < 120 else WAITING) for number in range(484)]
+    jobs = [*points, *(Job("", "summary", needs=frozenset({120})) for _ in range(46))]
+    run = Run("", dict(enumerate(jobs)))
+    assert beginning(run, 1.0) == "530 jobs: points 484, summary 46; about 3 min left"
+    points[120].state = RUNNING
+    assert progress(run, 1.0) == "points 120 of 484, all 120 of 530 (22 %), about 3 min left"
+    points[120].state = FAILED
+    assert progress(run, 1.0) == "all 120 of 530 (22 %), 1 failed, 46 cannot run, about 3 min left"
 
 
-def test_the_pace_of_plain_lines():
-    made = tally(simulate=Rule("points", 100))
-    display = PlainDisplay(made, SimpleNamespace(__enter__=None), print)
-    display.close()
-    begin = display._time
-    due = []
+def test_the_pace_of_lines():
+    run = Run("", {number: Job("", "points") for number in range(100)})
+    lines = Lines(run, print)
+    lines.close()
+    begin, due = lines._time, []
     for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (55, 69.9), (55, 129.8), (55, 129.9), (100, 300.0)):
         for number in range(done):
-            made.start(number, "simulate", Job("x", 0.0, state=DONE))
-        due.append(bool(display.line(begin + after)))
+            run.jobs[number].state = DONE
+        due.append(lines.is_due(begin + after))
     assert due == [False, True, False, True, False, True, False]
 
 
-def test_a_defect_of_the_plan_is_only_told(caplog):
-    plan = Plan()
-    plan.describe("results/x", SimpleNamespace(rules=[SimpleNamespace(name="simulate")]), None)
-    plan.announce()
-    assert (plan.results, plan.stages, plan.forecast) == ("results/x", {}, None)
-    assert caplog.messages[0].startswith("the stages of this run, and its time, cannot be told: ")
-
-
-STUDY = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
-
-
-class Dag:
-    """Two jobs, the second after the first; a third that makes no file."""
-
-    def __init__(self):
-        self.made = [job("simulate", "x.nc", a="0.05"), job("orbits", "y.nc"), job("points")]
-        self.dependencies = {self.made[0]: [], self.made[1]: [self.made[0]], self.made[2]: self.made[:1]}
-
-    def needrun_jobs(self, exclude_finished):
-        assert not exclude_finished
-        return iter(self.made)
-
-    def jobid(self, job):
-        return 7 + self.made.index(job)
+def test_the_cores_of_a_command_line():
+    given = {"-c2": 2, "--cores 4": 4, "-j 3": 3, "--cores all": 0, "-j": 0, "-n points": 0}
+    assert {line: checked_cores(line.split()) for line in given} == given
 
 
 class AJob(SimpleNamespace):
     __hash__ = object.__hash__
 
 
-def job(name, *output, **wildcards):
-    rule = SimpleNamespace(name=name)
-    return AJob(rule=rule, output=output, wildcards_dict=wildcards, params={}, threads=1, priority=0)
+class Dag:
+    """Three jobs: `orbits` after `simulate`, and after `edges` that is up to date; `points` makes no file."""
+
+    def __init__(self):
+        files = {"orbits": "stability", "simulate": "simulate", "points": "simulate", "edges": "stability"}
+        self.rules = [
+            SimpleNamespace(name=name, snakefile=f"rules/{file}.smk", output=["x"] if name != "points" else [])
+            for name, file in files.items()
+        ]
+        options = {"wildcards_dict": {}, "params": {}, "threads": 1, "priority": 0}
+        self.jobs = [AJob(rule=rule, output=rule.output, **options) for rule in self.rules]
+        orbits, simulate, points, edges = self.jobs
+        simulate.wildcards_dict = {"a": "0.05"}
+        self.dependencies = {orbits: [simulate, edges], simulate: [], points: [simulate]}
+
+    def needrun_jobs(self, exclude_finished):
+        assert not exclude_finished
+        return iter(self.jobs[:3])
+
+    def jobid(self, job):
+        return 7 + self.jobs.index(job)
 
 
 def test_what_the_snakefile_announces(tmp_path, monkeypatch):
     """Stages are files of rules; jobs are those that make files, with what they need."""
-
-    def rule(name, file, *output):
-        return SimpleNamespace(name=name, snakefile=f"workflow/rules/{file}.smk", output=output)
-
-    rules = [rule("points", "simulate"), rule("simulate", "simulate", "x.nc"), rule("orbits", "stability", "y.nc")]
-    monkeypatch.setattr("snakemake_logger_plugin_study.plan.calibrate", lambda: 3.0 * shipped().calibration)
-    plan = Plan()
-    plan.describe(str(tmp_path), SimpleNamespace(rules=[*rules, rule("all", "Snakefile")], dag=Dag()), STUDY)
+    calibrated = iter([3.0 * SHIPPED["calibration"]])
+    monkeypatch.setattr("snakemake_logger_plugin_study.plan.calibrate", lambda: next(calibrated))
+    study = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
+    dag = Dag()
+    plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), study)
     plan.announce()
-    assert plan.stages == {"simulate": "points", "orbits": "stability"}
-    assert plan.speed == pytest.approx(3.0)
-    assert plan.forecast.jobs == {
-        7: PlannedJob("simulate a=0.05", "simulate", 30000.0),
-        8: PlannedJob("orbits", "orbits", 4.0, needs=frozenset({7})),
-    }
+    assert list(plan.run.jobs.items()) == [
+        (7, Job("orbits", "stability", "orbits", 4.0, needs=frozenset({8}))),
+        (8, Job("simulate a=0.05", "points", "simulate", 30000.0)),
+    ]
+    assert plan.run.wanted == {"simulate", "orbits", "points", "edges"}
+    assert plan.run.durations.speed == pytest.approx(3.0)
     # The second time the machine is known.
-    done = [(number, Job("", 1.0, state=DONE, end=3.0)) for number in (7, 8)]
-    write_past(tmp_path, plan.forecast.jobs, done, cores=2, speed=3.0, begin=1.0)
-    plan.speed = 1.0
-    assert 2.0 < plan.look_ahead().cost(2).seconds < 5.0
-    assert plan.speed == 1.0
+    for job in plan.run.jobs.values():
+        job.state, job.begin, job.end = DONE, 1.0, 3.0
+    write_past(plan.run, begin=1.0)
+    assert 2.0 < plan.look_ahead().forecast(0.0) < 5.0
 
 
-SETTINGS = {
-    **dict.fromkeys(("printshellcmds", "debug_dag", "verbose", "show_failed_logs", "stdout", "dryrun"), False),
-    "nocolor": True,
-    "quiet": None,
-}
+def test_a_defect_of_the_plan_is_only_told(caplog):
+    plan = Plan("results/x", SimpleNamespace(rules=[SimpleNamespace(name="simulate")]), "study")
+    plan.announce()
+    assert plan.run == Run("results/x")
+    assert caplog.messages[0].startswith("the stages of this run, and its time, cannot be told: ")
+
+
+FLAGS = ("printshellcmds", "debug_dag", "verbose", "show_failed_logs", "stdout", "dryrun")
+SETTINGS = {**dict.fromkeys(FLAGS, False), "nocolor": True, "quiet": None}
 
 
 @pytest.fixture
 def written(monkeypatch):
-    """Return a function: records given to a handler with these settings -> what it wrote; no terminal."""
+    """Return a function: records given to a handler with these settings -> the lines that it wrote; no terminal.
 
-    def write(*records, **settings):
-        stream = io.StringIO()
+    results, wanted, planned : of the run that the Snakefile announces, and the number of its jobs
+    """
+
+    def write(*records, results="", wanted=(), planned=2, **settings):
+        stream, settings = io.StringIO(), {**SETTINGS, **settings}
         monkeypatch.setattr(sys, "stderr", stream)
-        settings = {**SETTINGS, **settings}
+        jobs = {number: Job("simulate a=0.0800", "points", "simulate") for number in range(1, planned + 1)}
+        monkeypatch.setattr(plugin, "PLAN", Plan(run=Run(results, jobs, wanted)))
         handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
         # As Snakemake does it.
         handler.addFilter(DefaultFilter(**{name: settings[name] for name in signature(DefaultFilter).parameters}))
@@ -214,80 +149,78 @@ def written(monkeypatch):
         for record in records:
             handler.handle(record)
         handler.close()
-        return stream.getvalue()
+        return stream.getvalue().splitlines()
 
     return write
 
 
-def record(message, event=None, level=logging.INFO, **extra):
-    made = logging.LogRecord("snakemake", level, "", 0, message, (), None)
-    made.__dict__.update({"event": event} if event else {}, **extra)
-    return made
+def record(message, event=None, level=INFO, **extra):
+    return makeLogRecord({"msg": message, "levelno": level, **({"event": event} if event else {}), **extra})
 
 
-JOB = {
-    **{"jobid": 1, "rule_name": "simulate", "rule_msg": "simulate it", "local": False, "input": [], "output": ["x.nc"]},
-    **{"log": [], "benchmark": None, "wildcards": {}, "reason": "", "resources": {}, "priority": 0, "threads": 1},
-    **{"indent": False, "is_checkpoint": False, "shellcmd": "bk simulate"},
-}
-GRAPH = {"nodes": [{"rule": name} for name in ("simulate", "all")]}
-ROUTINE = (
-    record(None, LogEvent.RULEGRAPH, rulegraph={**GRAPH, "links": [{"sourcerule": "simulate", "targetrule": "all"}]}),
+JOB = {"rule_name": "simulate", "input": [], "output": ["x.nc"], "reason": "", "indent": False, "shellcmd": "bk"}
+
+
+def start(number):
+    told = {**JOB, "jobid": number, "rule_msg": "simulate it", "log": ["x.log"]}
+    return record("Rule: simulate", LogEvent.JOB_INFO, **told)
+
+
+def end(number):
+    return record(f"Finished jobid: {number}", LogEvent.JOB_FINISHED, job_id=number)
+
+
+def error(log):
+    extra = {**JOB, "jobid": 1, "rule_msg": None, "log": [log], "conda_env": None, "aux": {}}
+    return record("Error in rule simulate", LogEvent.JOB_ERROR, ERROR, **extra)
+
+
+BEGUN = (
     record("Job stats:", LogEvent.RUN_INFO, stats={"simulate": 2, "all": 1, "total": 3}),
     record("Select jobs to execute..."),
     record("Execute 1 jobs...", LogEvent.JOB_STARTED, jobs=[1]),
-    record("Rule: simulate", LogEvent.JOB_INFO, **JOB),
+    start(1),
     record("Shell command: bk simulate", LogEvent.SHELLCMD, shellcmd="bk simulate"),
-    record("Finished jobid: 1", LogEvent.JOB_FINISHED, job_id=1),
-    record("None", LogEvent.PROGRESS, done=1, total=1),
 )
-START = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "log": ["x.log"], "wildcards": {"a": "0.0800"}})
-
-
-def job_error(log):
-    extra = {**JOB, "log": [log], "conda_env": None, "aux": {}, "rule_msg": None}
-    return record("Error in rule simulate", LogEvent.JOB_ERROR, logging.ERROR, **extra)
-
-
-ERROR = job_error("x.log")
+ROUTINE = (*BEGUN, end(1), record("None", LogEvent.PROGRESS, done=1, total=1))
+FAILURE = error("x.log")
+BEGIN = "2 jobs: points 2; a few seconds left"
 TOLD = f"failed: simulate a=0.0800: {SILENT} (log x.log)"
 
 
 def test_routine_is_replaced_and_all_else_is_written(written):
-    assert written(*ROUTINE) == ""
-    plain = (
-        record("Building DAG of jobs..."),
-        record("careful", level=logging.WARNING),
-        record("RuleException:\nCalledProcessError in file x.smk", level=logging.ERROR),
-        *(START, ERROR, record("the end")),
-    )
-    assert written(*ROUTINE, *plain).splitlines() == ["Building DAG of jobs...", "careful", TOLD, "the end"]
+    assert written(*ROUTINE) == [BEGIN]
+    plain = (record("Building DAG of jobs..."), record("careful", level=WARNING))
+    hidden = record("RuleException:\nCalledProcessError in file x.smk", level=ERROR)
+    said = written(*ROUTINE, *plain, hidden, start(1), FAILURE, record("the end"))
+    assert said == [BEGIN, "Building DAG of jobs...", "careful", TOLD, "the end"]
     # Snakemake 9.22 tells of a failure twice; a job that is tried again may fail again.
-    assert written(*ROUTINE, START, ERROR, ERROR, START, ERROR).splitlines() == [TOLD, TOLD]
+    assert written(*BEGUN, FAILURE, FAILURE, start(1), FAILURE) == [BEGIN, TOLD, TOLD]
 
 
 def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(plugin, "PLAN", Plan("results/x", {"other": "others", "simulate": "points"}))
-    assert written(*ROUTINE[:2], record("the end")) == "the end\n"
-    assert written(*ROUTINE, START, ERROR).splitlines() == [
-        *("2 jobs: points 2", TOLD, "study x: stopped after 0 s: 1 job failed, 1 job did not run", TOLD),
-        *("made: nothing", "the same command goes on where this run stopped"),
-    ]
+    run = {"results": "results/x", "wanted": ["report"]}
+    assert written(*BEGUN[:2], record("the end"), **run) == ["the end"]
+    last = ["study x: stopped after 0 s: 1 job failed, 1 job did not run", TOLD]
+    last += ["made: nothing", "the same command goes on where this run stopped"]
+    assert written(*BEGUN, FAILURE, **run) == [BEGIN, TOLD, *last]
     (tmp_path / "x.nc").touch()
-    other = record("Rule: simulate", LogEvent.JOB_INFO, **{**JOB, "jobid": 2})
-    end = record("Finished jobid: 2", LogEvent.JOB_FINISHED, job_id=2)
-    # `report` comes after the points and does not run: `--until`. With no rule before it that runs it is up to date.
-    for link, told in (("simulate", False), ("orbits", True)):
-        nodes = [{"rule": name} for name in ("simulate", "orbits", "report")]
-        graph = {"nodes": nodes, "links": [{"sourcerule": link, "targetrule": "report"}]}
-        said = written(record(None, LogEvent.RULEGRAPH, rulegraph=graph), *ROUTINE[1:], other, end)
-        assert ("report: results/x/report.html" in said) is told
+    last = ["study x: done in 0 s", "made: x.nc, x.nc", "report: results/x/report.html"]
+    assert written(*ROUTINE, start(2), end(2), **run) == [BEGIN, *last]
     # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
-    for quiet, lines in ((Quietness.PROGRESS, 3), (Quietness.ALL, 0)):
-        assert len(written(*ROUTINE[:5], other, quiet={quiet}).splitlines()) == lines
+    assert written(*BEGUN, start(2), quiet={Quietness.PROGRESS}, **run) == [BEGIN, *last]
+    assert written(*BEGUN, start(2), quiet={Quietness.ALL}, **run) == []
     monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
-    assert "what the run left cannot be told: division by zero" in written(*ROUTINE)
+    assert "what the run left cannot be told: division by zero" in written(*ROUTINE, **run)
+
+
+def test_without_a_plan_snakemake_tells(written):
+    said = written(*ROUTINE, start(1), FAILURE, planned=0, results="results/x")
+    assert {"Job 1: simulate it", "Finished jobid: 1", "Error in rule simulate:"} <= set(said)
+    assert "study x: stopped after 0 s: 1 job failed" in said
+    # As of a job that is not known.
+    assert "Error in rule simulate:" in written(FAILURE)
 
 
 def test_a_reader_that_goes_ends_no_run(monkeypatch):
@@ -302,28 +235,20 @@ def test_a_reader_that_goes_ends_no_run(monkeypatch):
         handler.close()
 
 
-def test_an_unknown_job_that_fails_is_told_of_as_snakemake_does(written):
-    assert "Error in rule simulate:" in written(ERROR).splitlines()
-
-
-def test_settings_of_snakemake_hold(written):
-    said = written(*ROUTINE, printshellcmds=True).splitlines()
-    assert {"Job stats:", "Select jobs to execute...", "Job 1: simulate it", "Finished jobid: 1"} <= set(said)
-    assert "bk simulate" in written(*ROUTINE, printshellcmds=True)
+def test_settings_of_snakemake_hold(written, tmp_path):
+    said = written(*ROUTINE, printshellcmds=True)
+    own = {"Job stats:", "Select jobs to execute...", "Job 1: simulate it", "Finished jobid: 1"}
+    assert {*own, "Shell command: bk simulate"} <= set(said)
     assert "Job stats:" in written(*ROUTINE, dryrun=True)
-    assert written(*ROUTINE, ERROR, quiet={Quietness.ALL}) == ""
-
-
-def test_a_failed_log_is_shown(written, tmp_path):
+    assert written(*ROUTINE, FAILURE, quiet={Quietness.ALL}) == []
     (tmp_path / "x.log").write_text("because\n")
-    assert "because" in written(START, job_error(str(tmp_path / "x.log")), show_failed_logs=True)
+    assert "because" in written(*BEGUN, error(str(tmp_path / "x.log")), show_failed_logs=True)
 
 
 def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
-    monkeypatch.setattr(Tally, "end", lambda *given, **options: 1 / 0)
-    text = written(START, ERROR)
-    assert "ZeroDivisionError" in text
-    assert TOLD in text
+    take = plugin.LogHandler._take
+    monkeypatch.setattr(plugin.LogHandler, "_take", lambda self, got: 1 / 0 if got is FAILURE else take(self, got))
+    assert {"ZeroDivisionError: division by zero", TOLD} <= set(written(*BEGUN, FAILURE))
 
 
 def test_snakemake_says_what_is_reworded():

@@ -87,7 +87,7 @@ if CONFIG_ARGUMENT:
 if OVERRIDES:
     ARGUMENTS += ["--config", *(f"{key}={value}" for key, value in OVERRIDES.items())]
 
-PLAN.describe(RESULTS, workflow, STUDY)
+PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
 
 # Programs that submit jobs tell the studies of a folder apart by it.
 os.environ.update(BK_RESULTS=RESULTS)
