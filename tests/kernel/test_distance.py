@@ -7,9 +7,8 @@ import pytest
 from mpmath import mp
 from scipy.integrate import quad
 
-from burridge_knopoff import simulate
+from burridge_knopoff import InitialState, simulate
 from burridge_knopoff.kernel.distance import _gauss_legendre
-from burridge_knopoff.model.initial import InitialState
 
 
 def test_mean_distance_to_rounding():

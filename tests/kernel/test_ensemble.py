@@ -5,10 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from burridge_knopoff.laws import FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.together import new_ensemble
 from tests.flows import carry, check_events

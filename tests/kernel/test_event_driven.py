@@ -5,8 +5,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import simulate
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff import InitialState, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
 from tests.flows import check_events, listed
 from tests.reference import reference_events
 from tests.scipy_flow import scipy_events

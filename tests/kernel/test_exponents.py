@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
-from burridge_knopoff import simulate
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff import Chain, InitialState, Instant, Model, law_of, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.flows import SYMMETRIC, carry, growth_from, later, wave

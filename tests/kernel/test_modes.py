@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.model.model import CONTACTS, Model
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
 from tests.flows import carry, check_events, directions, wave
 

@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag, expm
 
-from burridge_knopoff.laws import FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import CONTACTS, Instant, Model
+from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.flows import SYMMETRIC, carry, differences, directions

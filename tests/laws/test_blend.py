@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.laws import LAWS, law_of
+from burridge_knopoff import law_of
+from burridge_knopoff.laws import LAWS
 from burridge_knopoff.laws.blend import blend, mirrored
 
 SPEEDS = np.linspace(0.0, 1.5, 7)

@@ -9,10 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.laws import LAWS, FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain, FormulaLaw, Model, law_of
+from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import SERIES_ORDER, new_friction
 from tests.flows import carry, check_events, differences, directions
 from tests.scipy_flow import model_events

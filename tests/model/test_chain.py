@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain, law_of
 
 strength = st.floats(0.1, 5.0)
 

@@ -2,7 +2,8 @@
 
 import pytest
 
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState, initial_state
+from burridge_knopoff import InitialState
+from burridge_knopoff.model.initial import PAPER_STATES, initial_state
 
 
 def test_the_paper_states():

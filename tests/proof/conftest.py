@@ -6,9 +6,7 @@ import mpmath
 import pytest
 from flint import arb
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.proof.balls import arithmetic
 from burridge_knopoff.stability.family import Family
 

@@ -8,10 +8,7 @@ import mpmath
 import pytest
 from flint import arb
 
-from burridge_knopoff import InitialState, simulate
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
 from burridge_knopoff.proof.bounds import check_positive

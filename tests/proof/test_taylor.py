@@ -7,9 +7,7 @@ import pytest
 from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.proof import taylor
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width

@@ -5,13 +5,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Settings, law_of, simulate
 from burridge_knopoff.kernel import events as kernel_events
-from burridge_knopoff.laws import LAWS, FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.laws import LAWS
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study import load_study, read_config

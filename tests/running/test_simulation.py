@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff import simulate
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff import Chain, InitialState, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from tests.flows import SYMMETRIC
 

@@ -1,12 +1,10 @@
-"""The synchronized orbits of both laws, found once, and the same motion from a 40-digit computation."""
+"""The synchronized orbits of both laws, found once, and functions that give the answers they are told."""
 
 from __future__ import annotations
 
 import pytest
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -21,3 +19,20 @@ def families():
 def law(request):
     """The name of each of the paper's laws in turn."""
     return request.param
+
+
+@pytest.fixture
+def tell(monkeypatch):
+    """Return how a function of a module is told its answers, in turn, which returns the list of what it is asked."""
+
+    def told(module, name, answers):
+        asked, left = [], iter(answers)
+
+        def answer(*arguments):
+            asked.append(arguments)
+            return next(left)
+
+        monkeypatch.setattr(module, name, answer)
+        return asked
+
+    return told

@@ -7,9 +7,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, BasinSettings, Refine

@@ -11,8 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, law_of, simulate, transverse_exponent
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability import chains
@@ -24,7 +23,6 @@ from burridge_knopoff.stability.chains import (
     Watch,
     pair_distances,
     symmetrized,
-    transverse_exponent,
     watch_chain,
     watch_state,
 )

@@ -3,16 +3,23 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import (
+    Chain,
+    EdgeKind,
+    Following,
+    InitialState,
+    Instant,
+    Model,
+    OrbitError,
+    Symmetry,
+    closed_motion,
+    find_periodic_orbit,
+    follow,
+    law_of,
+    locate_edges,
+)
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.closed_motion import closed_motion
-from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.edges import locate_edges
-from burridge_knopoff.stability.following import Following, follow
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import find_periodic_orbit
+from burridge_knopoff.stability import following
 from burridge_knopoff.stability.stretch import stretch
 from burridge_knopoff.stability.transition import critical_a, grazing_a, symmetric_flip_a
 
@@ -181,6 +188,25 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
         end = Runner(model).after(start, 3000.0 * beside.period)
         left = np.abs(end.vector() - beside.reference.vector()).max()
         assert (left > 1e-6) == grows
+
+
+@pytest.mark.parametrize("succeeds", [True, False])
+def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds):
+    """Up to 5e-4, and after 200 orbits, or below 1e-9."""
+    lengths = []
+
+    def step(here, length):
+        lengths.append(length)
+        if succeeds:
+            return here
+        raise OrbitError("no step is short enough")
+
+    monkeypatch.setattr(following, "step_along", step)
+    monkeypatch.setattr(following, "come_to_corner", lambda here, length: [])
+    found = follow(synchronized(families, "linearized", 0.08), (0.01, 0.1))
+    assert len(found) == (200 if succeeds else 1)
+    expected = [1e-4, 2e-4, 4e-4, *[5e-4] * 196] if succeeds else [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
+    assert lengths == pytest.approx(expected)
 
 
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():

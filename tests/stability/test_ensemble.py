@@ -3,17 +3,12 @@
 import numpy as np
 import pytest
 
+from burridge_knopoff import Chain, InitialState, Model, MotionSettings, SearchSettings, label_states, law_of
 from burridge_knopoff.kernel.clouds import Clouds
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.labels import label_states
 from burridge_knopoff.stability.sampling import sample_states
-from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 
 SETTINGS = SearchSettings(transient=1000.0, window=1000.0, seed=3, pushes=8)
 

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import InitialState, simulate
+from burridge_knopoff import InitialState, OrbitError, simulate, transverse_multiplier
 from burridge_knopoff.stability import branch
 from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import OrbitError, flow, multipliers, transverse_multiplier
+from burridge_knopoff.stability.orbit import flow, multipliers
 from burridge_knopoff.stability.transition import (
     apart,
     change_point,
