@@ -40,7 +40,6 @@ def test_section_of_other_chains(law, blocks):
 
 
 def test_a_crossing_at_the_seam_of_two_pieces_is_one():
-    """Cut within rounding of where W changes its sign, a run has that crossing once, and there."""
     model = Model(Chain(3), law_of("linearized", 0.1))
     generator = np.random.default_rng(1)
 

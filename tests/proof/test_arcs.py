@@ -59,10 +59,10 @@ def test_a_small_difference_goes_as_that_of_two_motions(slips):
 
 def test_an_event_takes_the_velocity_away_only_where_a_block_stops():
     state, _ = state_of((True, True))
-    stopped = Arc((True, True), CENTER, Linearized()).last(state)
-    assert stopped == State(state.position, (state.velocity[0], -1), state.difference)
-    stopped = Arc((True, True), LATERAL, Linearized()).last(state)
-    assert stopped == State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
+    center = State(state.position, (state.velocity[0], -1), state.difference)
+    lateral = State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
+    assert Arc((True, True), CENTER, Linearized()).last(state) == center
+    assert Arc((True, True), LATERAL, Linearized()).last(state) == lateral
     assert Arc((True, False), CENTER, Linearized()).last(state) is state
 
 

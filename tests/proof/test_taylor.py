@@ -31,14 +31,8 @@ def law():
 
 
 def state_of(slips):
-    numbers = [
-        "0.3",
-        "-0.7",
-        "0.4" if slips[0] else "-1",
-        "1.1" if slips[1] else "-1",
-        "0.9",
-        "0.2" if slips[0] else "0",
-    ]
+    lateral, center = slips
+    numbers = ["0.3", "-0.7", "0.4" if lateral else "-1", "1.1" if center else "-1", "0.9", "0.2" if lateral else "0"]
     with arithmetic():
         x, y, p, q, d, e = map(arb, numbers)
         return State((x, y), (p, q), (d, e)), [mpf(number) for number in numbers]
@@ -140,18 +134,18 @@ def test_as_v_falls_to_0_the_law_is_the_linearized_one():
 
 
 @pytest.mark.parametrize(
-    ("state", "time", "message"),
+    ("speed", "time", "message"),
     [
-        (State((arb(0), arb(0)), (arb(0, 1000), arb(0))), arb(1), "1 \\+ aU' = .*: not allowed: above 0"),
-        (State((arb(0), arb(0)), (arb("nan"), arb(0))), arb(1), "not allowed|no box"),
-        (State((arb(0), arb(0)), (arb(0), arb(0))), arb(1000), "time .*: not allowed: from 0 to 100"),
-        (State((arb(0), arb(0)), (arb(0), arb(0))), arb("nan"), "time nan: not allowed: from 0 to 100"),
-        (State((arb(0), arb(0)), (arb(0), arb(0))), arb(-1), "time -1.*: not allowed: from 0 to 100"),
+        (arb(0, 1000), arb(1), "1 \\+ aU' = .*: not allowed: above 0"),
+        (arb("nan"), arb(1), "not allowed|no box"),
+        (arb(0), arb(1000), "time .*: not allowed: from 0 to 100"),
+        (arb(0), arb("nan"), "time nan: not allowed: from 0 to 100"),
+        (arb(0), arb(-1), "time -1.*: not allowed: from 0 to 100"),
     ],
 )
-def test_what_has_no_bound_is_refused(state, time, message):
+def test_what_has_no_bound_is_refused(speed, time, message):
     with pytest.raises(ProofError, match=message):
-        law().path((True, True), state, arb(A))(time)
+        law().path((True, True), State((arb(0), arb(0)), (speed, arb(0))), arb(A))(time)
 
 
 def test_a_step_that_no_box_holds_is_refused(monkeypatch):

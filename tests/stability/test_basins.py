@@ -9,6 +9,7 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, BasinSettings, Refine
@@ -64,8 +65,7 @@ def test_pixels_are_what_whole_runs_end_in(known):
 
 
 def test_runs_of_the_paper_end_on_the_branch_that_is_told(known):
-    """`initial_branch` under every convention against the mean distance of the run itself."""
-    for contact, start, initial in product(("one_sided", "symmetric"), ("moving", "tested"), ("minus", "plus")):
+    for contact, start, initial in product(CONTACTS, STARTS, PAPER_STATES):
         branch = known["initial_branch"].sel(law="linearized", a=0.08, contact=contact, start=start, initial=initial)
         check_run(known, initial, branch, contact=contact, start=start)
 

@@ -15,7 +15,6 @@ A = 0.06
 
 @pytest.fixture(scope="module")
 def models():
-    """The paper's laws."""
     return [Model(Chain(3), law_of(law, A)) for law in ("linearized", "nonlinear")]
 
 
