@@ -69,13 +69,12 @@ def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
     assert kept(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
 
 
-@pytest.mark.parametrize("change", ["source", "numpy"])
-def test_other_code_is_another_call(tmp_path, monkeypatch, change):
+@pytest.mark.parametrize(
+    ("place", "name", "other"), [(module, "source_fingerprint", lambda name: "another"), (np, "__version__", "0.1")]
+)
+def test_other_code_is_another_call(tmp_path, monkeypatch, place, name, other):
     kept(tmp_path, first, 1)
-    if change == "source":
-        monkeypatch.setattr(module, "source_fingerprint", lambda name: "another")
-    else:
-        monkeypatch.setattr(np, "__version__", "0.1")
+    monkeypatch.setattr(place, name, other)
     assert not kept(tmp_path, first, 1)[2]
 
 
