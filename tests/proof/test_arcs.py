@@ -10,26 +10,22 @@ from mpmath import mp, mpf
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import arithmetic
 from burridge_knopoff.proof.closed import Linearized, oscillation
-from tests.proof.conftest import holds
+from tests.proof.conftest import SLIPS, holds, state_of
 from tests.proof.exact import force, matrix
 
-SLIPS = [(False, False), (False, True), (True, False), (True, True)]
 
-
-def state_of(slips):
-    """Return a state with these blocks slipping, in balls, and the same as x, x', 1 of three blocks."""
-    x, y, p, q = "0.3", "-0.7", "0.4", "1.1"
-    rates = [p if slips[0] else -1, q if slips[1] else -1]
-    difference = (arb("0.9"), arb("0.2") if slips[0] else 0)
-    state = State((arb(x), arb(y)), (arb(rates[0]), arb(rates[1])), difference)
-    return state, mp.matrix([x, y, x, rates[0], rates[1], rates[0], 1])
+def three_blocks(numbers):
+    """Return x, x', 1 of three blocks."""
+    x, y, p, q, *_ = numbers
+    return mp.matrix([x, y, x, p, q, p, 1])
 
 
 @pytest.mark.parametrize("slips", SLIPS)
 @pytest.mark.parametrize(("a", "time"), [("0.08", "0.4"), ("0.3", "5.1")])
 def test_an_arc_is_the_matrix_exponential(slips, a, time):
     with mpmath.workdps(55), arithmetic():
-        state, exact = state_of(slips)
+        state, numbers = state_of(slips)
+        exact = three_blocks(numbers)
         arc = Arc(slips, LATERAL, Linearized())
         end = arc.after(state, arb(a), arb(time))
         three = (slips[0], slips[1], slips[0])
@@ -46,7 +42,8 @@ def test_an_arc_is_the_matrix_exponential(slips, a, time):
 def test_a_small_difference_goes_as_that_of_two_motions(slips):
     """The equations are linear: any difference of blocks 1 and 3 obeys the same matrix."""
     with mpmath.workdps(55), arithmetic():
-        state, exact = state_of(slips)
+        state, numbers = state_of(slips)
+        exact = three_blocks(numbers)
         end = Arc(slips, LATERAL, Linearized()).after(state, arb("0.1"), arb("1.7"))
         apart = exact.copy()
         apart[0], apart[2] = exact[0] + mpf("0.45"), exact[2] - mpf("0.45")

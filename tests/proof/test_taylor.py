@@ -19,23 +19,14 @@ from burridge_knopoff.proof.taylor import Nonlinear
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import multipliers
 from burridge_knopoff.stability.transition import critical_a
-from tests.proof.conftest import holds
+from tests.proof.conftest import SLIPS, changed, holds, state_of
 
 V, A = "0.1", "0.09"
-SLIPS = [(False, False), (False, True), (True, False), (True, True)]
 
 
 def law():
     with arithmetic():
         return Nonlinear(arb(V))
-
-
-def state_of(slips):
-    lateral, center = slips
-    numbers = ["0.3", "-0.7", "0.4" if lateral else "-1", "1.1" if center else "-1", "0.9", "0.2" if lateral else "0"]
-    with arithmetic():
-        x, y, p, q, d, e = map(arb, numbers)
-        return State((x, y), (p, q), (d, e)), [mpf(number) for number in numbers]
 
 
 def motion(slips, a=A):
@@ -200,13 +191,10 @@ def test_it_is_that_of_an_integration_of_25_digits(found):
 
 
 def test_a_wrong_arc_is_not_certified(found):
-    orbit = found.orbit
-    times = [time + (arb("0.1") if k == 3 else 0) for k, time in enumerate(orbit.times)]
-    inner = (*orbit.enclosure.inner[:PLACES], *times)
-    wrong = type(orbit)(orbit.arcs, orbit.a, type(orbit.enclosure)(inner, inner))
+    wrong = changed(found.orbit, 3, arb("0.1"))
     with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to go on"):
         wrong.check_arcs()
-    assert len(followed(wrong.arcs, [*inner, wrong.a])[0]) == 5
+    assert len(followed(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 
 
 def test_a_ball_of_a_that_is_too_wide_is_refused(family):

@@ -5,26 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import (
-    Chain,
-    FormulaLaw,
-    InitialState,
-    Instant,
-    Model,
-    MotionKind,
-    MotionSettings,
-    SearchSettings,
-    Settings,
-    Symmetry,
-    find_attractors,
-    law_of,
-    simulate,
-)
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Settings, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.attractors import Search
+from burridge_knopoff.stability.attractors import Search, find_attractors
 from burridge_knopoff.stability.labels import label
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states, sampled_states
-from burridge_knopoff.stability.settings import MOTION, SEARCH
+from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import lies_on, measure, visit
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry

@@ -15,17 +15,7 @@ from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, la
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability import chains
-from burridge_knopoff.stability.chains import (
-    INTERVAL,
-    Fate,
-    Outcome,
-    Sample,
-    Watch,
-    pair_distances,
-    symmetrized,
-    watch_chain,
-    watch_state,
-)
+from burridge_knopoff.stability.chains import INTERVAL, Fate, Outcome, Sample, Watch, symmetrized, watch_state
 
 APART = Outcome.NOT_SYNCHRONIZED
 V = 0.1
@@ -174,7 +164,7 @@ def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
 
 def test_symmetrized_and_pair_distances():
     state = Instant(np.array([1.0, 5.0, 4.0]), np.array([0.0, 1.0, 3.0]), np.array([True, False, False]))
-    assert pair_distances(state).tolist() == [math.hypot(3.0, 3.0)]
+    assert chains.pair_distances(state).tolist() == [math.hypot(3.0, 3.0)]
     symmetric = symmetrized(state)
     assert symmetric.position.tolist() == [2.5, 5.0, 2.5]
     assert symmetric.velocity.tolist() == [0.0, 1.0, 0.0]
@@ -248,7 +238,7 @@ def test_the_error_is_the_scatter_of_the_batches():
 
 def test_a_watched_chain_is_its_states_one_by_one():
     watch = Watch(time_limit=600.0)
-    results = watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
+    results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
     for (i, law), (j, a) in product(enumerate(("linearized", "nonlinear")), enumerate((0.05, 0.2))):
         chain = model(3, a, law)
         fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial(3)]
@@ -271,7 +261,7 @@ def test_a_chain_without_mirror_blocks_is_refused():
     for call in (
         lambda: transverse_exponent(chain, state, 10.0, 10.0),
         lambda: watch_state(Runner(chain), state),
-        lambda: watch_chain([chain], [0.05]),
+        lambda: chains.watch_chain([chain], [0.05]),
     ):
         with pytest.raises(ValueError, match=r"^chain: .*mirror"):
             call()

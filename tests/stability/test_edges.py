@@ -3,23 +3,13 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import (
-    Chain,
-    EdgeKind,
-    Following,
-    InitialState,
-    Instant,
-    Model,
-    OrbitError,
-    Symmetry,
-    closed_motion,
-    find_periodic_orbit,
-    follow,
-    law_of,
-    locate_edges,
-)
+from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability import following
+from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.stability.edges import locate_edges
+from burridge_knopoff.stability.following import Following, follow
+from burridge_knopoff.stability.periodic import find_periodic_orbit
 from burridge_knopoff.stability.stretch import stretch
 from burridge_knopoff.stability.transition import critical_a, grazing_a, symmetric_flip_a
 

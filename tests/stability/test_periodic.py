@@ -3,21 +3,12 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import (
-    Chain,
-    InitialState,
-    Instant,
-    Model,
-    OrbitError,
-    Symmetry,
-    closed_motion,
-    find_periodic_orbit,
-    law_of,
-    multipliers,
-)
+from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.branch import branch_orbit
+from burridge_knopoff.stability.floquet import multipliers
 from burridge_knopoff.stability.orbit import multipliers as synchronized_multipliers
+from burridge_knopoff.stability.periodic import find_periodic_orbit
 from burridge_knopoff.stability.return_map import ReturnMap, directions
 from burridge_knopoff.stability.simpler import simplest
 from burridge_knopoff.stability.transition import critical_a

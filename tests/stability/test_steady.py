@@ -9,17 +9,7 @@ from burridge_knopoff import Chain, Model, MotionKind, Settings, law_of, simulat
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
 from burridge_knopoff.stability.settings import MOTION
-from burridge_knopoff.stability.steady import (
-    Returns,
-    distance,
-    instant_of,
-    is_near,
-    least_distance,
-    lies_on,
-    measure,
-    orbit_length,
-    visit,
-)
+from burridge_knopoff.stability.steady import Returns, instant_of, lies_on, measure, visit
 from tests.stability.stand_in import stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
@@ -124,8 +114,8 @@ def test_the_length_of_an_orbit(length, longest, expected):
     """Of forty returns the first third is left out, and what is left, 27, shows twice what is at most 13 long."""
     orbit = np.tile(ROWS[:length], (40, 1))[:40]
     orbit[:13] += 0.5
-    assert orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
-    assert orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
+    assert steady.orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
+    assert steady.orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
 
 
 def test_a_bound_changes_no_distance_within_it():
@@ -133,13 +123,13 @@ def test_a_bound_changes_no_distance_within_it():
     generator = np.random.default_rng(8)
     for size in (9, 20, 21, 200):
         first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))
-        least, far = least_distance(first, second), distance(first, second)
+        least, far = steady.least_distance(first, second), steady.distance(first, second)
         assert far == pytest.approx(np.quantile(nearest(first, second, 0), 0.95), rel=1e-12)
         assert least == nearest(first, second, 0).min()
-        assert least_distance(first, second, least) == least
-        assert least_distance(first, second, 0.999 * least) == np.inf
+        assert steady.least_distance(first, second, least) == least
+        assert steady.least_distance(first, second, 0.999 * least) == np.inf
         for limit in (0.5 * far, 0.9999 * far, far, 1.0001 * far, 2.0 * far):
-            assert is_near(first, second, limit) == (far <= limit)
+            assert steady.is_near(first, second, limit) == (far <= limit)
 
 
 @pytest.mark.parametrize(
