@@ -49,7 +49,6 @@ def check_against_scalar(model, ensemble, count, end, start=None):
 
 @pytest.mark.parametrize("contact", CONTACTS)
 @pytest.mark.parametrize("blocks", [2, 3, 5, 8])
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.3])
 def test_events_of_random_states(law, blocks, contact, a):
     model = Model(Chain(blocks), law_of(law, a), 0.1, contact)

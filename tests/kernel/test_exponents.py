@@ -55,7 +55,6 @@ def test_two_trajectories_side_by_side(law, initial, a):
     assert error < 0.15 * expected
 
 
-@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("blocks", [2, 3, 5])
 @pytest.mark.parametrize("transient", [0.0, 500.0])
 def test_uniform_sliding(law, blocks, transient):
@@ -163,7 +162,6 @@ def test_the_first_ones_do_not_depend_on_how_many_are_computed(law, initial, a):
     assert len({run.mean_distance for run in runs}) == 1
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_mirror_image(law):
     mirror = InitialState("mirror", PLUS.position[::-1], PLUS.velocity[::-1])
     run, other = (simulate(law, 0.08, initial, events="none") for initial in (PLUS, mirror))
@@ -171,7 +169,6 @@ def test_mirror_image(law):
     assert np.abs(run.lyapunov_exponent - other.lyapunov_exponent).max() < 3e-4
 
 
-@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("blocks", [2, 5])
 def test_shorter_and_longer_chains(law, blocks):
     """One zero exponent at least, none above it in regular motion, and 2N in all."""
@@ -185,7 +182,6 @@ def test_shorter_and_longer_chains(law, blocks):
 
 @pytest.mark.parametrize("window", [1e-3, 0.5, 3.0])
 @pytest.mark.parametrize("transient", [0.0, 100.0])
-@pytest.mark.parametrize("law", LAWS)
 def test_windows_too_short_for_batches(law, transient, window):
     """No errors where a batch has seen no orthonormalisation; what there is is the growth of a real vector."""
     run = simulate(law, 0.2, "plus", transient=transient, window=window, lyapunov_exponents=6)

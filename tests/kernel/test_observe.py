@@ -29,7 +29,6 @@ def check_crossings(run):
 
 
 @pytest.mark.parametrize("blocks", [2, 4, 7, 8, 16])
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_section_of_other_chains(law, blocks):
     """W is looked for in a lane behind those of the blocks, which may be the first of a vector of its own."""
     run = dense(law, 0.2, wave(blocks))

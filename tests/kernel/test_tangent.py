@@ -28,9 +28,6 @@ def spring_force(model, position):
     return float(model.law(model.v)) - model.chain.stiffness @ position
 
 
-# Pieces without events.
-
-
 def near_sliding(blocks, amplitude):
     wave = amplitude * np.sin(1.0 + 2.0 * np.arange(2 * blocks))
     return wave[:blocks], 0.1 + wave[blocks:]
@@ -108,9 +105,6 @@ def test_linearized_pieces_against_the_matrix_exponential(solver, stuck, end, am
     assert np.abs(without_events(model, start, end, solver) - expected).max() < 1e-12 * np.abs(expected).max()
 
 
-# Finite differences through events.
-
-
 def check_against_differences(model, start, end):
     """Compare where the differences have converged; return the events, None where they have not.
 
@@ -159,7 +153,6 @@ def turns(model, start, events):
     return signs
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_every_kind_of_event_is_met(law):
     """Turning round forward and backward, and neighbours that are stuck together, each several times."""
     met = {1: 0, -1: 0, "stuck": 0, "start": 0}
@@ -181,7 +174,6 @@ def test_every_kind_of_event_is_met(law):
     raise AssertionError(f"too few: {met}")
 
 
-@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_mirror_blocks_that_stop_and_start_together(law, contact):
     """The flow is smooth there although perturbed runs have the events in either order."""
@@ -191,9 +183,6 @@ def test_mirror_blocks_that_stop_and_start_together(law, contact):
     stops = [time for time, block, kind in events if kind == 0 and block != 2]
     assert len(stops) >= 4
     assert stops[::2] == stops[1::2]
-
-
-# What the map must do by itself.
 
 
 def rate(model, state):
@@ -240,7 +229,6 @@ def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v):
     assert starts > 20
 
 
-@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 6])
 def test_each_vector_goes_its_way_alone(law, count):
     """The same bits for the first vectors, however many are carried."""
@@ -251,7 +239,6 @@ def test_each_vector_goes_its_way_alone(law, count):
     assert (some == tangent_map(model, start, 30.0)[:, :count]).all()
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_perturbations_change_nothing_of_the_run(law):
     model = Model(Chain(3), law_of(law, 0.2))
     start = model.begin(PAPER_STATES["plus"])
@@ -261,7 +248,6 @@ def test_perturbations_change_nothing_of_the_run(law):
     assert one.kernel.steps == other.kernel.steps
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
     """A block that starts at τ = 0 does not turn round from a stop of the run before."""
     model = Model(Chain(2), law_of(law, 0.1))

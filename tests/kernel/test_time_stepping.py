@@ -6,7 +6,6 @@ import pytest
 from burridge_knopoff import InitialState, simulate
 from tests.flows import check_events, listed
 
-pytestmark = pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 OPTIONS = {"transient": 0.0, "batches": 2, "events": "all"}
 
 

@@ -1,7 +1,5 @@
 """The orbits of the linearized law in double precision, from which the proofs begin, and states of arcs."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import mpmath

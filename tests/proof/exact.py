@@ -1,7 +1,5 @@
 """The synchronized orbit at 50 digits by other means: all three blocks, matrix exponentials, Newton's method."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import mpmath

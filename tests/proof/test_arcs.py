@@ -1,7 +1,5 @@
 """The closed forms of the arcs against matrix exponentials of all three blocks at 50 digits."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from flint import arb, arb_series

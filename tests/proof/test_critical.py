@@ -1,7 +1,5 @@
 """The loss of synchrony, proved: a_c against the double code and 50 digits, and the family of orbits on both sides."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Krawczyk's operator on systems whose solutions are known."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

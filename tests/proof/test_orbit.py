@@ -1,7 +1,5 @@
 """Proved orbits against the double code and 50-digit arithmetic; what must not be proved is refused."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from dataclasses import replace
 

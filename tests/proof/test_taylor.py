@@ -1,7 +1,5 @@
 """Arcs of the nonlinear law: Taylor steps with a remainder against mpmath, and boxes that hold no motion."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from flint import arb, arb_series, fmpq

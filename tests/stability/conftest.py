@@ -1,7 +1,5 @@
 """The synchronized orbits of both laws, found once, and functions that give the answers they are told."""
 
-from __future__ import annotations
-
 import pytest
 
 from burridge_knopoff import Chain, Model, law_of
@@ -13,12 +11,6 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 def families():
     """{law: Family} of the paper's laws at v = 0.1."""
     return {law: Family(Model(Chain(3), law_of(law, 0.0))) for law in PAPER_LAWS}
-
-
-@pytest.fixture(params=PAPER_LAWS)
-def law(request):
-    """The name of each of the paper's laws in turn."""
-    return request.param
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """Attractors of which only what is told is set."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Mirror synchrony of chains: closed form and variational equations for two blocks, symmetries, whole runs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import astuple, fields
 from itertools import product

@@ -13,8 +13,8 @@ from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
-#: So that all times are told in transients and windows.
-SETTINGS = SearchSettings(transient=1.0, window=1.0)
+#: So that times tell of how many transients, or windows, they are.
+SETTINGS = SearchSettings(transient=1.0, window=100.0)
 CLOSED, WIDE = 1e-7, 0.01
 ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.0, 0.0, 0.1, 0.1]])
 
@@ -39,7 +39,7 @@ def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, wind
     answers = [None if drift is None else Returns(ONE, mirror, spacing, drift) for drift in drifts]
     asked = tell(attractors, "visit", answers)
     assert (Search(MODEL, SETTINGS)._settle(instant_of(ONE[0])) is not None) == found
-    assert [arguments[2:4] for arguments in asked] == list(zip(transients, windows, strict=True))
+    assert [arguments[2:4] for arguments in asked] == [(x, 100 * y) for x, y in zip(transients, windows, strict=True)]
 
 
 @pytest.fixture
@@ -82,7 +82,7 @@ def test_a_motion_is_added_with_its_mirror_image(add):
     pair, asked = add([motion()], None, [0.02])
     assert [(item.symmetry, item.partner, item.radius) for item in pair] == [(ASYMMETRIC, k, 0.02) for k in (1, 0)]
     assert [item.motion.returns.tolist() for item in pair] == [ONE.tolist(), OTHER.tolist()]
-    assert asked == [("measure", 1, 1), ("captured", 0, TUNING.smallest_radius)]
+    assert asked == [("measure", 1, 100), ("captured", 0, TUNING.smallest_radius)]
     # Within the resolution of its mirror image it is its own.
     (own,), _ = add([motion()], None, [0.02], mirror=ONE + 9e-4)
     assert (own.symmetry, own.partner) == (SYMMETRIC, 0)
@@ -99,7 +99,7 @@ def test_chaos_has_to_last(add):
     closed, open_still = (Returns(OTHER, ONE, spacing, 0.0) for spacing in (CLOSED, WIDE))
     (first, _), asked = add([chaos], open_still, [0.02], spacing=WIDE)
     assert first.motion is chaos
-    assert asked == [("measure", 1, 4), ("visit", 33, 1), ("captured", 0, TUNING.smallest_radius)]
+    assert asked == [("measure", 1, 400), ("visit", 33, 100), ("captured", 0, TUNING.smallest_radius)]
     (first, _), _ = add([chaos, orbit], closed, [0.02], spacing=WIDE)
     assert first.motion is orbit
     assert add([chaos], None, [], spacing=WIDE)[0] == []
@@ -208,5 +208,5 @@ def test_what_surrounds_an_orbit_is_seen_from_a_push(tell, kind, later, in_chaos
     assert Search(MODEL, SETTINGS)._lies_in_chaos(Returns(ONE, OTHER, CLOSED, 0.0)) == in_chaos
     ((_, start, *times, _),) = (arguments[:5] for arguments in measured)
     assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
-    assert times == [TUNING.slow_time, TUNING.filling]
-    assert [arguments[2:4] for arguments in visited] == [(TUNING.lasting, 1)] * (kind == MotionKind.CHAOTIC)
+    assert times == [TUNING.slow_time, 100 * TUNING.filling]
+    assert [arguments[2:4] for arguments in visited] == [(TUNING.lasting, 100)] * (kind == MotionKind.CHAOTIC)
