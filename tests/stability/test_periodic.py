@@ -112,9 +112,6 @@ def test_an_orbit_gone_round_twice_is_told(orbits):
     found = simplest(twice, 1e-9)
     assert (found.symmetry, found.signature) == (SYMMETRIC, half.signature)
     assert simplest(half, 1e-9) is half
-
-
-def test_blocks_that_move_as_one_twice_in_a_period(orbits):
     known = orbits["synchronized"]
     twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
     assert twice.signature == (2, 2, 2)
