@@ -1,14 +1,15 @@
 """Lyapunov exponents against closed forms, determinants, two trajectories side by side, and what they must be."""
 
+from itertools import product
+
 import numpy as np
 import pytest
-from scipy.optimize import approx_fprime
 
-from burridge_knopoff import Chain, InitialState, Instant, Model, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Instant, Model, law_of, simulate, synchronized_orbit
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.status import Status
 from tests.flows import SYMMETRIC, carry, growth_from, later, wave
+from tests.stability.exact import exact_transverse_multiplier
 
 LAWS = ("linearized", "nonlinear")
 PLUS = PAPER_STATES["plus"]
@@ -71,53 +72,19 @@ def test_uniform_sliding(law, blocks, transient):
     assert run.lyapunov_infinite_count == 0
 
 
-def symmetric_period(law, a):
-    """Return the model, the state just after blocks 1 and 3 have stopped together, the period and their slip time."""
-    model = Model(Chain(3), law_of(law, a))
-    runner = Runner(model, keep_events=True)
-    runner.begin(model.begin(SYMMETRIC))
-    runner.run(2000.0)
-    assert runner.run(2100.0, halting_block=0) == Status.HALTED
-    after, first = runner.instant(), runner.clock
-    assert runner.run(2100.0, halting_block=0) == Status.HALTED
-    time, block, kind = runner.events()
-    return model, after, runner.clock - first, runner.clock - time[(block == 0) & (kind == 1)][-1]
-
-
-def check_transverse(model, expected):
-    run = simulate(model.law, model.a, SYMMETRIC, window=20000.0, transient=2000.0, events="none")
+@pytest.mark.parametrize(
+    ("law", "a"), [*product(["linearized"], (0.05, 0.08, 0.1, 0.15)), *product(["nonlinear"], (0.08, 0.12))]
+)
+def test_transverse_exponent_of_synchrony(law, a):
+    """That of a difference of blocks 1 and 3, whose multiplier over a period is known from 40-digit arithmetic."""
+    orbit = synchronized_orbit(Model(Chain(3), law_of(law, a)))
+    transverse = np.log(abs(exact_transverse_multiplier(orbit))) / orbit.period
+    run = simulate(law, a, SYMMETRIC, window=20000.0, transient=2000.0, events="none")
     assert run.distance.max() == 0.0
     # Two exponents are known, in the order of their size: that of the flow itself, 0, and the transverse one.
-    for known in (0.0, expected):
+    for known in (0.0, transverse):
         assert np.abs(run.lyapunov_exponent - known).min() < 2e-4
-    assert (expected > 0.0) == (run.lyapunov_exponent[0] > 1e-3)
-
-
-@pytest.mark.parametrize("a", [0.05, 0.08, 0.1, 0.15])
-def test_transverse_exponent_of_synchrony_in_closed_form(a):
-    """Blocks 1 and 3 against each other: 2 is the stiffness of that mode, and every stop takes its velocity away.
-
-    Over a slip of length T a difference in position is multiplied by exp(aT/2)(cos ωT − a/(2ω) sin ωT), ω² = 2 − a²/4.
-    """
-    model, _, period, slip = symmetric_period("linearized", a)
-    omega = np.sqrt(2.0 - a * a / 4.0)
-    multiplier = np.exp(a * slip / 2) * (np.cos(omega * slip) - a / (2 * omega) * np.sin(omega * slip))
-    check_transverse(model, np.log(abs(multiplier)) / period)
-
-
-@pytest.mark.parametrize("a", [0.08, 0.12])
-def test_transverse_exponent_of_synchrony_from_the_flow(a):
-    """The nonlinear law: the multiplier is the slope of the difference after a period over that before."""
-    model, start, period, _ = symmetric_period("nonlinear", a)
-
-    def difference(shift):
-        position = start.position + np.array([0.5, 0.0, -0.5]) * shift[0]
-        state = later(model, Instant(position, start.velocity, start.stuck), period + 0.5)
-        return state.position[0] - state.position[2]
-
-    # From 0.5 after one stop to 0.5 after the next all of the difference is in the positions: both blocks are stuck.
-    multiplier = approx_fprime([0.0], difference, 1e-7)[0]
-    check_transverse(model, np.log(abs(multiplier)) / period)
+    assert (transverse > 0.0) == (run.lyapunov_exponent[0] > 1e-3)
 
 
 @pytest.mark.parametrize(
