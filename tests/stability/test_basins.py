@@ -37,12 +37,16 @@ def whole(known, tiles, threads, model=MODEL):
     return basins.merge([(model, parts, near)], ["linearized", "other"], basin_settings, SEARCH.time_limit, "moving")
 
 
-def test_any_number_of_threads_and_tiles_gives_the_same_labels(known):
-    first = whole(known, 1, 1)
+@pytest.fixture(scope="module")
+def found(known):
+    return whole(known, 1, 1)
+
+
+def test_any_number_of_threads_and_tiles_gives_the_same_labels(known, found):
     for tiles, threads in ((3, 1), (1, 3), (5, 2)):
-        assert first.identical(whole(known, tiles, threads)), (tiles, threads)
-    assert first["undetermined_count"].item() == 0
-    assert len(np.unique(first["branch"])) >= 2
+        assert found.identical(whole(known, tiles, threads)), (tiles, threads)
+    assert found["undetermined_count"].item() == 0
+    assert len(np.unique(found["branch"])) >= 2
 
 
 def check_run(known, state, branch, **conventions):
@@ -54,9 +58,8 @@ def check_run(known, state, branch, **conventions):
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
 
 
-def test_pixels_are_what_whole_runs_end_in(known):
+def test_pixels_are_what_whole_runs_end_in(known, found):
     """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
-    found = whole(known, 1, 1)
     for k in range(0, 16, 3):
         for m in (k, (5 * k + 2) % 16):
             one = found.isel(map=0, first_position=m, last_position=k)
