@@ -36,6 +36,12 @@ def repository() -> Path:
     return Path(__file__).parent.parent
 
 
+@pytest.fixture(params=["linearized", "nonlinear"])
+def law(request: pytest.FixtureRequest) -> str:
+    """The name of each of the paper's laws in turn."""
+    return request.param
+
+
 def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
     """Return a folder that `make` has filled, once for all workers: whichever comes first, while the others wait."""
     base = tmp_path_factory.getbasetemp()

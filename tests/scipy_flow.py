@@ -5,8 +5,6 @@ with d = ±1, the direction of slip. Stiffness K, static friction θ and Φ are 
 Event times are good to about 1e-9 over a short horizon; a dip shorter than SPACING is not seen.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import brentq

@@ -3,8 +3,6 @@
 `python -m tests.kernel.stubs`, in the root of the checkout, writes them anew beside the sources.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

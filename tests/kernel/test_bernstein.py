@@ -24,13 +24,6 @@ def polynomial(coefficients):
 
 def at(c, t):
     return sum(x * t ** k for k, x in enumerate(c))
-
-def product(one, other):
-    c = [Fraction(0)] * (len(one) + len(other) - 1)
-    for i, x in enumerate(one):
-        for k, y in enumerate(other):
-            c[i + k] += x * y
-    return c
 """
 
 ROOTS = """
@@ -41,12 +34,12 @@ for trial in range(600):
                   for _ in range(random.randint(0, 4)))
     c = [Fraction(1)]
     for root in real:
-        c = product(c, [-root, Fraction(1)])
+        c = np.convolve(c, [-root, Fraction(1)])
     for _ in range(random.randint(0, 5)):
         centre = Fraction(random.randint(-2 ** 10, 2 ** 11), 2 ** 10)
         # Complex pairs as close to the axis as 1e-6: near touches that must not be taken for roots.
         height = Fraction(1, random.choice([1, 10, 1000, 10 ** 6]))
-        c = product(c, [centre ** 2 + height ** 2, -2 * centre, Fraction(1)])
+        c = np.convolve(c, [centre ** 2 + height ** 2, -2 * centre, Fraction(1)])
     scale = max(map(abs, c)) * (-1 if c[0] < 0 else 1)
     c = [x / scale for x in c]
     found = polynomial(c).first_root(1.0)

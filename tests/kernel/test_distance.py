@@ -7,9 +7,8 @@ import pytest
 from mpmath import mp
 from scipy.integrate import quad
 
-from burridge_knopoff import simulate
+from burridge_knopoff import InitialState, simulate
 from burridge_knopoff.kernel.distance import _gauss_legendre
-from burridge_knopoff.model.initial import InitialState
 
 
 def test_mean_distance_to_rounding():
@@ -53,7 +52,7 @@ def test_mean_distance_has_a_closed_form_before_any_event():
 
 
 def test_the_quadrature_rule_is_numpys():
-    """Nodes and weights against NumPy's, and exactness for the highest degree that the rule integrates."""
+    """And exact for the highest degree that it integrates."""
     x, w, last, previous = (values.astype(float) for values in _gauss_legendre(16))
     node, weight = np.polynomial.legendre.leggauss(16)
     assert np.allclose(x, node, rtol=0, atol=3e-16)

@@ -29,7 +29,6 @@ def check_crossings(run):
 
 
 @pytest.mark.parametrize("blocks", [2, 4, 7, 8, 16])
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_section_of_other_chains(law, blocks):
     """W is looked for in a lane behind those of the blocks, which may be the first of a vector of its own."""
     run = dense(law, 0.2, wave(blocks))
@@ -40,7 +39,6 @@ def test_section_of_other_chains(law, blocks):
 
 
 def test_a_crossing_at_the_seam_of_two_pieces_is_one():
-    """Cut within rounding of where W changes its sign, a run has that crossing once, and there."""
     model = Model(Chain(3), law_of("linearized", 0.1))
     generator = np.random.default_rng(1)
 

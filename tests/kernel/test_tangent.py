@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag, expm
 
-from burridge_knopoff.laws import FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import CONTACTS, Instant, Model
+from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.flows import SYMMETRIC, carry, differences, directions
@@ -29,12 +28,16 @@ def spring_force(model, position):
     return float(model.law(model.v)) - model.chain.stiffness @ position
 
 
-# Pieces without events.
-
-
 def near_sliding(blocks, amplitude):
     wave = amplitude * np.sin(1.0 + 2.0 * np.arange(2 * blocks))
     return wave[:blocks], 0.1 + wave[blocks:]
+
+
+def without_events(model, start, end, solver="series"):
+    """Return the tangent map of a piece."""
+    runner, events = carry(model, start, end, directions(start), solver)
+    assert events == []
+    return runner.perturbations
 
 
 def variational(model, start, end):
@@ -55,6 +58,12 @@ def variational(model, start, end):
     return run.y[2 * blocks :, -1].reshape(2 * blocks, -1)
 
 
+#: Stuck blocks, length, amplitude.
+PIECES = [
+    *(((), *case) for case in ((25.0, 0.0), (25.0, 1e-7), (0.4, 0.05), (1e-9, 0.05))),
+    *((stuck, 0.4, 0.05) for stuck in ((1,), (0, 2), (2, 3))),
+    ((2, 3), 1e-9, 0.05),
+]
 SHORT_OR_SMALL = [
     *((0.05, end) for end in (1e-3, 0.4)),
     *((amplitude, end) for amplitude in (1e-3, 0.0) for end in (2.9, 9.0)),
@@ -71,45 +80,29 @@ def test_nonlinear_pieces_against_scipy(blocks, amplitude, end):
     """
     model = Model(Chain(blocks), law_of("nonlinear", 0.3))
     start = Instant(*near_sliding(blocks, amplitude), np.zeros(blocks, dtype=bool))
-    runner, events = carry(model, start, end, directions(start))
-    assert events == []
     expected = variational(model, start, end)
-    assert np.abs(runner.perturbations - expected).max() < 1e-11 * np.abs(expected).max()
+    assert np.abs(without_events(model, start, end) - expected).max() < 1e-11 * np.abs(expected).max()
 
 
 def test_a_nonlinear_piece_beside_stuck_blocks_and_backward_against_scipy():
     model = Model(Chain(5), law_of("nonlinear", 0.9), contact="symmetric")
     velocity = np.array([0.8, 0.0, 0.9, 0.0, -0.7])
     start = Instant(np.array([0.1, 0.3, 0.0, 0.3, -0.1]), velocity, velocity == 0.0)
-    runner, events = carry(model, start, 0.2, directions(start))
-    assert events == []
-    assert np.abs(runner.perturbations - variational(model, start, 0.2)).max() < 1e-12
+    assert np.abs(without_events(model, start, 0.2) - variational(model, start, 0.2)).max() < 1e-12
 
 
 @pytest.mark.parametrize("solver", ["map", "series"])
-@pytest.mark.parametrize(
-    ("stuck", "end", "amplitude"),
-    [
-        *(((), *case) for case in ((25.0, 0.0), (25.0, 1e-7), (0.4, 0.05), (1e-9, 0.05))),
-        *((stuck, 0.4, 0.05) for stuck in ((1,), (0, 2), (2, 3))),
-        ((2, 3), 1e-9, 0.05),
-    ],
-)
+@pytest.mark.parametrize(("stuck", "end", "amplitude"), PIECES)
 def test_linearized_pieces_against_the_matrix_exponential(solver, stuck, end, amplitude):
     blocks, a = 5, 0.3
     model = Model(Chain(blocks), law_of("linearized", a))
     held = np.isin(np.arange(blocks), stuck)
     position, velocity = near_sliding(blocks, amplitude)
     start = Instant(position + 0.3 * held, np.where(held, 0.0, velocity), held)
-    runner, events = carry(model, start, end, directions(start), solver)
-    assert events == []
     slips = np.diag(1.0 - held)
     generator = np.block([[np.zeros((blocks, blocks)), slips], [-slips @ model.chain.stiffness, a * slips]])
     expected = expm(generator * end) @ directions(start)
-    assert np.abs(runner.perturbations - expected).max() < 1e-12 * np.abs(expected).max()
-
-
-# Finite differences through events.
+    assert np.abs(without_events(model, start, end, solver) - expected).max() < 1e-12 * np.abs(expected).max()
 
 
 def check_against_differences(model, start, end):
@@ -160,7 +153,6 @@ def turns(model, start, events):
     return signs
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_every_kind_of_event_is_met(law):
     """Turning round forward and backward, and neighbours that are stuck together, each several times."""
     met = {1: 0, -1: 0, "stuck": 0, "start": 0}
@@ -182,7 +174,6 @@ def test_every_kind_of_event_is_met(law):
     raise AssertionError(f"too few: {met}")
 
 
-@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_mirror_blocks_that_stop_and_start_together(law, contact):
     """The flow is smooth there although perturbed runs have the events in either order."""
@@ -192,9 +183,6 @@ def test_mirror_blocks_that_stop_and_start_together(law, contact):
     stops = [time for time, block, kind in events if kind == 0 and block != 2]
     assert len(stops) >= 4
     assert stops[::2] == stops[1::2]
-
-
-# What the map must do by itself.
 
 
 def rate(model, state):
@@ -241,7 +229,6 @@ def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v):
     assert starts > 20
 
 
-@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 6])
 def test_each_vector_goes_its_way_alone(law, count):
     """The same bits for the first vectors, however many are carried."""
@@ -252,7 +239,6 @@ def test_each_vector_goes_its_way_alone(law, count):
     assert (some == tangent_map(model, start, 30.0)[:, :count]).all()
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_perturbations_change_nothing_of_the_run(law):
     model = Model(Chain(3), law_of(law, 0.2))
     start = model.begin(PAPER_STATES["plus"])
@@ -262,7 +248,6 @@ def test_perturbations_change_nothing_of_the_run(law):
     assert one.kernel.steps == other.kernel.steps
 
 
-@pytest.mark.parametrize("law", LAWS)
 def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
     """A block that starts at τ = 0 does not turn round from a stop of the run before."""
     model = Model(Chain(2), law_of(law, 0.1))

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff import InitialState, simulate
 from tests.flows import check_events, listed
 
-pytestmark = pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 OPTIONS = {"transient": 0.0, "batches": 2, "events": "all"}
 
 

@@ -1,7 +1,5 @@
 """The types in the kernel's .py files are those of its .pxd files: Cython itself compares arguments only."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

@@ -1,9 +1,12 @@
 """Laws between two others."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
-from burridge_knopoff.laws import LAWS, law_of
+from burridge_knopoff import law_of
+from burridge_knopoff.laws import LAWS
 from burridge_knopoff.laws.blend import blend, mirrored
 
 SPEEDS = np.linspace(0.0, 1.5, 7)
@@ -11,15 +14,13 @@ SPEEDS = np.linspace(0.0, 1.5, 7)
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_a_blend_is_the_weighted_mean_of_two_laws(share):
-    laws = [law_of(name, 0.2) for name in LAWS]
-    for first in laws:
-        for second in laws:
-            mixed = blend(first, second, share)
-            expected = (1.0 - share) * first(SPEEDS) + share * second(SPEEDS)
-            np.testing.assert_allclose(mixed(SPEEDS), expected, rtol=1e-14)
-            slope = (1.0 - share) * first.slope(SPEEDS) + share * second.slope(SPEEDS)
-            np.testing.assert_allclose(mixed.slope(SPEEDS), slope, rtol=1e-12, atol=1e-14)
-            assert mixed.a == 0.2
+    for first, second in product([law_of(name, 0.2) for name in LAWS], repeat=2):
+        mixed = blend(first, second, share)
+        expected = (1.0 - share) * first(SPEEDS) + share * second(SPEEDS)
+        np.testing.assert_allclose(mixed(SPEEDS), expected, rtol=1e-14)
+        slope = (1.0 - share) * first.slope(SPEEDS) + share * second.slope(SPEEDS)
+        np.testing.assert_allclose(mixed.slope(SPEEDS), slope, rtol=1e-12, atol=1e-14)
+        assert mixed.a == 0.2
 
 
 def test_numbers_of_one_name_are_those_of_their_own_law():

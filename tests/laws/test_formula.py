@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.laws import LAWS, FormulaLaw, law_of
+from burridge_knopoff import FormulaLaw, law_of
+from burridge_knopoff.laws import LAWS
 
 REFUSED = {
     "not a formula": ["1 - a*", ""],

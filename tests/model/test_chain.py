@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain, law_of
 
 strength = st.floats(0.1, 5.0)
 
@@ -73,6 +72,7 @@ def test_the_chain_of_the_paper():
     assert friction == pytest.approx(1 - 0.008, abs=1e-15)
     assert chain.damping_limit == 2.0
     assert Chain(3, ends="ring").driving.tolist() == [2, 2, 2]
+    assert Chain(3, pulling=np.array([1.0, 2.0, 1.0])).driving.tolist() == [1, 2, 1]
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,3 @@ def test_refused(options, message):
     with pytest.raises(ValueError, match=message) as caught:
         Chain(**options)
     assert "\n" not in str(caught.value)
-
-
-def test_arrays_are_taken_as_they_are():
-    assert Chain(3, pulling=np.array([1.0, 2.0, 1.0])).driving.tolist() == [1, 2, 1]

@@ -1,16 +1,21 @@
-"""The synchronized orbits of the linearized law in double precision, from which the proofs begin."""
+"""The orbits of the linearized law in double precision, from which the proofs begin, and states of arcs."""
 
-from __future__ import annotations
+from itertools import product
 
 import mpmath
 import pytest
 from flint import arb
+from mpmath import mpf
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.proof.arcs import State
 from burridge_knopoff.proof.balls import arithmetic
+from burridge_knopoff.proof.krawczyk import Enclosure
+from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit
 from burridge_knopoff.stability.family import Family
+
+#: Whether blocks 1 and 3 slip, and whether block 2 does.
+SLIPS = list(product((False, True), repeat=2))
 
 
 @pytest.fixture(scope="package")
@@ -23,3 +28,19 @@ def holds(ball, number, error="1e-45"):
     """Tell whether a ball may hold a number of mpmath that is known to within an error: whether the two overlap."""
     with arithmetic(), mpmath.workdps(60):
         return bool(ball.overlaps(arb(mpmath.nstr(number, 55), error)))
+
+
+def state_of(slips):
+    """Return a state with these blocks slipping, in balls, and its numbers: x, y, their rates, a difference and its."""
+    rates = ["0.4" if slips[0] else "-1", "1.1" if slips[1] else "-1"]
+    numbers = ["0.3", "-0.7", *rates, "0.9", "0.2" if slips[0] else "0"]
+    with arithmetic():
+        x, y, p, q, d, e = map(arb, numbers)
+        return State((x, y), (p, q), (d, e)), [mpf(number) for number in numbers]
+
+
+def changed(orbit, arc, late):
+    """Return an orbit that is none, unless it is late by 0: one arc takes another time."""
+    times = [time + (late if k == arc else 0) for k, time in enumerate(orbit.times)]
+    inner = (*orbit.enclosure.inner[:PLACES], *times)
+    return ProvedOrbit(orbit.arcs, orbit.a, Enclosure(inner, inner))

@@ -1,13 +1,11 @@
 """The synchronized orbit at 50 digits by other means: all three blocks, matrix exponentials, Newton's method."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import mpmath
 from mpmath import mp, mpf
 
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff import Chain
 
 DIGITS = 50
 #: Which blocks slip on each arc, and the block whose event ends it; block 3 does as block 1.

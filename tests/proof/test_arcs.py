@@ -1,7 +1,5 @@
 """The closed forms of the arcs against matrix exponentials of all three blocks at 50 digits."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from flint import arb, arb_series
@@ -10,26 +8,22 @@ from mpmath import mp, mpf
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import arithmetic
 from burridge_knopoff.proof.closed import Linearized, oscillation
-from tests.proof.conftest import holds
+from tests.proof.conftest import SLIPS, holds, state_of
 from tests.proof.exact import force, matrix
 
-SLIPS = [(False, False), (False, True), (True, False), (True, True)]
 
-
-def state_of(slips):
-    """Return a state with these blocks slipping, in balls, and the same as x, x', 1 of three blocks."""
-    x, y, p, q = "0.3", "-0.7", "0.4", "1.1"
-    rates = [p if slips[0] else -1, q if slips[1] else -1]
-    difference = (arb("0.9"), arb("0.2") if slips[0] else 0)
-    state = State((arb(x), arb(y)), (arb(rates[0]), arb(rates[1])), difference)
-    return state, mp.matrix([x, y, x, rates[0], rates[1], rates[0], 1])
+def three_blocks(numbers):
+    """Return x, x', 1 of three blocks."""
+    x, y, p, q, *_ = numbers
+    return mp.matrix([x, y, x, p, q, p, 1])
 
 
 @pytest.mark.parametrize("slips", SLIPS)
 @pytest.mark.parametrize(("a", "time"), [("0.08", "0.4"), ("0.3", "5.1")])
 def test_an_arc_is_the_matrix_exponential(slips, a, time):
     with mpmath.workdps(55), arithmetic():
-        state, exact = state_of(slips)
+        state, numbers = state_of(slips)
+        exact = three_blocks(numbers)
         arc = Arc(slips, LATERAL, Linearized())
         end = arc.after(state, arb(a), arb(time))
         three = (slips[0], slips[1], slips[0])
@@ -46,7 +40,8 @@ def test_an_arc_is_the_matrix_exponential(slips, a, time):
 def test_a_small_difference_goes_as_that_of_two_motions(slips):
     """The equations are linear: any difference of blocks 1 and 3 obeys the same matrix."""
     with mpmath.workdps(55), arithmetic():
-        state, exact = state_of(slips)
+        state, numbers = state_of(slips)
+        exact = three_blocks(numbers)
         end = Arc(slips, LATERAL, Linearized()).after(state, arb("0.1"), arb("1.7"))
         apart = exact.copy()
         apart[0], apart[2] = exact[0] + mpf("0.45"), exact[2] - mpf("0.45")
@@ -59,10 +54,10 @@ def test_a_small_difference_goes_as_that_of_two_motions(slips):
 
 def test_an_event_takes_the_velocity_away_only_where_a_block_stops():
     state, _ = state_of((True, True))
-    stopped = Arc((True, True), CENTER, Linearized()).last(state)
-    assert stopped == State(state.position, (state.velocity[0], -1), state.difference)
-    stopped = Arc((True, True), LATERAL, Linearized()).last(state)
-    assert stopped == State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
+    center = State(state.position, (state.velocity[0], -1), state.difference)
+    lateral = State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
+    assert Arc((True, True), CENTER, Linearized()).last(state) == center
+    assert Arc((True, True), LATERAL, Linearized()).last(state) == lateral
     assert Arc((True, False), CENTER, Linearized()).last(state) is state
 
 

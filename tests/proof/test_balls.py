@@ -1,7 +1,5 @@
 """Balls as they leave the room: rounded outward, and never wider than they must be."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """Signs over whole arcs: dips between any samples are seen, roots at the ends are known."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,15 +1,11 @@
 """Arcs of the nonlinear law: Taylor steps with a remainder against mpmath, and boxes that hold no motion."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.proof import taylor
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
@@ -21,29 +17,14 @@ from burridge_knopoff.proof.taylor import Nonlinear
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.orbit import multipliers
 from burridge_knopoff.stability.transition import critical_a
-from tests.proof.conftest import holds
+from tests.proof.conftest import SLIPS, changed, holds, state_of
 
 V, A = "0.1", "0.09"
-SLIPS = [(False, False), (False, True), (True, False), (True, True)]
 
 
 def law():
     with arithmetic():
         return Nonlinear(arb(V))
-
-
-def state_of(slips):
-    numbers = [
-        "0.3",
-        "-0.7",
-        "0.4" if slips[0] else "-1",
-        "1.1" if slips[1] else "-1",
-        "0.9",
-        "0.2" if slips[0] else "0",
-    ]
-    with arithmetic():
-        x, y, p, q, d, e = map(arb, numbers)
-        return State((x, y), (p, q), (d, e)), [mpf(number) for number in numbers]
 
 
 def motion(slips, a=A):
@@ -142,18 +123,18 @@ def test_as_v_falls_to_0_the_law_is_the_linearized_one():
 
 
 @pytest.mark.parametrize(
-    ("state", "time", "message"),
+    ("speed", "time", "message"),
     [
-        (State((arb(0), arb(0)), (arb(0, 1000), arb(0))), arb(1), "1 \\+ aU' = .*: not allowed: above 0"),
-        (State((arb(0), arb(0)), (arb("nan"), arb(0))), arb(1), "not allowed|no box"),
-        (State((arb(0), arb(0)), (arb(0), arb(0))), arb(1000), "time .*: not allowed: from 0 to 100"),
-        (State((arb(0), arb(0)), (arb(0), arb(0))), arb("nan"), "time nan: not allowed: from 0 to 100"),
-        (State((arb(0), arb(0)), (arb(0), arb(0))), arb(-1), "time -1.*: not allowed: from 0 to 100"),
+        (arb(0, 1000), arb(1), "1 \\+ aU' = .*: not allowed: above 0"),
+        (arb("nan"), arb(1), "not allowed|no box"),
+        (arb(0), arb(1000), "time .*: not allowed: from 0 to 100"),
+        (arb(0), arb("nan"), "time nan: not allowed: from 0 to 100"),
+        (arb(0), arb(-1), "time -1.*: not allowed: from 0 to 100"),
     ],
 )
-def test_what_has_no_bound_is_refused(state, time, message):
+def test_what_has_no_bound_is_refused(speed, time, message):
     with pytest.raises(ProofError, match=message):
-        law().path((True, True), state, arb(A))(time)
+        law().path((True, True), State((arb(0), arb(0)), (speed, arb(0))), arb(A))(time)
 
 
 def test_a_step_that_no_box_holds_is_refused(monkeypatch):
@@ -208,13 +189,10 @@ def test_it_is_that_of_an_integration_of_25_digits(found):
 
 
 def test_a_wrong_arc_is_not_certified(found):
-    orbit = found.orbit
-    times = [time + (arb("0.1") if k == 3 else 0) for k, time in enumerate(orbit.times)]
-    inner = (*orbit.enclosure.inner[:PLACES], *times)
-    wrong = type(orbit)(orbit.arcs, orbit.a, type(orbit.enclosure)(inner, inner))
+    wrong = changed(found.orbit, 3, arb("0.1"))
     with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to go on"):
         wrong.check_arcs()
-    assert len(followed(wrong.arcs, [*inner, wrong.a])[0]) == 5
+    assert len(followed(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 
 
 def test_a_ball_of_a_that_is_too_wide_is_refused(family):

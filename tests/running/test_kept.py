@@ -48,17 +48,13 @@ CALLS = [
 ]
 
 
-def test_another_call_has_another_file(tmp_path):
-    paths = [kept(tmp_path, *call)[1] for call in CALLS]
-    assert len(set(paths)) == len(CALLS) == len(list(tmp_path.iterdir()))
-
-
-@pytest.mark.parametrize("call", CALLS)
-def test_a_call_is_made_once(tmp_path, call):
-    result, path, was_read = kept(tmp_path, *call)
-    again, same, was_read_again = kept(tmp_path, *call)
-    assert (path, was_read, was_read_again) == (same, False, True)
-    np.testing.assert_equal(repr(again), repr(result))
+def test_each_call_is_made_once_and_has_a_file_of_its_own(tmp_path):
+    for call in CALLS:
+        result, path, was_read = kept(tmp_path, *call)
+        again, same, was_read_again = kept(tmp_path, *call)
+        assert (path, was_read, was_read_again) == (same, False, True)
+        assert repr(again) == repr(result)
+    assert len(list(tmp_path.iterdir())) == len(CALLS)
 
 
 def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
@@ -69,13 +65,12 @@ def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
     assert kept(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
 
 
-@pytest.mark.parametrize("change", ["source", "numpy"])
-def test_other_code_is_another_call(tmp_path, monkeypatch, change):
+@pytest.mark.parametrize(
+    ("place", "name", "other"), [(module, "source_fingerprint", lambda name: "another"), (np, "__version__", "0.1")]
+)
+def test_other_code_is_another_call(tmp_path, monkeypatch, place, name, other):
     kept(tmp_path, first, 1)
-    if change == "source":
-        monkeypatch.setattr(module, "source_fingerprint", lambda name: "another")
-    else:
-        monkeypatch.setattr(np, "__version__", "0.1")
+    monkeypatch.setattr(place, name, other)
     assert not kept(tmp_path, first, 1)[2]
 
 

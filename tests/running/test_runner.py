@@ -5,13 +5,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Settings, law_of, simulate
 from burridge_knopoff.kernel import events as kernel_events
-from burridge_knopoff.laws import LAWS, FormulaLaw, law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
-from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.laws import LAWS
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study import load_study, read_config
@@ -117,8 +114,7 @@ def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
     """To the bit, in chains that are their own image; and shifted in time the motion is the same."""
     generator = np.random.default_rng(seed)
     strength = generator.uniform(0.5, 2.0, blocks)
-    threshold = float(generator.uniform(0.7, 1.3))
-    chain = Chain(blocks, pulling=strength + strength[::-1], threshold=threshold, ends=ends)
+    chain = Chain(blocks, pulling=strength + strength[::-1], threshold=float(generator.uniform(0.7, 1.3)), ends=ends)
     assert chain.is_mirror_symmetric
     model = Model(chain, law_of(law, generator.uniform(0.0, 0.5)))
     position, velocity = generator.uniform(-0.4, 0.4, blocks), generator.uniform(0.02, 0.3, blocks)

@@ -2,10 +2,8 @@
 
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Chain, InitialState, simulate
 from burridge_knopoff.laws import LAWS
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,14 @@
 """What must hold for whole runs: symmetries, synchronization, energy, and how a run ends."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff import simulate
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff import Chain, InitialState, simulate
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from tests.flows import SYMMETRIC
 
@@ -46,9 +47,8 @@ def test_time_shift(count, which):
     # A stop with all other blocks in motion or clearly stuck: `tested` then tells stuck from slipping by the force.
     k = count + int(np.argmax(run.event_kind[count:] == 0))
     time, position, velocity = run.event_time[k], run.event_position[k], run.event_velocity[k]
-    again = simulate(
-        law, 0.1, InitialState("later", tuple(position), tuple(velocity)), window=60.0 - time, start="tested", **options
-    )
+    later = InitialState("later", tuple(position), tuple(velocity))
+    again = simulate(law, 0.1, later, window=60.0 - time, start="tested", **options)
     if ((velocity > 0.0) != (-Chain(3).stiffness @ position > 1.0)).any():
         return
     expected = run.event_time[run.event_time > time] - time
@@ -69,9 +69,7 @@ def test_energy_balance():
     assert np.allclose(energy - energy[0], work, atol=2e-7)
 
 
-@pytest.mark.parametrize(
-    ("law", "a"), [("linearized", 0.05), ("linearized", 0.2), ("nonlinear", 0.08), ("nonlinear", 0.5)]
-)
+@pytest.mark.parametrize(("law", "a"), [*product(["linearized"], (0.05, 0.2)), *product(["nonlinear"], (0.08, 0.5))])
 def test_a_block_exactly_at_its_threshold_starts_stuck(law, a):
     """s = (1, −1, 1) without rounding: `tested` stops all three, whatever Φ(av) rounds to."""
     state = InitialState("threshold", (-0.5, 0.0, -0.5), (0.1, 0.1, 0.1))

@@ -1,7 +1,5 @@
 """Labels of points of the unit square whose boundaries have known exponents."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

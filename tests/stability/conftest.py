@@ -1,12 +1,8 @@
-"""The synchronized orbits of both laws, found once, and the same motion from a 40-digit computation."""
-
-from __future__ import annotations
+"""The synchronized orbits of both laws, found once, and functions that give the answers they are told."""
 
 import pytest
 
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -17,7 +13,18 @@ def families():
     return {law: Family(Model(Chain(3), law_of(law, 0.0))) for law in PAPER_LAWS}
 
 
-@pytest.fixture(params=PAPER_LAWS)
-def law(request):
-    """The name of each of the paper's laws in turn."""
-    return request.param
+@pytest.fixture
+def tell(monkeypatch):
+    """Return how a function of a module is told its answers, in turn, which returns the list of what it is asked."""
+
+    def told(module, name, answers):
+        asked, left = [], iter(answers)
+
+        def answer(*arguments):
+            asked.append(arguments)
+            return next(left)
+
+        monkeypatch.setattr(module, name, answer)
+        return asked
+
+    return told

@@ -1,7 +1,5 @@
 """A synchronized orbit handed to the 40-digit reference at an instant at which every block slips."""
 
-from __future__ import annotations
-
 from burridge_knopoff.stability.orbit import flow
 from tests.reference import reference_run
 

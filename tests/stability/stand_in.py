@@ -1,17 +1,17 @@
 """Attractors of which only what is told is set."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.stability.attractor import Attractor
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.steady import SteadyMotion
+from burridge_knopoff import Attractor, MotionKind, SteadyMotion, Symmetry
+
+ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
 
 
-def stand_in(symmetry: int, mean_distance: float, partner: int, ahead: float = 1.0, **told: Any) -> Attractor:
+def stand_in(
+    symmetry: int = SYMMETRIC, mean_distance: float = 0.1, partner: int = 0, ahead: float = 1.0, **told: Any
+) -> Attractor:
     """Return an attractor whose last return has block 1 `ahead`; its further features may be told."""
     of_attractor = {key: told.pop(key) for key in ("slow", "close_returns", "patience", "radius") if key in told}
     returns = np.array([[9.0, 9.0, 9.0, 0.0, 0.0, 0.0], [ahead, 0.0, 0.0, 0.0, 0.5, 0.25]])
@@ -27,3 +27,13 @@ def stand_in(symmetry: int, mean_distance: float, partner: int, ahead: float = 1
         "exponent": np.array([0.0, -0.1, -0.2]),
     }
     return Attractor(SteadyMotion(**{**motion, **told}), symmetry, partner, **{"radius": 0.01, **of_attractor})
+
+
+def at(*places: float, ahead: float = 0.0, **told: Any) -> Attractor:
+    """Return an attractor with every coordinate of its returns at these places, but for block 1, which is `ahead`.
+
+    In its mirror image block 3 is.
+    """
+    tilt = np.array([ahead, 0.0, 0.0, 0.0, 0.0, 0.0])
+    returns = np.repeat(np.array(places)[:, None], 6, axis=1)
+    return stand_in(returns=returns + tilt, mirror_returns=returns + tilt[[2, 1, 0, 3, 4, 5]], **told)

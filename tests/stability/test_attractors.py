@@ -5,10 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Settings, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.model import Instant
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.attractors import Search, find_attractors
 from burridge_knopoff.stability.labels import label
 from burridge_knopoff.stability.motion import MotionKind
@@ -66,14 +64,14 @@ def test_mirrored_states_reach_mirrored_attractors():
 
 def test_an_unstable_motion_is_no_attractor():
     """A symmetric state stays symmetric for ever, though the synchronized motion is unstable at a = 0.1."""
-    found = Search(model(a=0.1), SETTINGS)
-    symmetric = found.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
-    assert measure(found.model, symmetric, 2000.0, 1000.0, MOTION).mean_distance == 0.0
-    assert visit(found.model, symmetric, 2000.0, 1000.0).settled(1e-6, 1e-3)
-    index = found.reach(symmetric)
-    assert found.attractors[index].symmetry == ASYMMETRIC
-    assert found.attractors[index].motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
-    stable = Search(model(a=0.08), SETTINGS)
+    unstable, stable = (Search(model(a=a), SETTINGS) for a in (0.1, 0.08))
+    symmetric = unstable.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
+    assert measure(unstable.model, symmetric, 2000.0, 1000.0, MOTION).mean_distance == 0.0
+    assert visit(unstable.model, symmetric, 2000.0, 1000.0).settled(1e-6, 1e-3)
+    index = unstable.reach(symmetric)
+    found = unstable.attractors[index]
+    assert found.symmetry == ASYMMETRIC
+    assert found.motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
     index = stable.reach(symmetric)
     assert stable.attractors[index].symmetry == SYNCHRONIZED
 
@@ -111,8 +109,7 @@ def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
     means = [attractor.motion.mean_distance for attractor in found.attractors]
     for initial, index in (("minus", labels[-2]), ("plus", labels[-1])):
         run = simulate("nonlinear", 0.2075, initial, transient=20000.0, window=4000.0, lyapunov_exponents=0)
-        expected = means[index]
-        assert run.mean_distance == pytest.approx(expected, abs=max(1e-3, 4 * run.mean_distance_error))
+        assert run.mean_distance == pytest.approx(means[index], abs=max(1e-3, 4 * run.mean_distance_error))
     assert labels[-2] != labels[-1]
 
 
@@ -180,7 +177,6 @@ def test_weak_chaos_is_told_from_a_torus():
     ids=["stribeck", "formula", "asymmetric", "ring"],
 )
 def test_attractors_of_any_model_are_what_runs_end_in(found_model):
-    """Whole runs from drawn states have the mean distance of the attractor that each is said to reach."""
     settings = dataclasses.replace(SETTINGS, samples=12)
     given = InitialState("given", (-0.9,) * found_model.blocks, (0.1,) * found_model.blocks)
     reached, labels = find_attractors(found_model, settings, starts=[given])
@@ -203,7 +199,6 @@ def test_synchrony_of_a_long_period_is_synchrony():
     """Strong coupling: the outer blocks move as one, and the middle block repeats after many of their periods only."""
     strong = Model(Chain(3, coupling=2.0), FormulaLaw(0.03, "1/(1 + a*u)**2"))
     reached, _ = find_attractors(strong, dataclasses.replace(SEARCH, samples=10))
-    as_one = [item for item in reached if item.symmetry == SYNCHRONIZED]
-    assert len(as_one) == 1
-    assert as_one[0].motion.section_period == 0
-    assert as_one[0].motion.kind == MotionKind.SYNCHRONIZED
+    (as_one,) = [item.motion for item in reached if item.symmetry == SYNCHRONIZED]
+    assert as_one.section_period == 0
+    assert as_one.kind == MotionKind.SYNCHRONIZED

@@ -7,9 +7,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, BasinSettings, Refine
@@ -37,12 +37,16 @@ def whole(known, tiles, threads, model=MODEL):
     return basins.merge([(model, parts, near)], ["linearized", "other"], basin_settings, SEARCH.time_limit, "moving")
 
 
-def test_any_number_of_threads_and_tiles_gives_the_same_labels(known):
-    first = whole(known, 1, 1)
+@pytest.fixture(scope="module")
+def found(known):
+    return whole(known, 1, 1)
+
+
+def test_any_number_of_threads_and_tiles_gives_the_same_labels(known, found):
     for tiles, threads in ((3, 1), (1, 3), (5, 2)):
-        assert first.identical(whole(known, tiles, threads)), (tiles, threads)
-    assert first["undetermined_count"].item() == 0
-    assert len(np.unique(first["branch"])) >= 2
+        assert found.identical(whole(known, tiles, threads)), (tiles, threads)
+    assert found["undetermined_count"].item() == 0
+    assert len(np.unique(found["branch"])) >= 2
 
 
 def check_run(known, state, branch, **conventions):
@@ -54,9 +58,8 @@ def check_run(known, state, branch, **conventions):
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
 
 
-def test_pixels_are_what_whole_runs_end_in(known):
+def test_pixels_are_what_whole_runs_end_in(known, found):
     """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
-    found = whole(known, 1, 1)
     for k in range(0, 16, 3):
         for m in (k, (5 * k + 2) % 16):
             one = found.isel(map=0, first_position=m, last_position=k)
@@ -65,8 +68,7 @@ def test_pixels_are_what_whole_runs_end_in(known):
 
 
 def test_runs_of_the_paper_end_on_the_branch_that_is_told(known):
-    """`initial_branch` under every convention against the mean distance of the run itself."""
-    for contact, start, initial in product(("one_sided", "symmetric"), ("moving", "tested"), ("minus", "plus")):
+    for contact, start, initial in product(CONTACTS, STARTS, PAPER_STATES):
         branch = known["initial_branch"].sel(law="linearized", a=0.08, contact=contact, start=start, initial=initial)
         check_run(known, initial, branch, contact=contact, start=start)
 

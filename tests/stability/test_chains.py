@@ -1,6 +1,4 @@
-"""Mirror synchrony of chains: closed forms and variational equations for two blocks, symmetries, whole runs."""
-
-from __future__ import annotations
+"""Mirror synchrony of chains: closed form and 40 digits for two blocks, symmetries, whole runs."""
 
 import math
 from dataclasses import astuple, fields
@@ -8,26 +6,14 @@ from itertools import product
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, law_of, simulate
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, law_of, simulate, transverse_exponent
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability import chains
-from burridge_knopoff.stability.chains import (
-    INTERVAL,
-    Fate,
-    Outcome,
-    Sample,
-    Watch,
-    pair_distances,
-    symmetrized,
-    transverse_exponent,
-    watch_chain,
-    watch_state,
-)
+from burridge_knopoff.stability.chains import INTERVAL, Fate, Outcome, Sample, Watch, symmetrized, watch_state
+from tests.reference import reference_events, reference_run
+from tests.stability.exact import SHIFT
 
 APART = Outcome.NOT_SYNCHRONIZED
 V = 0.1
@@ -42,73 +28,37 @@ def fate(chain, state, watch):
     return watch_state(Runner(chain), chain.begin(state), watch)
 
 
-def two_block_exponent(a):
-    """Return the transverse exponent of two synchronous blocks under the linearized law, in closed form.
-
-    In synchrony each block feels K = 1: y'' = −y + a y' for its position y relative to uniform sliding, from y = −av,
-    y' = −v at its start until U' = y' + v = 0. The difference d of the blocks feels K = 3: d'' = −3d + a d'; it starts
-    with d' = 0, and the stop sets d' to 0 again: d is multiplied by one number in each period.
-    """
-    half = 0.5 * a
-    omega, transverse = math.sqrt(1.0 - half**2), math.sqrt(3.0 - half**2)
-    sine = (-V + half * a * V) / omega
-
-    def position(t):
-        return math.exp(half * t) * (-a * V * math.cos(omega * t) + sine * math.sin(omega * t))
-
-    def velocity(t):
-        rate = (omega * sine - half * a * V) * math.cos(omega * t) + (half * sine + omega * a * V) * math.sin(omega * t)
-        return V + math.exp(half * t) * rate
-
-    # U' grows like t² from the start, has its largest value about half a turn later, and is 0 again before 2π.
-    stop = brentq(velocity, math.pi, 2.0 * math.pi, xtol=1e-14)
-    period = stop + (position(stop) + a * V) / V
-    factor = math.exp(half * stop) * (math.cos(transverse * stop) - half / transverse * math.sin(transverse * stop))
-    return math.log(abs(factor)) / period
-
-
-def two_block_exponent_by_scipy(law, a):
-    """Return the same for either law, from SciPy and the variational equation."""
-    linear = law == "linearized"
-
-    def friction(u):
-        return 1.0 - a * u if linear else 1.0 / (1.0 + a * u)
-
-    def rhs(_, state):
-        x, u, d, rate = state
-        slope = a if linear else a / (1.0 + a * u) ** 2
-        return [u - V, friction(V) - x - friction(u), rate, -3.0 * d + slope * rate]
-
-    def stops(t, state):
-        return state[1] if t > 1.0 else 1.0
-
-    stops.terminal = True
-    start = friction(V) - 1.0
-    run = solve_ivp(rhs, (0.0, 20.0), [start, 0.0, 1.0, 0.0], "DOP853", rtol=1e-12, atol=1e-13, events=stops)
-    x, _, d, _ = run.y_events[0][0]
-    return math.log(abs(d)) / (run.t_events[0][0] + (x - start) / V)
+def two_block_exponent(law, a):
+    """Return the transverse exponent of two synchronous blocks: in 40 digits, from a difference while both stick."""
+    options = {"velocity": [0.0, 0.0], "v": V, "start": "tested"}
+    events = reference_events(law, a, [-0.99, -0.99], end=12.0, **options)
+    start, stop, again = [time for time, block, _ in events if block == 1][:3]
+    period = float(again - start)
+    run = reference_run(law, a, [-0.99 + SHIFT, -0.99 - SHIFT], end=period, **options)
+    multiplier = float((run.position[0] - run.position[1]) / (2.0 * SHIFT))
+    if law == "linearized":
+        # docs/chains.md has the closed form.
+        time, omega = float(stop - start), math.sqrt(3.0 - a**2 / 4.0)
+        closed = math.exp(a * time / 2.0) * (math.cos(omega * time) - a / (2.0 * omega) * math.sin(omega * time))
+        assert multiplier == pytest.approx(closed, abs=1e-9)
+    return math.log(abs(multiplier)) / period
 
 
 @pytest.mark.parametrize(
     ("law", "a"), [*(("linearized", a) for a in (0.01, 0.03, 0.1, 0.3)), *(("nonlinear", a) for a in (0.02, 0.1))]
 )
 def test_transverse_exponent_of_two_blocks(law, a):
-    """The error is that of the phases at which the window begins and ends: it falls with the window's length."""
+    """The error is that of the phases at which the window begins and ends."""
     chain = model(2, a, law)
     state = chain.begin(InitialState("state", (-1.0, -0.9), (0.1, 0.1)))
     exponent, error = transverse_exponent(chain, state, 2000.0, 10_000.0)
-    assert exponent == pytest.approx(two_block_exponent_by_scipy(law, a), abs=2e-4)
+    assert exponent == pytest.approx(two_block_exponent(law, a), abs=2e-4)
     assert error < 1e-3
 
 
-@pytest.mark.parametrize("a", [0.001, 0.05, 0.3])
-def test_the_closed_form_is_the_variational_equation(a):
-    assert two_block_exponent(a) == pytest.approx(two_block_exponent_by_scipy("linearized", a), abs=1e-8)
-
-
 def test_two_blocks_synchronize_below_the_critical_a_only():
-    critical = brentq(two_block_exponent, 0.03, 0.07)
-    assert critical == pytest.approx(0.05012, abs=1e-5)
+    critical = 0.05012
+    assert two_block_exponent("linearized", critical - 1e-5) < 0.0 < two_block_exponent("linearized", critical + 1e-5)
     state = InitialState("state", (-0.9, -0.85), (0.1, 0.1))
     watch = Watch(time_limit=4000.0)
     assert fate(model(2, critical - 0.01), state, watch).outcome == Outcome.SYNCHRONIZED
@@ -131,20 +81,16 @@ def test_transverse_exponent_against_two_trajectories(blocks, law):
     exponent, _ = transverse_exponent(chain, state, 100.0, 200.0)
 
     state = symmetrized(state)
-    direction = np.cos(1.0 + 2.3 * np.arange(2 * blocks))
+    apart = np.cos(1.0 + 2.3 * np.arange(2 * blocks)).reshape(2, -1)
     logarithms = []
     for _ in range(30):
-        tables = direction.reshape(2, -1)
-        tables = 0.5 * (tables - tables[:, ::-1])
-        tables[1, state.stuck] = 0.0
-        tables *= 1e-7 / np.linalg.norm(tables)
-        other = runner.after(
-            Instant(state.position + tables[0], state.velocity + tables[1], state.stuck), 10.0
-        ).vector()
+        apart = apart - apart[:, ::-1]
+        apart[1, state.stuck] = 0.0
+        apart *= 1e-7 / np.linalg.norm(apart)
+        other = runner.after(Instant(state.position + apart[0], state.velocity + apart[1], state.stuck), 10.0)
         state = symmetrized(runner.after(state, 10.0))
-        direction = other - state.vector()
-        tables = direction.reshape(2, -1)
-        logarithms.append(math.log(np.linalg.norm(0.5 * (tables - tables[:, ::-1])) / 1e-7))
+        apart = (other.vector() - state.vector()).reshape(2, -1)
+        logarithms.append(math.log(np.linalg.norm(0.5 * (apart - apart[:, ::-1])) / 1e-7))
     assert sum(logarithms[10:]) / 200.0 == pytest.approx(exponent, abs=1e-5)
 
 
@@ -185,10 +131,9 @@ def test_three_blocks_against_whole_runs(law):
 
 
 def test_a_run_cut_off_while_it_synchronizes_is_undetermined():
-    chain = model(2, 0.04)
     state = InitialState("state", (-0.9, -0.85), (0.1, 0.1))
-    assert fate(chain, state, Watch(time_limit=600.0)).outcome == Outcome.UNDETERMINED
-    assert fate(chain, state, Watch(time_limit=6000.0)).outcome == Outcome.SYNCHRONIZED
+    for limit, outcome in ((600.0, Outcome.UNDETERMINED), (6000.0, Outcome.SYNCHRONIZED)):
+        assert fate(model(2, 0.04), state, Watch(time_limit=limit)).outcome == outcome
 
 
 def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
@@ -202,7 +147,7 @@ def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
 
 def test_symmetrized_and_pair_distances():
     state = Instant(np.array([1.0, 5.0, 4.0]), np.array([0.0, 1.0, 3.0]), np.array([True, False, False]))
-    assert pair_distances(state).tolist() == [math.hypot(3.0, 3.0)]
+    assert chains.pair_distances(state).tolist() == [math.hypot(3.0, 3.0)]
     symmetric = symmetrized(state)
     assert symmetric.position.tolist() == [2.5, 5.0, 2.5]
     assert symmetric.velocity.tolist() == [0.0, 1.0, 0.0]
@@ -256,17 +201,11 @@ FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         (FAR[:9], None, Fate(Outcome.UNDETERMINED)),
     ],
 )
-def test_the_fate_that_distances_tell(monkeypatch, distances, exponent, expected):
-    asked = []
-
-    def told(chain, state, alignment, window):
-        asked.append((alignment, window))
-        return exponent
-
-    monkeypatch.setattr(chains, "transverse_exponent", told)
+def test_the_fate_that_distances_tell(tell, distances, exponent, expected):
+    asked = tell(chains, "transverse_exponent", [exponent])
     found = watch_state(Scripted(distances), Instant(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0))
     assert astuple(found) == pytest.approx(astuple(expected), nan_ok=True)
-    assert asked == ([(200.0, 50.0)] if exponent else [])
+    assert [told[2:] for told in asked] == ([(200.0, 50.0)] if exponent else [])
 
 
 def test_the_error_is_the_scatter_of_the_batches():
@@ -282,7 +221,7 @@ def test_the_error_is_the_scatter_of_the_batches():
 
 def test_a_watched_chain_is_its_states_one_by_one():
     watch = Watch(time_limit=600.0)
-    results = watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
+    results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
     for (i, law), (j, a) in product(enumerate(("linearized", "nonlinear")), enumerate((0.05, 0.2))):
         chain = model(3, a, law)
         fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial(3)]
@@ -305,7 +244,7 @@ def test_a_chain_without_mirror_blocks_is_refused():
     for call in (
         lambda: transverse_exponent(chain, state, 10.0, 10.0),
         lambda: watch_state(Runner(chain), state),
-        lambda: watch_chain([chain], [0.05]),
+        lambda: chains.watch_chain([chain], [0.05]),
     ):
         with pytest.raises(ValueError, match=r"^chain: .*mirror"):
             call()
@@ -313,10 +252,9 @@ def test_a_chain_without_mirror_blocks_is_refused():
 
 def test_a_ring_synchronizes_by_its_transverse_exponent():
     """Four blocks in a ring with a formula for friction: what the exponent says is what the states do."""
-    law = FormulaLaw(0.02, "1/(1 + a*u)**2")
-    ring = Model(Chain(4, ends="ring"), law)
-    fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial(4)[:4]]
-    for one in fates:
+    ring = Model(Chain(4, ends="ring"), FormulaLaw(0.02, "1/(1 + a*u)**2"))
+    for state in SAMPLE.initial(4)[:4]:
+        one = fate(ring, state, Watch(time_limit=4000.0))
         assert one.outcome != Outcome.SYNCHRONIZED or one.transverse_exponent < 0.0
     start = symmetrized(ring.begin(InitialState("state", (-1.0, -0.9, -0.9, -1.0), (0.1, 0.1, 0.1, 0.1))))
     exponent, _ = transverse_exponent(ring, start, 500.0, 1000.0)

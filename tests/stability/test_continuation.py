@@ -6,14 +6,13 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model, SearchSettings, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import continuation, fractions
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.continuation import continue_attractors
-from burridge_knopoff.stability.settings import MOTION, Refine, SearchSettings
-from tests.stability.stand_in import stand_in
+from burridge_knopoff.stability.settings import MOTION, Refine
+from tests.stability.stand_in import at
 
 STILL, OTHER = 0.0, 5.0
 A_VALUES = (0.1, 0.2, 0.3, 0.4)
@@ -21,11 +20,6 @@ A_VALUES = (0.1, 0.2, 0.3, 0.4)
 
 def models(a_values=A_VALUES):
     return [Model(Chain(3), law_of("linearized", a)) for a in a_values]
-
-
-def at(place, partner):
-    returns = np.full((1, 6), place)
-    return stand_in(Symmetry.SYMMETRIC, 0.1, partner, returns=returns, mirror_returns=returns)
 
 
 @pytest.fixture
@@ -36,13 +30,13 @@ def scripted(monkeypatch):
     class Scripted(Search):
         def labels(self, starts, check=True):
             if check:
-                self.attractors = [at(STILL, 0)]
+                self.attractors = [at(STILL)]
                 self.vain = 6
             else:
                 assert self.vain == 0
                 followed.append((self.model.a, [round(start.position[1]) for start in starts]))
             if self.model.a == 0.2 or (not check and self.model.a <= 0.3):
-                self.attractors = [at(STILL, 0), at(OTHER, 1)]
+                self.attractors = [at(STILL), at(OTHER, partner=1)]
 
         def known_labels(self, starts):
             known = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}

@@ -3,15 +3,12 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.closed_motion import closed_motion
+from burridge_knopoff.stability import following
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.edges import locate_edges
 from burridge_knopoff.stability.following import Following, follow
-from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import find_periodic_orbit
 from burridge_knopoff.stability.stretch import stretch
 from burridge_knopoff.stability.transition import critical_a, grazing_a, symmetric_flip_a
@@ -32,9 +29,9 @@ def synchronized(families, law, a):
     return find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
 
 
-def only(edges):
-    (edge,) = edges
-    return edge
+def at(orbit, a):
+    """Return the orbit that an orbit is at another a."""
+    return find_periodic_orbit(orbit.model.at(a), orbit.reference, orbit.return_time, orbit.symmetry)
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +52,7 @@ def ends_on(orbit, a):
 
 
 def test_synchrony_is_lost_in_a_pitchfork(families, law):
-    edge = only(locate_edges(follow(synchronized(families, law, 0.08), (0.01, 0.095), STEPS)))
+    (edge,) = locate_edges(follow(synchronized(families, law, 0.08), (0.01, 0.095), STEPS))
     assert edge.kind == EdgeKind.PITCHFORK
     assert edge.a == pytest.approx(critical_a(families[law]), abs=1e-10)
     assert edge.a_error <= 1e-10
@@ -64,18 +61,14 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
 
 
 def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
+    """The return has no square root there: its derivative jumps, and the stick grows like a root of the way."""
     for a, upward in ((0.03, True), (0.04, False)):
-        edge = only(locate_edges(follow(synchronized(families, law, a), (0.02, 0.05), STEPS, upward=upward)))
+        points = follow(synchronized(families, law, a), (0.02, 0.05), STEPS, upward=upward)
+        (edge,) = locate_edges(points)
         assert edge.kind == EdgeKind.GRAZING
         assert edge.a == pytest.approx(grazing_a(families[law]), abs=1e-9)
         assert {edge.before.orbit.signature, edge.after.orbit.signature} == {(1, 0, 1), (1, 1, 1)}
         assert not edge.loses_stability
-
-
-def test_the_square_of_a_stick_goes_through_zero_along_a_straight_line(families, law):
-    """The return has no square root at a grazing: its derivative jumps, and the stick grows like a root of the way."""
-    points = follow(synchronized(families, law, 0.04), (0.02, 0.05), STEPS, upward=False)
-    edge = only(locate_edges(points))
     near = [point for point in points if 1e-7 < point.orbit.a - edge.a < 1e-4 and point.orbit.signature == (1, 1, 1)]
     slope = [float(point.contacts.stick[1]) ** 2 / (point.orbit.a - edge.a) for point in near]
     assert len(slope) > 2
@@ -109,12 +102,11 @@ def test_stable_and_unstable_orbits_meet_where_they_graze(six):
     assert six.stable[0].orbit.a == pytest.approx(six.low_end.a, abs=1e-9)
 
 
-@pytest.mark.parametrize("end", ["low_end", "high_end"])
-def test_runs_leave_an_orbit_beyond_its_edge(six, end):
-    edge = getattr(six, end)
-    outward = -1e-6 if end == "low_end" else 1e-6
-    assert ends_on(edge.before.orbit, edge.a - outward) == edge.before.orbit.signature
-    assert ends_on(edge.before.orbit, edge.a + outward) != edge.before.orbit.signature
+def test_runs_leave_an_orbit_beyond_its_edge(six):
+    for edge, outward in ((six.low_end, -1e-6), (six.high_end, 1e-6)):
+        orbit = edge.before.orbit
+        assert ends_on(orbit, edge.a - outward) == orbit.signature
+        assert ends_on(orbit, edge.a + outward) != orbit.signature
 
 
 @pytest.fixture(scope="module")
@@ -136,9 +128,9 @@ def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
     gap = edge.a - here.a
     while gap > 1e-8:
         gap *= 0.25
-        here = find_periodic_orbit(here.model.at(edge.a - gap), here.reference, here.return_time, here.symmetry)
+        here = at(here, edge.a - gap)
     with pytest.raises(OrbitError):
-        find_periodic_orbit(here.model.at(edge.a + 1e-8), here.reference, here.return_time, here.symmetry)
+        at(here, edge.a + 1e-8)
 
 
 def test_an_edge_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
@@ -172,15 +164,31 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
     assert edge.kind == EdgeKind.NEIMARK_SACKER
     assert abs(edge.at.multipliers.whole[0]) == pytest.approx(1.0, abs=1e-9)
     assert abs(edge.at.multipliers.whole[0].imag) > 0.1
-    at = edge.at.orbit
     for offset, grows in ((-1e-3, False), (1e-3, True)):
-        model = at.model.at(edge.a + offset)
-        beside = find_periodic_orbit(model, at.reference, at.return_time, at.symmetry)
-        moved = beside.reference.position + np.array([1e-6, 0.0, 0.0])
-        start = Instant(moved, beside.reference.velocity, beside.reference.stuck)
-        end = Runner(model).after(start, 3000.0 * beside.period)
-        left = np.abs(end.vector() - beside.reference.vector()).max()
-        assert (left > 1e-6) == grows
+        beside = at(edge.at.orbit, edge.a + offset)
+        here = beside.reference
+        start = Instant(here.position + np.array([1e-6, 0.0, 0.0]), here.velocity, here.stuck)
+        end = Runner(beside.model).after(start, 3000.0 * beside.period)
+        assert (np.abs(end.vector() - here.vector()).max() > 1e-6) == grows
+
+
+@pytest.mark.parametrize("succeeds", [True, False])
+def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds):
+    """Up to 5e-4, and after 200 orbits, or below 1e-9."""
+    lengths = []
+
+    def step(here, length):
+        lengths.append(length)
+        if succeeds:
+            return here
+        raise OrbitError("no step is short enough")
+
+    monkeypatch.setattr(following, "step_along", step)
+    monkeypatch.setattr(following, "come_to_corner", lambda here, length: [])
+    found = follow(synchronized(families, "linearized", 0.08), (0.01, 0.1))
+    assert len(found) == (200 if succeeds else 1)
+    expected = [1e-4, 2e-4, 4e-4, *[5e-4] * 196] if succeeds else [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
+    assert lengths == pytest.approx(expected)
 
 
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():

@@ -3,23 +3,18 @@
 import numpy as np
 import pytest
 
+from burridge_knopoff import Chain, Model, MotionSettings, SearchSettings, label_states, law_of
 from burridge_knopoff.kernel.clouds import Clouds
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.labels import label_states
-from burridge_knopoff.stability.sampling import sample_states
-from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+from burridge_knopoff.stability.sampling import sample_states, sampled_states
 
 SETTINGS = SearchSettings(transient=1000.0, window=1000.0, seed=3, pushes=8)
 
 
 def one_by_one(model, attractors, starts, end):
-    """Labels and their times by following each state alone, from stop to stop of the first block."""
+    """Follow each state alone, from stop to stop of the first block; return labels and their times."""
     solver = Runner(model)
     labels, times = np.full(len(starts), -1), np.full(len(starts), end)
     for k, start in enumerate(starts):
@@ -41,8 +36,9 @@ def test_labels_are_those_of_one_by_one(law, a, share):
     """In chaos the two kernels part ways, so that a state near a boundary of basins may come to the other side."""
     model = Model(Chain(3), law_of(law, a))
     search = Search(model, SETTINGS, MotionSettings())
-    position, velocity = sample_states(3, 200, (-1.5, 1.5), (0.0, 0.2), 5)
-    starts = [model.begin(InitialState("sample", tuple(x), tuple(w))) for x, w in zip(position, velocity, strict=True)]
+    box = (-1.5, 1.5), (0.0, 0.2)
+    position, velocity = sample_states(3, 200, *box, 5)
+    starts = [model.begin(state) for state in sampled_states(3, 200, *box, 5)]
     for start in starts[:12]:
         search.reach(start)
     assert search.attractors

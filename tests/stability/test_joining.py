@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, find_attractors, law_of
+from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
 from burridge_knopoff.stability import joining
 from burridge_knopoff.stability.joining import follow_law, joined
-from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.steady import Returns, least_distance
 from burridge_knopoff.stability.tuning import TUNING
 
@@ -16,7 +15,6 @@ A = 0.06
 
 @pytest.fixture(scope="module")
 def models():
-    """The paper's laws."""
     return [Model(Chain(3), law_of(law, A)) for law in ("linearized", "nonlinear")]
 
 
@@ -42,57 +40,48 @@ def test_branches_are_joined_whatever_their_numbers(models, found):
     first, second = ([item.motion.instant() for item in part] for part in found)
     states = {0: {0: first[0]}, 1: {0: first[1]}, 2: {0: first[2]}}
     others = {0: {0: second[0]}, 1: {0: second[2]}, 4: {0: second[1]}}
-    arguments = [models[0]], [models[1]]
-    assert joined(*arguments, states, others, SETTINGS) == {0: 0, 1: 2, 4: 1}
-    # A mirror image is the same branch.
-    others[4] = {0: second[1].mirrored()}
-    assert joined(*arguments, states, others, SETTINGS) == {0: 0, 1: 2, 4: 1}
-    # What is not there at that a, or somewhere else, is not joined.
-    del others[1]
-    assert joined(*arguments, states, others, SETTINGS) == {0: 0, 4: 1}
-    assert joined(*arguments, states, {0: others[0]}, SETTINGS) == {0: 0}
+    for there, expected in (
+        (others, {0: 0, 1: 2, 4: 1}),
+        # A mirror image is the same branch.
+        ({**others, 4: {0: second[1].mirrored()}}, {0: 0, 1: 2, 4: 1}),
+        # What is not there at that a, or somewhere else, is not joined.
+        ({0: others[0], 4: {0: second[1].mirrored()}}, {0: 0, 4: 1}),
+        ({0: others[0]}, {0: 0}),
+    ):
+        assert joined([models[0]], [models[1]], states, there, SETTINGS) == expected
 
 
 @pytest.fixture
-def told(monkeypatch):
+def follow(tell):
     """Return what `follow_law` finds where the set at each step is told by its place; None where nothing settles."""
 
-    def follow(places):
-        asked = []
-
-        def visit(model, start, transient, window, tuning):
-            place = places[len(asked)]
-            asked.append((model.law.name, float(model.law(1.0)), float(start.position[0]), transient, window))
-            if place is None:
-                return None
-            returns = np.full((10, 6), place)
-            return Returns(returns, returns, 0.0, 0.0)
-
-        monkeypatch.setattr(joining, "visit", visit)
+    def found(places):
+        sets = [None if place is None else np.full((10, 6), place) for place in places]
+        asked = tell(joining, "visit", [None if one is None else Returns(one, one, 0.0, 0.0) for one in sets])
         pair = [Model(Chain(3), law_of(law, 0.5), 0.2) for law in ("linearized", "nonlinear")]
         start = Returns(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).instant()
         return follow_law(*pair, start, SETTINGS), asked
 
-    return follow
+    return found
 
 
-def test_a_law_is_changed_in_even_steps(told):
-    end, asked = told([0.01 * step for step in range(TUNING.law_steps + 1)])
-    assert end.returns[0, 0] == pytest.approx(0.01 * TUNING.law_steps)
-    assert [friction for _, friction, *_ in asked] == pytest.approx(
-        np.linspace(0.5, 1.0 / 1.5, TUNING.law_steps + 1).tolist()
-    )
-    assert asked[-1][0] == "nonlinear"
+def test_a_law_is_changed_in_even_steps(follow):
+    places = [0.01 * step for step in range(TUNING.law_steps + 1)]
+    end, asked = follow(places)
+    assert end.returns[0, 0] == pytest.approx(places[-1])
+    models, starts, transients, *_ = zip(*asked, strict=True)
+    assert [float(model.law(1.0)) for model in models] == pytest.approx(np.linspace(0.5, 1 / 1.5, len(places)).tolist())
+    assert models[-1].law.name == "nonlinear"
     # Each goes on from where the last one was.
-    assert [place for _, _, place, *_ in asked] == pytest.approx([7.0] + [0.01 * k for k in range(TUNING.law_steps)])
-    assert {times for *_, times, _ in asked} == {1500.0}
+    assert [float(start.position[0]) for start in starts] == pytest.approx([7.0, *places[:-1]])
+    assert set(transients) == {1500.0}
 
 
-def test_what_does_not_go_on_smoothly_is_given_up(told):
+def test_what_does_not_go_on_smoothly_is_given_up(follow):
     """A set may move by the distance of one branch, twice the paper's for twice the velocity, and not by more."""
     limit = 2.0 * TUNING.same_set
-    assert told([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None
+    assert follow([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None
     for places in ([0.0, 1.01 * limit], [0.0, 0.0, None]):
-        end, asked = told(places)
+        end, asked = follow(places)
         assert end is None
         assert len(asked) == len(places)

@@ -1,20 +1,17 @@
 """Labels where a closed orbit lies in the midst of another attractor, which has patience."""
 
-import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, label_states, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability import fractions
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.labels import UNDETERMINED, label_states
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.sampling import sample_states
-from burridge_knopoff.stability.settings import SearchSettings
 from tests.stability.stand_in import stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
@@ -31,37 +28,31 @@ def found():
     return orbit, states, label_states(MODEL, [orbit], *states, time_limit=END)
 
 
-@pytest.mark.parametrize("patience", [0.0, 120.0, 200.0, 1e9])
-def test_what_comes_to_an_orbit_within_the_patience_is_labelled_so(found, patience):
+@pytest.mark.parametrize(
+    ("patience", "least", "most"), [(0.0, 0.0, 0.0), (120.0, 0.1, 0.6), (200.0, 0.3, 0.95), (1e9, 0.5, 1.0)]
+)
+def test_what_comes_to_an_orbit_within_the_patience_is_labelled_so(found, patience, least, most):
     orbit, states, (alone, reached_at) = found
-    wide = dataclasses.replace(orbit, radius=1.0, close_returns=2, patience=patience)
+    wide = replace(orbit, radius=1.0, close_returns=2, patience=patience)
+    near, near_at = label_states(MODEL, [wide], *states, time_limit=END)
+    # Without patience the wide one is always reached first.
+    comes = (alone == 0) & (reached_at < patience)
     for order in ([wide, orbit], [orbit, wide]):
-        chaos, synchrony = order.index(wide), order.index(orbit)
         labels, times = label_states(MODEL, order, *states, time_limit=END)
-        near, near_at = label_states(MODEL, [wide], *states, time_limit=END)
-        comes = (alone == 0) & (reached_at < patience)
-        # Without patience the wide one is always reached first.
-        expected = np.where(comes, synchrony, np.where(near == 0, chaos, UNDETERMINED))
+        expected = np.where(comes, order.index(orbit), np.where(near == 0, order.index(wide), UNDETERMINED))
         assert labels.tolist() == expected.tolist()
         np.testing.assert_allclose(times, np.where(comes, reached_at, near_at))
-    shares = {0.0: (0.0, 0.0), 120.0: (0.1, 0.6), 200.0: (0.3, 0.95), 1e9: (0.5, 1.0)}
-    assert shares[patience][0] <= comes.mean() <= shares[patience][1]
+    assert least <= comes.mean() <= most
 
 
 @pytest.mark.parametrize(("came", "expected"), [([300.0, 100.0], 900.0), ([4000.0, 100.0], 10_000.0), ([], 10_000.0)])
-def test_patience_is_spared_where_a_sample_comes_early(monkeypatch, came, expected):
-    chaos = stand_in(Symmetry.SYMMETRIC, 0.1, 0, 0.05, kind=MotionKind.CHAOTIC, spacing=1.0, patience=10_000.0)
-    orbit = stand_in(Symmetry.SYMMETRIC, 0.1, 1, 0.0)
+def test_patience_is_spared_where_a_sample_comes_early(tell, came, expected):
+    chaos = stand_in(ahead=0.05, kind=MotionKind.CHAOTIC, spacing=1.0, patience=10_000.0)
     labels, times = np.array([1] * len(came) + [0, -1]), np.array([*came, 5000.0, 20_000.0])
-    asked = []
-
-    def told(model, known, position, velocity, stuck, time_limit):
-        asked.append(len(position))
-        return (labels, times) if len(asked) == 1 else (np.zeros(len(position), dtype=int), None)
-
-    monkeypatch.setattr(fractions, "label_together", told)
-    search = Search(MODEL, SearchSettings(samples=20, fraction_samples=50), attractors=[chaos, orbit])
+    asked = tell(fractions, "label_together", [(labels, times), (np.zeros(50, dtype=int), None)])
+    known = [chaos, stand_in(partner=1, ahead=0.0)]
+    search = Search(MODEL, SearchSettings(samples=20, fraction_samples=50), attractors=known)
     with shared_out(1) as each:
         (search,), _ = fractions.fraction_labels([search], "moving", each)
     assert [item.patience for item in search.attractors] == [expected, 0.0]
-    assert asked == [20, 50]
+    assert [len(position) for _, _, position, *_ in asked] == [20, 50]

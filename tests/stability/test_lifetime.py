@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import poisson
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, law_of
 from burridge_knopoff.stability import lifetime
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import stand_in
 
@@ -53,58 +50,47 @@ def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
 
 
 @pytest.fixture
-def scripted(monkeypatch):
+def find(monkeypatch, tell):
     """Return how lifetimes are found of trajectories whose labels at the end, and whose ends, are told."""
 
-    def find(attractors, reached, ends):
-        asked = []
+    def found(attractors, reached, ends):
+        runs = []
 
         class Ensemble:
             def run(self, position, velocity, stuck, times):
-                asked.append((len(position), times))
+                runs.append((len(position), times))
                 return {"position": position[:, None], "velocity": velocity[:, None]}
 
-        def label(model, known, starts, time_limit):
-            asked.append((len(starts), time_limit, len(known)))
-            if time_limit == SETTINGS.time_limit:
-                return np.array(reached), np.zeros(len(reached))
-            left = [n for n, index in enumerate(reached) if index not in (0, attractors[0].partner)]
-            assert len(starts) == len(left)
-            return np.array([-1 if math.isnan(end) else 0 for end in ends]), np.array(ends)
-
         monkeypatch.setattr(lifetime, "new_ensemble", lambda model: Ensemble())
-        monkeypatch.setattr(lifetime, "label", label)
-        return lifetimes(MODEL, attractors, SETTINGS), asked
+        left = np.where(np.isnan(ends), -1, 0), np.array(ends)
+        asked = tell(lifetime, "label", [(np.array(reached), np.zeros(len(reached))), left])
+        lives = lifetimes(MODEL, attractors, SETTINGS)
+        return lives, runs + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
 
-    return find
+    return found
 
 
 def chaos(partner=0):
-    return stand_in(Symmetry.SYMMETRIC, 0.1, partner, kind=MotionKind.CHAOTIC)
+    return stand_in(partner=partner, kind=MotionKind.CHAOTIC)
 
 
-def test_trajectories_that_have_left_are_counted_with_their_times(scripted):
-    other = stand_in(Symmetry.SYMMETRIC, 0.2, 1)
-    reached = [0] * 29 + [1, 1, -1]
-    # Two are captured by the other attractor, and of one it is not known what it has reached, nor when.
-    found, asked = scripted([chaos(), other], reached, [20.0, 40.0, math.nan])
+def test_trajectories_that_have_left_are_counted_with_their_times(find):
+    """Two are captured by the other attractor, and of one it is not known what it has reached, nor when."""
+    found, asked = find([chaos(), stand_in(partner=1)], [0] * 29 + [1, 1, -1], [20.0, 40.0, math.nan])
     assert found == [Lifetime(3, 29 * TIME + 20.0 + 40.0 + 0.5 * TIME), None]
     assert asked == [(32, [TIME]), (32, 50.0, 2), (3, TIME, 1)]
 
 
-def test_who_leaves_after_the_time_of_watching_has_not_left(scripted):
-    other = stand_in(Symmetry.SYMMETRIC, 0.2, 1)
-    found, _ = scripted([chaos(), other], [0] * 29 + [1, 1, 1], [20.0, math.nan, math.nan])
+def test_who_leaves_after_the_time_of_watching_has_not_left(find):
+    found, _ = find([chaos(), stand_in(partner=1)], [0] * 29 + [1, 1, 1], [20.0, math.nan, math.nan])
     assert found == [Lifetime(1, 31 * TIME + 20.0), None]
 
 
-def test_a_change_to_the_mirror_image_is_no_end(scripted):
-    pair = [chaos(1), chaos(0)]
-    found, asked = scripted(pair, [0, 1] * 16, [])
+def test_a_change_to_the_mirror_image_is_no_end(find):
+    found, asked = find([chaos(1), chaos(0)], [0, 1] * 16, [])
     assert found == [Lifetime(0, 32 * TIME)] * 2
-    assert asked[-1] == (0, TIME, 0)
-    assert len(asked) == 3
+    assert asked == [(32, [TIME]), (32, 50.0, 2), (0, TIME, 0)]
 
 
-def test_motion_that_is_not_chaotic_has_no_lifetime(scripted):
-    assert scripted([stand_in(Symmetry.SYMMETRIC, 0.1, 0)], [], []) == ([None], [])
+def test_motion_that_is_not_chaotic_has_no_lifetime(find):
+    assert find([stand_in()], [], []) == ([None], [])

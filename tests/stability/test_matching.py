@@ -5,32 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.matching import Outline, branches, matched, outlines
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import stand_in
-
-
-def at(*places, symmetry=Symmetry.SYMMETRIC, mean=0.1, partner=0, ahead=0.0):
-    """Return an attractor with returns at these places of all coordinates, with block 1 `ahead` of them.
-
-    In its mirror image it is block 3 that is ahead.
-    """
-    tilt = np.array([ahead, 0.0, 0.0, 0.0, 0.0, 0.0])
-    returns = np.array([np.full(6, place) for place in places])
-    told = {"returns": returns + tilt, "mirror_returns": returns + tilt[[2, 1, 0, 3, 4, 5]]}
-    return stand_in(symmetry, mean, partner, **told)
+from tests.stability.stand_in import ASYMMETRIC, SYNCHRONIZED, at
 
 
 def pair(place, ahead, mean=0.1):
     """Return a mirror pair; of the first one block 1 is ahead by that."""
-    first = at(place, symmetry=Symmetry.ASYMMETRIC, mean=mean, partner=1, ahead=ahead)
+    first = at(place, symmetry=ASYMMETRIC, mean_distance=mean, partner=1, ahead=ahead)
     return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
 
 
-def rows(values):
-    """Return arrays as lists."""
-    return [row.tolist() for row in values]
+def followed(found, memory):
+    """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
+    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, memory, 1.0)
+    return tuple([row.tolist() for row in values] for values in numbers)
 
 
 def test_a_set_is_as_near_as_the_nearer_of_two_directions():
@@ -69,55 +58,45 @@ def test_pairs_are_chosen_together():
 
 
 def test_synchrony_is_followed_by_synchrony_alone():
-    still = at(0.0, symmetry=Symmetry.SYNCHRONIZED)
-    assert matched(outlines([still]), outlines([at(0.0)]), 1.0) == {}
-    assert matched(outlines([at(0.0)]), outlines([still]), 1.0) == {}
-    # However far it has moved.
-    far = at(9.0, symmetry=Symmetry.SYNCHRONIZED)
-    assert matched(outlines([still]), outlines([far]), 1.0) == {0: 0}
+    """However far it has moved."""
+    still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
+    for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
+        assert matched(outlines([before]), outlines([after]), 1.0) == found
 
 
 def test_several_synchronized_attractors_are_several_branches():
-    one, other = (at(place, symmetry=Symmetry.SYNCHRONIZED, mean=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
+    one, other = (at(place, symmetry=SYNCHRONIZED, mean_distance=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
     swapped = [replace(other, partner=0), replace(one, partner=1)]
     branch, side = branches([0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], 0.1, 1.0)
-    assert rows(branch) == [[0, 1], [1, 0], [1]]
+    assert [row.tolist() for row in branch] == [[0, 1], [1, 0], [1]]
     assert not np.concatenate(side).any()
 
 
 def test_branches_at_a_pitchfork():
     """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
-    before = [at(0.0, symmetry=Symmetry.SYNCHRONIZED, mean=0.0), at(1.0, partner=1, mean=0.14)]
-    after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean=0.15)]
-    later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean=0.15)]
-    branch, side = branches([0.1, 0.2, 0.3], [before, after, later], 0.2, 1.0)
-    assert rows(branch) == [[0, 1], [2, 2, 1], [2, 2, 1]]
+    before = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0), at(1.0, partner=1, mean_distance=0.14)]
+    after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean_distance=0.15)]
+    later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean_distance=0.15)]
+    branch, side = followed([before, after, later], 0.2)
+    assert branch == [[0, 1], [2, 2, 1], [2, 2, 1]]
     # The one of the pair that is nearer to the first one of the pair before has its side.
-    assert rows(side) == [[0, 0], [-1, 1, 0], [1, -1, 0]]
+    assert side == [[0, 0], [-1, 1, 0], [1, -1, 0]]
 
 
 def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     there, else_where = at(0.0), at(1.0)
-    a = [0.1, 0.2, 0.3, 0.4, 0.5]
-    branch, _ = branches(a, [[there], [else_where], [there], [else_where], [else_where]], 0.2, 1.0)
-    assert rows(branch) == [[1], [2], [1], [2], [2]]
-    branch, _ = branches(a, [[there], [else_where], [there], [else_where], [else_where]], 0.1, 1.0)
-    assert rows(branch) == [[1], [2], [3], [4], [4]]
+    found = [[there], [else_where], [there], [else_where], [else_where]]
+    assert followed(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
+    assert followed(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
     # What was there just before comes first.
-    near = at(0.015)
-    branch, _ = branches(a[:3], [[there], [near], [at(0.012)]], 0.2, 1.0)
-    assert rows(branch) == [[1], [1], [1]]
+    assert followed([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
     # Where nothing is nothing is remembered wrongly.
-    branch, _ = branches(a[:3], [[there], [], [there]], 0.2, 1.0)
-    assert rows(branch) == [[1], [], [1]]
+    assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
 
 
 def test_branches_are_numbered_by_their_mean_distance():
     """Of one a in that order; what comes from synchrony is not synchrony."""
-    first = [at(place, partner=k, mean=mean) for k, (place, mean) in enumerate(((0.0, 0.3), (1.0, 0.1), (2.0, 0.2)))]
-    branch, side = branches([0.1], [first], 1.0, 1.0)
-    assert rows(branch) == [[3, 1, 2]]
-    assert not np.concatenate(side).any()
-    still = [at(0.0, symmetry=Symmetry.SYNCHRONIZED, mean=0.0)]
-    branch, _ = branches([0.1, 0.2, 0.3], [still, first[:1], still], 0.1, 1.0)
-    assert rows(branch) == [[0], [1], [0]]
+    first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
+    assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
+    still = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0)]
+    assert followed([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]

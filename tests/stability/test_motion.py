@@ -5,15 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff.stability.motion import (
-    MotionKind,
-    is_unstable,
-    motion_kind,
-    repetition,
-    section_closed,
-    section_period,
-)
+from burridge_knopoff import MotionKind
+from burridge_knopoff.stability.motion import is_unstable, motion_kind, repetition, section_closed, section_period
 from burridge_knopoff.stability.settings import MOTION
+
+QUASIPERIODIC = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2000))
 
 
 @pytest.mark.parametrize("period", [1, 2, 3, 7, 40])
@@ -26,13 +22,9 @@ def test_period_of_a_repeating_sequence(period):
 
 
 def test_quasiperiodic_and_short_sequences_have_no_period():
-    golden = (np.sqrt(5) - 1) / 2
-    assert repetition(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6, 60) == 0
-    assert repetition(np.array([]), 1e-6, 60) == 0
-    assert repetition(np.array([1.0, 1.0]), 1e-6, 60) == 0
-    assert repetition(np.tile(np.arange(70.0), 20), 1e-6, 60) == 0
-    # A slow drift is no period.
-    assert repetition(1.0 + 1e-7 * np.arange(400), 1e-6, 60) == 0
+    drift = 1.0 + 1e-7 * np.arange(400)
+    for section in (QUASIPERIODIC, np.array([]), np.array([1.0, 1.0]), np.tile(np.arange(70.0), 20), drift):
+        assert repetition(section, 1e-6, 60) == 0
 
 
 def run_of(velocity, states, first_event=0.0, falling=False):
@@ -76,20 +68,12 @@ def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
 
 
 def test_a_slow_approach_does_not_hide_a_period():
-    k = np.arange(1000)
-    assert section_period(run_of(1.0 + 0.5**k, np.ones((1000, 3))), MOTION) == 1
+    assert section_period(run_of(1.0 + 0.5 ** np.arange(1000), np.ones((1000, 3))), MOTION) == 1
 
 
 def test_the_numbers_of_the_kinds():
-    names = {
-        -1: "undetermined",
-        0: "synchronized",
-        1: "periodic",
-        2: "quasiperiodic",
-        3: "chaotic",
-        4: "transient_chaos",
-    }
-    assert {int(kind): kind.name.lower() for kind in MotionKind} == names
+    names = ["undetermined", "synchronized", "periodic", "quasiperiodic", "chaotic", "transient_chaos"]
+    assert {int(kind): kind.name.lower() for kind in MotionKind} == dict(enumerate(names, -1))
     assert MotionKind.TRANSIENT_CHAOS.words == "transient chaos"
 
 
@@ -140,16 +124,14 @@ def test_sections_that_repeat_after_however_many_points():
     orbit = random.random(150)
     assert section_closed(np.tile(orbit, 8), 1e-6)
     assert repetition(np.tile(orbit, 8), 1e-6, 60) == 0
-    golden = (np.sqrt(5) - 1) / 2
-    assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
+    assert not section_closed(QUASIPERIODIC, 1e-6)
     assert not section_closed(random.random(2000), 1e-6)
     # Many points lie near each other everywhere, and those of small motion: only closer than that tells an orbit.
-    assert not section_closed(np.cos(2 * np.pi * golden * np.arange(2_000_000)), 1e-6)
-    assert not section_closed(1e-4 * np.cos(2 * np.pi * golden * np.arange(2000)), 1e-6)
+    assert not section_closed(np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2_000_000)), 1e-6)
+    assert not section_closed(1e-4 * QUASIPERIODIC, 1e-6)
     assert section_closed(1e-4 * np.tile(orbit, 8), 1e-6)
-    assert not section_closed(np.ones(5), 1e-6)
     # Of the second half all but a twentieth have a neighbour, among twelve points at least.
-    assert [section_closed(np.ones(count), 1e-6) for count in (22, 24)] == [False, True]
+    assert [section_closed(np.ones(count), 1e-6) for count in (5, 22, 24)] == [False, False, True]
     pairs = np.repeat(np.arange(50.0), 2)
     for alone, closed in ((4, True), (6, False)):
         section = pairs + np.where(np.arange(100) < alone, 0.25 * (np.arange(100) % 2), 0.0)

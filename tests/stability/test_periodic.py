@@ -3,52 +3,41 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.attractor import Symmetry
 from burridge_knopoff.stability.branch import branch_orbit
-from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.floquet import multipliers
-from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.orbit import multipliers as synchronized_multipliers
 from burridge_knopoff.stability.periodic import find_periodic_orbit
 from burridge_knopoff.stability.return_map import ReturnMap, directions
 from burridge_knopoff.stability.simpler import simplest
 from burridge_knopoff.stability.transition import critical_a
 
+SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 PAPER, UNEVEN = Chain(3), Chain(3, coupling=(1.0, 2.0))
 #: Chain, law, a, U(0) from which long runs end on a closed orbit, its symmetry and how often each block stops on it.
 ORBITS = {
-    "symmetric": (PAPER, "linearized", 0.05, (-0.787, -0.661, -0.869), Symmetry.SYMMETRIC, (1, 0, 1)),
-    "asymmetric": (PAPER, "linearized", 0.12, (-0.989, -0.993, -0.991), Symmetry.ASYMMETRIC, (6, 6, 3)),
-    "two blocks": (Chain(2), "nonlinear", 0.2, (0.28, -0.72), Symmetry.SYMMETRIC, (1, 1)),
-    "five blocks": (
-        Chain(5),
-        "linearized",
-        0.05,
-        (0.68, 0.46, -0.21, 1.1, 0.4),
-        Symmetry.SYMMETRIC,
-        (33, 44, 0, 44, 33),
-    ),
-    "uneven": (UNEVEN, "linearized", 0.05, (-1.15, -0.42, -1.22), Symmetry.ASYMMETRIC, (1, 0, 1)),
-    "friction that drops": (PAPER, "carlson_langer", 0.15, (0.74, -0.17, -0.87), Symmetry.ASYMMETRIC, (4, 7, 7)),
+    "synchronized": (PAPER, "linearized", 0.05, (-0.989, -0.993, -0.991), SYNCHRONIZED, (1, 1, 1)),
+    "symmetric": (PAPER, "linearized", 0.05, (-0.787, -0.661, -0.869), SYMMETRIC, (1, 0, 1)),
+    "asymmetric": (PAPER, "linearized", 0.12, (-0.989, -0.993, -0.991), ASYMMETRIC, (6, 6, 3)),
+    "two blocks": (Chain(2), "nonlinear", 0.2, (0.28, -0.72), SYMMETRIC, (1, 1)),
+    "five blocks": (Chain(5), "linearized", 0.05, (0.68, 0.46, -0.21, 1.1, 0.4), SYMMETRIC, (33, 44, 0, 44, 33)),
+    "uneven": (UNEVEN, "linearized", 0.05, (-1.15, -0.42, -1.22), ASYMMETRIC, (1, 0, 1)),
+    "friction that drops": (PAPER, "carlson_langer", 0.15, (0.74, -0.17, -0.87), ASYMMETRIC, (4, 7, 7)),
 }
 #: U'(0) of all, but of the first.
 VELOCITY = {"symmetric": (0.0, 0.101, 0.189)}
 
 
-def settled(name):
-    """Return the model and the state that a long run ends with."""
-    chain, law, a, position = ORBITS[name][:4]
-    model = Model(chain, law_of(law, a))
-    velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
-    return model, Runner(model).after(model.begin(InitialState("one", position, velocity)), 20_000.0)
-
-
 @pytest.fixture(scope="module")
 def orbits():
-    return {name: closed_motion(*settled(name)) for name in ORBITS}
+    found = {}
+    for name, (chain, law, a, position, *_) in ORBITS.items():
+        model = Model(chain, law_of(law, a))
+        velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
+        end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 20_000.0)
+        found[name] = closed_motion(model, end)
+    return found
 
 
 def moved(orbit, direction, size):
@@ -60,37 +49,40 @@ def moved(orbit, direction, size):
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_an_orbit_returns(orbits, name):
+def test_a_settled_motion_returns_and_attracts(orbits, name):
     orbit = orbits[name]
     end = Runner(orbit.model).after(orbit.reference, orbit.period)
     assert np.abs(end.vector() - orbit.reference.vector()).max() < 1e-11
     assert orbit.residual < 1e-12
     assert (orbit.symmetry, orbit.signature) == ORBITS[name][4:]
-
-
-@pytest.mark.parametrize("name", ORBITS)
-def test_the_monodromy_is_that_of_finite_differences(orbits, name):
-    orbit = orbits[name]
-    basis = directions(orbit.reference.stuck, Symmetry.ASYMMETRIC)
+    assert (float(orbit.model.law(0.0)) < 1.0) == (name == "friction that drops")
+    found = multipliers(orbit)
+    assert found.unstable == 0
+    assert len(found.whole) == 2 * orbit.model.blocks - 1
+    # The monodromy is that of finite differences.
+    basis = directions(orbit.reference.stuck, ASYMMETRIC)
     difference = [(moved(orbit, d, 1e-6) - moved(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
     assert orbit.monodromy @ basis == pytest.approx(np.stack(difference, axis=1), rel=1e-5, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_a_settled_motion_attracts(orbits, name):
-    found = multipliers(orbits[name])
-    assert found.unstable == 0
-    assert len(found.whole) == 2 * orbits[name].model.blocks - 1
-
-
-def test_law_drops_in_one_of_the_orbits(orbits):
-    assert float(orbits["friction that drops"].model.law(0.0)) < 1.0
+def test_the_reference_is_in_the_middle_of_the_longest_time_without_events(orbits, name):
+    """Also where the guess is a stop, or an event with which that time begins or ends, or right after it."""
+    orbit = orbits[name]
+    times = np.array([time for time, _, _ in orbit.events])
+    gaps = np.diff(times, append=times[0] + orbit.period)
+    ends = [times[gaps.argmax()] + since + late for since in (0.0, gaps.max()) for late in (0.0, 1e-9)]
+    guesses = [Runner(orbit.model).after(orbit.reference, time) for time in ends]
+    for guess in (*guesses, *(orbit.start(block) for block in np.flatnonzero(orbit.signature))):
+        found = find_periodic_orbit(orbit.model, guess, orbit.return_time, orbit.symmetry)
+        around = [found.events[0][0], found.period - found.events[-1][0]]
+        assert around == pytest.approx([0.5 * gaps.max()] * 2, abs=1e-9)
 
 
 @pytest.mark.parametrize("a", [0.02, 0.036, 0.08, 0.15, 0.3])
 def test_the_synchronized_orbit_and_its_multipliers(families, law, a):
     known = families[law].at(a)
-    orbit = find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
+    orbit = find_periodic_orbit(known.model, known.reference, known.period, SYNCHRONIZED)
     assert orbit.period == pytest.approx(known.period, abs=1e-12)
     found, expected = multipliers(orbit), synchronized_multipliers(known)
     assert found.breaking[0] == pytest.approx(expected[0], abs=1e-11)
@@ -100,14 +92,14 @@ def test_the_synchronized_orbit_and_its_multipliers(families, law, a):
 def test_orbits_that_branch_off_at_the_pitchfork(families, law):
     family = families[law]
     known = branch_orbit(family, critical_a(family), 1e-3)
-    orbit = find_periodic_orbit(known.model, known.reference, known.period, Symmetry.ASYMMETRIC)
+    orbit = find_periodic_orbit(known.model, known.reference, known.period, ASYMMETRIC)
     assert orbit.period == pytest.approx(known.period, abs=1e-11)
     assert multipliers(orbit).unstable == 0
 
 
 def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
     half = orbits["symmetric"]
-    whole = find_periodic_orbit(half.model, half.reference, half.period, Symmetry.ASYMMETRIC)
+    whole = find_periodic_orbit(half.model, half.reference, half.period, ASYMMETRIC)
     assert whole.period == pytest.approx(half.period, abs=1e-12)
     assert whole.signature == half.signature
     assert np.abs(multipliers(whole).whole) == pytest.approx(np.abs(multipliers(half).whole), abs=1e-11)
@@ -116,15 +108,12 @@ def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
 
 def test_an_orbit_gone_round_twice_is_told(orbits):
     half = orbits["symmetric"]
-    twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, Symmetry.ASYMMETRIC)
+    twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, ASYMMETRIC)
     found = simplest(twice, 1e-9)
-    assert (found.symmetry, found.signature) == (Symmetry.SYMMETRIC, half.signature)
+    assert (found.symmetry, found.signature) == (SYMMETRIC, half.signature)
     assert simplest(half, 1e-9) is half
-
-
-def test_blocks_that_move_as_one_twice_in_a_period(families):
-    known = families["linearized"].at(0.05)
-    twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, Symmetry.SYNCHRONIZED)
+    known = orbits["synchronized"]
+    twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
     assert twice.signature == (2, 2, 2)
     assert simplest(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
 
@@ -132,9 +121,9 @@ def test_blocks_that_move_as_one_twice_in_a_period(families):
 def test_what_is_no_orbit_is_refused(orbits):
     orbit = orbits["asymmetric"]
     with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found near the guess"):
-        find_periodic_orbit(orbit.model, orbit.reference, 0.37 * orbit.period, Symmetry.ASYMMETRIC)
+        find_periodic_orbit(orbit.model, orbit.reference, 0.37 * orbit.period, ASYMMETRIC)
     with pytest.raises(ValueError, match="symmetry: 'symmetric' is not allowed"):
-        find_periodic_orbit(orbits["uneven"].model, orbit.reference, orbit.period, Symmetry.SYMMETRIC)
+        find_periodic_orbit(orbits["uneven"].model, orbit.reference, orbit.period, SYMMETRIC)
     with pytest.raises(OrbitError, match="it never stops"):
         orbits["symmetric"].start(1)
     with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found within 20"):

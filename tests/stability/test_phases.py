@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import Chain, Instant, Model, law_of
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.phases import common_phases, end_frequencies, oscillating_states, slipping_amplitude
 

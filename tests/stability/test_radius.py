@@ -3,27 +3,17 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff import Chain, Instant, Model, MotionKind, SearchSettings, law_of
 from burridge_knopoff.stability import attractor, radius
-from burridge_knopoff.stability.attractor import Symmetry, close_returns, pushed, spread
+from burridge_knopoff.stability.attractor import close_returns, pushed, spread
 from burridge_knopoff.stability.labels import label
-from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
-from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.steady import Returns
-from tests.stability.stand_in import stand_in
+from tests.stability.stand_in import ASYMMETRIC, at, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
 SETTINGS = SearchSettings(transient=100.0, window=70.0, time_limit=900.0, seed=3, pushes=10)
-
-
-def at(place, **told):
-    """Return an attractor whose one return has every coordinate at one place."""
-    returns = np.full((1, 6), float(place))
-    return stand_in(
-        Symmetry.SYMMETRIC, 0.1, 0, **{"returns": returns, "mirror_returns": returns, "radius": 1.0, **told}
-    )
+CHAOS = {"kind": MotionKind.CHAOTIC, "spacing": 0.1}
 
 
 def test_how_close_a_push_has_to_come_back():
@@ -32,74 +22,72 @@ def test_how_close_a_push_has_to_come_back():
 
 
 @pytest.mark.parametrize(
-    ("kind", "slow", "spacing", "place", "expected"),
+    ("wide", "place", "expected"),
     [
-        (MotionKind.CHAOTIC, False, 0.1, 0.3, [1]),  # within three spacings
-        (MotionKind.CHAOTIC, False, 0.1, 0.31, []),
-        (1, True, 0.1, 0.3, [1]),
-        (1, False, 0.1, 0.0, []),
+        (CHAOS, 0.3, [1]),  # within three spacings
+        (CHAOS, 0.31, []),
+        ({"slow": True, "spacing": 0.1}, 0.3, [1]),
+        ({"spacing": 0.1}, 0.0, []),
     ],
 )
-def test_closed_orbits_in_the_midst_of_a_set(kind, slow, spacing, place, expected):
-    wide = at(0.0, kind=kind, slow=slow, spacing=spacing)
-    found = [wide, at(place, spacing=1e-6), at(place, spacing=1.1e-6)]
+def test_closed_orbits_in_the_midst_of_a_set(wide, place, expected):
+    found = [at(0.0, **wide), at(place, spacing=1e-6), at(place, spacing=1.1e-6)]
     assert midst(found, 0, 1e-6) == expected
     assert midst(found, 1, 1e-6) == []
 
 
 def test_radii_are_bounded_by_the_way_to_others():
     """The scale is that of v = 0.2: twice that of the paper."""
-    near = bounded(MODEL, [at(0.0), at(0.05), at(9.0), at(-9.0, radius=0.01)], 1e-6)
+    others = [at(place, radius=1.0) for place in (0.0, 0.05, 9.0)]
+    near = bounded(MODEL, [*others, at(-9.0, radius=0.01)], 1e-6)
     assert [item.radius for item in near] == pytest.approx([0.4 * 0.05, 0.4 * 0.05, 0.04, 0.01])
     assert {item.patience for item in near} == {0.0}
     # Chaos with an orbit in its midst keeps its radius, and asks for patience; the orbit keeps its radius too.
-    chaos, orbit = bounded(MODEL, [at(0.0, kind=MotionKind.CHAOTIC, spacing=0.1), at(0.05, close_returns=20)], 1e-6)
+    chaos, orbit = bounded(MODEL, [at(0.0, radius=1.0, **CHAOS), at(0.05, radius=1.0, close_returns=20)], 1e-6)
     assert (chaos.radius, chaos.close_returns, chaos.patience) == (0.04, 8, 10_000.0)
     assert (orbit.radius, orbit.close_returns, orbit.patience) == (0.04, 20, 0.0)
 
 
 @pytest.fixture
-def scripted(monkeypatch):
-    """Return how a radius is captured where the pushes of each group reach what is told."""
-    asked = []
+def capture(monkeypatch):
+    """Return how a radius is captured where the pushes of each group reach what is told, with what each is asked."""
 
-    def capture(found, index, reached, least=1e-5):
-        reached = [list(group) for group in reached]
+    def captures(found, index, reached, least=1e-5):
+        asked, left = [], iter(reached)
 
-        def told(of_model, attractors, starts, time_limit, *_):
+        def told(_, attractors, starts, time_limit, *__):
             assert time_limit == 900.0
             asked.append((len(starts), [item.radius for item in attractors], attractors[index].patience))
-            group = reached.pop(0)
-            return np.array((group * 4)[: len(starts)]), None
+            return np.array((next(left) * 4)[: len(starts)]), None
 
         monkeypatch.setattr(radius, "label", told)
         monkeypatch.setattr(radius, "pushed", lambda start, size, generator: (start, size))
         size = captured(MODEL, found, index, least, 1e-6, SETTINGS)
-        assert not reached
+        assert len(asked) == len(reached)
         return size, asked
 
-    return capture
+    return captures
 
 
-def test_a_radius_is_captured_where_all_pushes_come_back(scripted):
+def test_a_radius_is_captured_where_all_pushes_come_back(capture):
     found = [at(0.0, radius=0.04), at(9.0, radius=0.001)]
-    size, asked = scripted(found, 0, [[0], [0], [0]])
+    size, asked = capture(found, 0, [[0], [0], [0]])
     assert size == 0.04
     # Ten pushes in groups of four, each to come back to a tenth of the way.
     assert asked == [(count, [pytest.approx(0.004), 0.001], 0.0) for count in (4, 4, 2)]
-    assert scripted(found, 0, [[0], [0, 0, 0, -1], [0], [0], [0]])[0] == 0.02
-    assert scripted(found, 0, [[1], [1]], least=0.01)[0] == 0.0
+    assert capture(found, 0, [[0], [0, 0, 0, -1], [0], [0], [0]])[0] == 0.02
+    assert capture(found, 0, [[1], [1]], least=0.01)[0] == 0.0
     # The least is that of the scale, 2.
-    assert scripted(found, 0, [[1], [0], [0], [0]], least=0.01)[0] == 0.02
-    assert scripted(found, 0, [[1]], least=0.0101)[0] == 0.0
+    assert capture(found, 0, [[1], [0], [0], [0]], least=0.01)[0] == 0.02
+    assert capture(found, 0, [[1]], least=0.0101)[0] == 0.0
 
 
-def test_what_comes_to_an_orbit_in_the_midst_has_come_back(scripted):
-    found = [at(0.0, kind=MotionKind.CHAOTIC, spacing=0.1, radius=0.04, patience=2000.0), at(0.05, radius=0.04)]
-    size, asked = scripted(found, 0, [[0, 1], [1], [0]])
+def test_what_comes_to_an_orbit_in_the_midst_has_come_back(capture):
+    found = [at(0.0, radius=0.04, patience=2000.0, **CHAOS), at(0.05, radius=0.04)]
+    size, asked = capture(found, 0, [[0, 1], [1], [0]])
     assert size == 0.04
     assert asked[0] == (4, [0.04, 0.04], 0.0)
-    assert scripted(found, 1, [[0]], least=0.015)[0] == 0.0
+    assert capture(found, 1, [[0]], least=0.015)[0] == 0.0
 
 
 def test_a_push_changes_positions_and_velocities_of_slipping_blocks():
@@ -120,29 +108,23 @@ def test_a_closed_orbit_is_gone_round_twice(length, spacing, expected):
     orbit = np.tile(np.random.default_rng(1).uniform(size=(length, 6)), (-(-600 // length), 1))
     # Within ten tolerances.
     orbit[::2] += 9e-6
-    found = Returns(orbit, orbit, spacing, 0.0)
-    assert close_returns(found, 1e-6) == expected
+    assert close_returns(Returns(orbit, orbit, spacing, 0.0), 1e-6) == expected
 
 
-def test_a_slow_set_is_shown_by_pushed_states(monkeypatch):
-    asked = []
-
-    def visit(model, start, transient, window, *_):
-        asked.append((start.position - 1.0, transient, window))
-        returns = np.full((1, 6), float(len(asked)))
-        return None if len(asked) == 5 else Returns(returns, -returns, 0.0, 0.0)
-
-    monkeypatch.setattr(attractor, "visit", visit)
+def test_a_slow_set_is_shown_by_pushed_states(tell):
+    shown = [Returns(np.full((1, 6), float(n)), np.full((1, 6), float(-n)), 0.0, 0.0) for n in range(1, 13)]
+    shown[4] = None
+    asked = tell(attractor, "visit", shown)
     found = spread(MODEL, at(1.0).motion, SETTINGS)
     numbers = [n for n in range(1, 13) if n != 5]
     assert found.returns[:, 0].tolist() == [1.0, 1.0, *(sign * n for n in numbers for sign in (1.0, -1.0))]
-    assert {(transient, window) for _, transient, window in asked} == {(30.0, 70.0)}
+    assert {(transient, window) for _, _, transient, window, *_ in asked} == {(30.0, 70.0)}
     # By five resolutions at the scale 2, and that in all directions.
-    sizes = np.abs([change for change, *_ in asked])
+    sizes = np.abs([start.position - 1.0 for _, start, *_ in asked])
     assert 0.009 < sizes.max() <= 0.01
 
 
 def test_without_attractors_nothing_is_reached():
     reached, times = label(MODEL, [], [None, None], 10.0)
     assert (reached.tolist(), times.tolist()) == ([-1, -1], [0.0, 0.0])
-    assert label(MODEL, [stand_in(Symmetry.ASYMMETRIC, 0.1, 0)], [], 10.0)[0].shape == (0,)
+    assert label(MODEL, [stand_in(ASYMMETRIC)], [], 10.0)[0].shape == (0,)

@@ -6,17 +6,10 @@ config/README.md has the ranges and defaults themselves; tests/study/test_keys.p
 import numpy as np
 import pytest
 
+from burridge_knopoff import MotionSettings, SearchSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.ranges import Interval, Number, Whole
-from burridge_knopoff.stability.settings import (
-    MOTION,
-    SEARCH,
-    BasinSettings,
-    MotionSettings,
-    Sample,
-    SearchSettings,
-    Watch,
-)
+from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, Sample, Watch
 
 #: {class: values that any value of another field goes with}
 CLASSES = {

@@ -16,39 +16,34 @@ def plain(label, separation, count, first=UNIT, last=UNIT, seed=5):
     start = low - separation + (high - low + 2 * separation) * generator.random((count, 2))
     angle = 2.0 * np.pi * generator.random(count)
     end = start + separation * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    both = (
-        (np.concatenate([start, end], axis=1) >= [*low, *low])
-        & (np.concatenate([start, end], axis=1) <= [*high, *high])
-    ).all(axis=1)
+    both = np.logical_and.reduce([((low <= points) & (points <= high)).all(axis=1) for points in (start, end)])
     one, other = label(start[both]), label(end[both])
     known = (one >= 0) & (other >= 0)
     share = (one != other)[known].mean()
     return share, np.sqrt(share * (1.0 - share) / known.sum())
 
 
+def check_fractions(label, ranges, count, seeds, drawn, separations):
+    """Hold the fractions of pairs, by their mean and its error over seeds, against those of so many pairs drawn."""
+    pairs = [follow_pairs(label, *ranges, count, seed) for seed in range(seeds)]
+    found = [one.different.sum(axis=0) / one.known.sum(axis=0) for one in pairs]
+    mean, error = np.mean(found, axis=0), np.std(found, axis=0, ddof=1) / np.sqrt(seeds)
+    for k in separations:
+        expected, own = plain(label, SEPARATIONS[k], drawn, *ranges)
+        assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], own), k
+
+
 @pytest.mark.parametrize("label", [half_plane, cantor(3)], ids=["half_plane", "cantor"])
 @pytest.mark.parametrize("ranges", [(UNIT, UNIT), ((0.0, 1.0), (0.2, 0.7))], ids=["square", "strip"])
 def test_the_fraction_is_that_of_plain_sampling(label, ranges):
-    found = []
-    for seed in range(60):
-        pairs = follow_pairs(label, *ranges, 200, seed)
-        found.append(pairs.different.sum(axis=0) / pairs.known.sum(axis=0))
-    mean, error = np.mean(found, axis=0), np.std(found, axis=0, ddof=1) / np.sqrt(len(found))
-    for k in (0, 1, 3, 5):
-        expected, own = plain(label, SEPARATIONS[k], 1_000_000, *ranges)
-        assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], own), k
+    check_fractions(label, ranges, 200, 60, 1_000_000, (0, 1, 3, 5))
 
 
 def test_undetermined_points_are_left_out():
     def label(points):
         return np.where(points[:, 1] > 0.6, -1, half_plane(points))
 
-    found = [follow_pairs(label, UNIT, UNIT, 400, seed) for seed in range(40)]
-    shares = [pairs.different.sum(axis=0) / pairs.known.sum(axis=0) for pairs in found]
-    mean, error = np.mean(shares, axis=0), np.std(shares, axis=0, ddof=1) / np.sqrt(40)
-    for k in (0, 2):
-        expected, own = plain(label, SEPARATIONS[k], 400_000)
-        assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], own)
+    check_fractions(label, (UNIT, UNIT), 400, 40, 400_000, (0, 2))
 
 
 def test_weights_are_those_of_pairs_of_the_plane():

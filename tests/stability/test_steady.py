@@ -1,27 +1,15 @@
 """Returns and what they tell: from the events of whole runs, and of hand-made sets."""
 
-import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, Settings, law_of, simulate
+from burridge_knopoff import Chain, Model, MotionKind, Settings, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import MOTION
-from burridge_knopoff.stability.steady import (
-    Returns,
-    distance,
-    instant_of,
-    is_near,
-    least_distance,
-    lies_on,
-    measure,
-    orbit_length,
-    visit,
-)
+from burridge_knopoff.stability.steady import Returns, instant_of, lies_on, measure, visit
 from tests.stability.stand_in import stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
@@ -42,12 +30,10 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     start = chain.begin(PAPER_STATES["plus"])
     run = simulate(chain, PAPER_STATES["plus"], Settings(transient=500.0, window=300.0, batches=6, events="all"))
     found = visit(chain, start, 500.0, 300.0)
-    stops = {}
-    for block in (1, 3):
-        chosen = (run.event_time >= 500.0) & (run.event_block == block) & (run.event_kind == 0)
-        stops[block] = [run.event_position[chosen] - chain.sliding_offset, run.event_velocity[chosen]]
-    assert found.returns == pytest.approx(np.hstack(stops[1]), abs=1e-9)
-    mirrored = np.hstack([part[:, ::-1] for part in stops[3]]) if threshold == 1.0 else np.zeros((0, 6))
+    stops = [(run.event_time >= 500.0) & (run.event_block == block) & (run.event_kind == 0) for block in (1, 2, 3)]
+    state = run.event_position - chain.sliding_offset, run.event_velocity
+    assert found.returns == pytest.approx(np.hstack([part[stops[0]] for part in state]), abs=1e-9)
+    mirrored = np.hstack([part[stops[2], ::-1] for part in state])[: None if threshold == 1.0 else 0]
     assert found.mirror_returns == pytest.approx(mirrored, abs=1e-9)
     first, second = np.array_split(found.returns, 2)
     assert found.spacing == pytest.approx(np.quantile(nearest(second, second, 1), 0.95))
@@ -58,8 +44,7 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     motion = measure(chain, start, 500.0, 300.0, MOTION)
     assert motion.returns == pytest.approx(found.returns, abs=1e-9)
     assert motion.spacing == pytest.approx(found.spacing, abs=1e-9)
-    counts = [np.sum((run.event_time >= 500.0) & (run.event_block == n) & (run.event_kind == 0)) for n in (1, 2, 3)]
-    assert motion.stop_rate.tolist() == [count / 300.0 for count in counts]
+    assert motion.stop_rate.tolist() == [np.sum(chosen) / 300.0 for chosen in stops]
     assert motion.mean_distance == pytest.approx(run.mean_distance, abs=1e-9)
     assert motion.mean_distance_error == pytest.approx(run.mean_distance_error, abs=1e-9)
     assert motion.exponent.shape == (3,)
@@ -70,18 +55,15 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
 
 
 def test_mirror_images_of_a_motion():
-    motion = stand_in(Symmetry.ASYMMETRIC, 0.1, 1, stop_rate=np.array([0.1, 0.2, 0.3])).motion
+    motion = stand_in(stop_rate=np.array([0.1, 0.2, 0.3])).motion
     mirrored = motion.mirrored()
-    assert (mirrored.returns is motion.mirror_returns, mirrored.mirror_returns is motion.returns) == (True, True)
+    assert mirrored.returns is motion.mirror_returns
+    assert mirrored.mirror_returns is motion.returns
     assert mirrored.stop_rate.tolist() == [0.3, 0.2, 0.1]
-    whole = motion.symmetrized()
-    assert (
-        whole.returns.tolist()
-        == whole.mirror_returns.tolist()
-        == [*motion.returns.tolist(), *(-motion.returns).tolist()]
-    )
+    whole, both = motion.symmetrized(), [*motion.returns.tolist(), *(-motion.returns).tolist()]
+    assert whole.returns.tolist() == whole.mirror_returns.tolist() == both
     assert whole.spacing == pytest.approx(np.quantile(nearest(whole.returns, whole.returns, 1), 0.95))
-    alone = dataclasses.replace(motion, mirror_returns=np.zeros((0, 6)))
+    alone = replace(motion, mirror_returns=np.zeros((0, 6)))
     assert alone.with_returns(ROWS).mirror_returns.shape == (0, 6)
 
 
@@ -121,9 +103,8 @@ def test_what_has_settled(spacing, drift, closed, settled):
     ],
 )
 def test_what_lies_on_an_attractor(away, kind, spacing, own_spacing, expected):
-    attractor = stand_in(Symmetry.ASYMMETRIC, 0.1, 0, returns=ROWS, kind=kind, spacing=spacing).motion
-    found = Returns(ROWS + away, ROWS, own_spacing, 0.0)
-    assert lies_on(found, attractor, 1e-3, 1e-6) == expected
+    attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
+    assert lies_on(Returns(ROWS + away, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
 
 
 @pytest.mark.parametrize(
@@ -133,8 +114,8 @@ def test_the_length_of_an_orbit(length, longest, expected):
     """Of forty returns the first third is left out, and what is left, 27, shows twice what is at most 13 long."""
     orbit = np.tile(ROWS[:length], (40, 1))[:40]
     orbit[:13] += 0.5
-    assert orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
-    assert orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
+    assert steady.orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
+    assert steady.orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
 
 
 def test_a_bound_changes_no_distance_within_it():
@@ -142,13 +123,13 @@ def test_a_bound_changes_no_distance_within_it():
     generator = np.random.default_rng(8)
     for size in (9, 20, 21, 200):
         first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))
-        least, far = least_distance(first, second), distance(first, second)
+        least, far = steady.least_distance(first, second), steady.distance(first, second)
         assert far == pytest.approx(np.quantile(nearest(first, second, 0), 0.95), rel=1e-12)
         assert least == nearest(first, second, 0).min()
-        assert least_distance(first, second, least) == least
-        assert least_distance(first, second, 0.999 * least) == np.inf
+        assert steady.least_distance(first, second, least) == least
+        assert steady.least_distance(first, second, 0.999 * least) == np.inf
         for limit in (0.5 * far, 0.9999 * far, far, 1.0001 * far, 2.0 * far):
-            assert is_near(first, second, limit) == (far <= limit)
+            assert steady.is_near(first, second, limit) == (far <= limit)
 
 
 @pytest.mark.parametrize(
@@ -161,20 +142,13 @@ def test_a_bound_changes_no_distance_within_it():
         (MotionKind.PERIODIC, 6e-4, "not asked", MotionKind.PERIODIC),
     ],
 )
-def test_weak_chaos_is_looked_for_in_a_longer_window(monkeypatch, kind, exponent, longer, expected):
-    first = stand_in(Symmetry.ASYMMETRIC, 0.1, 0, kind=kind, exponent=np.array([exponent])).motion
+def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longer, expected):
+    first = stand_in(kind=kind, exponent=np.array([exponent])).motion
     later = {"kind": longer, "exponent": np.array([0.5]), "section_period": 9, "returns": ROWS, "mean_distance": 5.0}
-    answers = [first, dataclasses.replace(first, **later) if longer is not None else None]
-    asked = []
-
-    def scripted(of_model, start, transient, window, settings, *_):
-        asked.append((transient, window))
-        return answers[len(asked) - 1]
-
-    monkeypatch.setattr(steady, "_measure", scripted)
+    asked = tell(steady, "_measure", [first, replace(first, **later) if longer is not None else None])
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == expected
-    assert asked == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
+    assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
     taken = longer not in (None, "not asked")
     assert (found.section_period, found.exponent.tolist()) == ((9, [0.5]) if taken else (1, [exponent]))
     # The returns and the mean distance stay those of the usual window.

@@ -6,21 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import InitialState, simulate
-from burridge_knopoff.stability import branch
+from burridge_knopoff import InitialState, OrbitError, simulate, transverse_multiplier
+from burridge_knopoff.stability import branch, transition
 from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import OrbitError, flow, multipliers, transverse_multiplier
-from burridge_knopoff.stability.transition import (
-    apart,
-    change_point,
-    critical_a,
-    critical_a_error,
-    finite_difference_multiplier,
-    grazing_a,
-    least_center_speed,
-    symmetric_flip_a,
-)
+from burridge_knopoff.stability.orbit import flow, multipliers
+from burridge_knopoff.stability.transition import critical_a, finite_difference_multiplier, grazing_a, symmetric_flip_a
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
@@ -36,7 +27,7 @@ def test_critical_a_to_ten_digits(families, critical, law):
     slope = (transverse_multiplier(family.at(a + 1e-4)) - transverse_multiplier(family.at(a - 1e-4))) / 2e-4
     assert slope > 5.0
     assert abs(exact_transverse_multiplier(family.at(a)) - 1.0) / slope < 1e-12
-    assert critical_a_error(family, a) < 1e-11
+    assert transition.critical_a_error(family, a) < 1e-11
 
 
 def test_grazing_a_to_ten_digits(families, law):
@@ -54,9 +45,9 @@ def test_least_center_speed(families):
     orbit = families["nonlinear"].at(0.03)
     times = np.linspace(0.0, orbit.period, 301)
     speed = [flow(orbit.model, orbit.reference, time)[0].instant().velocity[1] for time in times]
-    least = least_center_speed(orbit)
+    least = transition.least_center_speed(orbit)
     assert min(speed) - 1e-3 < least <= min(speed)
-    assert least_center_speed(families["nonlinear"].at(0.05)) == 0.0
+    assert transition.least_center_speed(families["nonlinear"].at(0.05)) == 0.0
 
 
 def test_symmetric_multiplier_at_the_flip(families, law):
@@ -65,7 +56,7 @@ def test_symmetric_multiplier_at_the_flip(families, law):
 
 
 def test_no_change_is_told(families):
-    assert np.isnan(change_point(families["linearized"], lambda orbit: orbit.period))
+    assert np.isnan(transition.change_point(families["linearized"], lambda orbit: orbit.period))
 
 
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
@@ -77,10 +68,9 @@ def test_finite_differences_agree_with_the_tangent_map(families, law, a):
 def test_differences_of_blocks_1_and_3_fade_below_and_grow_above(families, critical, law):
     for offset in (-0.002, 0.002):
         orbit = families[law].at(critical[law] + offset)
-        periods = 100
-        end = flow(orbit.model, apart(orbit.reference, 1e-8), periods * orbit.period)[0].instant()
+        end = flow(orbit.model, transition.apart(orbit.reference, 1e-8), 100 * orbit.period)[0].instant()
         factor = (end.position[0] - end.position[2]) / 1e-8
-        assert factor == pytest.approx(transverse_multiplier(orbit) ** periods, rel=1e-5)
+        assert factor == pytest.approx(transverse_multiplier(orbit) ** 100, rel=1e-5)
         assert (factor > 1.0) == (offset > 0.0)
 
 
@@ -91,12 +81,10 @@ def test_the_branch_is_the_attractor_beyond(families, critical, law):
     assert a > critical[law]
     assert orbit.asymmetry == pytest.approx(1e-2, abs=1e-12)
     assert orbit.residual <= 1e-14
-    near = families[law].at(a)
-    position, velocity = slipping_state(near)
+    position, velocity = slipping_state(families[law].at(a))
     position[0] += 1e-3
-    run = simulate(
-        law, a, InitialState("near", position, velocity), transient=8000.0, window=100 * orbit.period, batches=2
-    )
+    near = InitialState("near", position, velocity)
+    run = simulate(law, a, near, transient=8000.0, window=100 * orbit.period, batches=2)
     assert run.mean_distance == pytest.approx(mean_distance(orbit), rel=1e-9)
     # After the last stop of a period both blocks stick, x_1 − x_3 apart.
     both = run.event_position[:, 0] - run.event_position[:, 2]

@@ -4,9 +4,8 @@ import re
 from dataclasses import fields
 from pathlib import Path
 
-from burridge_knopoff import Chain, Model, find_attractors, law_of
+from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
 from burridge_knopoff.stability import attractor, attractors, continuation, labels, radius, steady
-from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.tuning import Tuning
 
 PAGE = Path(__file__).parents[2] / "docs" / "attractors.md"
