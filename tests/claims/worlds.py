@@ -20,6 +20,7 @@ STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
 PAIR = ("other_law", "initial", "a")
 BLOCK = (*POINT, "block")
+STATE = ("position", "velocity")
 BLOCKS = np.array([1, 2, 3])
 SYNCHRONY = (A >= 0.005) & (A <= 0.08)
 CONFIG = {
@@ -30,10 +31,7 @@ CONFIG = {
     "window": 7000,
     "motion": MOTION,
     **{key: PAPER_MODELS[key] for key in ("laws", "chain")},
-    "initial": {
-        name: {"position": list(state.position), "velocity": list(state.velocity)}
-        for name, state in PAPER_STATES.items()
-    },
+    "initial": {name: {key: list(getattr(PAPER_STATES[name], key)) for key in STATE} for name in PAPER_STATES},
 }
 
 Summaries = dict[str, xarray.Dataset]
