@@ -17,6 +17,7 @@ BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]
 RUN = ["simulate", "--law", "linearized", "--a", "0.08", *SHORT]
 DROP = ["simulate", "--law", "carlson_langer", "--a", "0.08", *SHORT]
+LAWS = "linearized | nonlinear | carlson_langer | exponential | stribeck"
 OWN = ["simulate", "--a", "0.08", *SHORT, "--formula"]
 
 
@@ -144,10 +145,7 @@ def test_no_events(tmp_path):
         ([*RUN, "--a", "-0.1", "--out", "x.nc"], "a: -0.1"),
         ([*RUN, "--a", "nan", "--out", "x.nc"], "a: nan"),
         ([*RUN, "--a", "1e400", "--out", "x.nc"], "a: inf"),
-        (
-            [*RUN, "--law", "linear", "--out", "x.nc"],
-            "linearized | nonlinear | carlson_langer | exponential | stribeck",
-        ),
+        ([*RUN, "--law", "linear", "--out", "x.nc"], LAWS),
         ([*RUN, "--law", "nonlinear", "--solver", "map", "--out", "x.nc"], "series | rk4"),
         ([*RUN, "--solver", "euler", "--out", "x.nc"], "series | map | rk4"),
         (["simulate", "--a", "0.1", "--out", "x.nc"], "--law --formula"),
@@ -222,9 +220,8 @@ def test_bad_input(tmp_path, arguments, words):
 
 
 def test_a_run_that_ends_early_says_so(tmp_path):
-    run = bk(
-        *RUN[:4], "1.9", "--contact", "symmetric", "--transient", "0", "--window", "1000", "--out", "x.nc", cwd=tmp_path
-    )
+    longer = ["--transient", "0", "--window", "1000"]
+    run = bk(*RUN[:4], "1.9", "--contact", "symmetric", *longer, "--out", "x.nc", cwd=tmp_path)
     assert (run.returncode, run.stdout) == (0, "")
     assert run.stderr.count("\n") == 1
     assert "status diverged" in run.stderr

@@ -145,9 +145,8 @@ def test_what_is_proved_is_told_beside_its_number() -> None:
     rows = [row for row in csv.DictReader(io.StringIO(as_csv(content))) if row["proved"]]
     assert [(row["value"], row["proved"]) for row in rows] == [("0.0801", "proved")]
     world["orbits"]["critical_a"].values[0] += 1e-6
-    with pytest.raises(
-        ValueError, match=r"critical_a: 0\.080101.* is not allowed: proof\.nc has 0\.0800999 to 0\.0801001"
-    ):
+    reason = r"critical_a: 0\.080101.* is not allowed: proof\.nc has 0\.0800999 to 0\.0801001"
+    with pytest.raises(ValueError, match=reason):
         ledger("test", claims, evidence(world), [])
 
 

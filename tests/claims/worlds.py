@@ -21,6 +21,7 @@ STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
 PAIR = ("other_law", "initial", "a")
 BLOCK = (*POINT, "block")
+STATE = ("position", "velocity")
 BLOCKS = np.array([1, 2, 3])
 SYNCHRONY = (A >= 0.005) & (A <= 0.08)
 # Kinds of motion of the runs, one row a state.
@@ -34,10 +35,7 @@ CONFIG = {
     "window": 7000,
     "motion": MOTION,
     **{key: PAPER_MODELS[key] for key in ("laws", "chain")},
-    "initial": {
-        name: {"position": list(state.position), "velocity": list(state.velocity)}
-        for name, state in PAPER_STATES.items()
-    },
+    "initial": {name: {key: list(getattr(PAPER_STATES[name], key)) for key in STATE} for name in PAPER_STATES},
 }
 
 Summaries = dict[str, xarray.Dataset]

@@ -8,13 +8,15 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 
+def runs(laws, least):
+    """Runs from one state, whose least friction is that of each law and a."""
+    found = xr.DataArray(least, {"law": list(laws), "initial": ["plus"], "a": [0.0, 0.3]}, ("law", "initial", "a"))
+    return found.to_dataset(name="least_friction")
+
+
 def test_friction_laws_are_the_models():
     least = np.array([[[1.0, 0.7]], [[1.0, np.nan]]])
-    runs = xr.Dataset(
-        {"least_friction": (("law", "initial", "a"), least)},
-        {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.3]},
-    )
-    laws, seen = draw(runs, {law: {} for law in PAPER_LAWS}, 0.3).axes
+    laws, seen = draw(runs(PAPER_LAWS, least), {law: {} for law in PAPER_LAWS}, 0.3).axes
     for number, law in enumerate(PAPER_LAWS):
         drawn = seen.get_lines()[number].get_ydata()
         assert np.array_equal(drawn, least[number, 0], equal_nan=True)
@@ -28,11 +30,7 @@ def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
         "drop": {"law": "carlson_langer", "sigma": 0.02},
         "own": {"formula": "1 - c*tanh(a*u/c)" + " + 0*u" * 60, "c": 0.1},
     }
-    runs = xr.Dataset(
-        {"least_friction": (("law", "initial", "a"), np.ones((3, 1, 1)))},
-        {"law": list(laws), "initial": ["plus"], "a": [0.3]},
-    )
-    figure = draw(runs, laws, 0.2)
+    figure = draw(runs(laws, np.ones((3, 1, 2))), laws, 0.2)
     entries = [text.get_text() for text in figure.legends[0].get_texts()]
     assert entries[:2] == ["linearized: Φ = 1 − aU′", "drop: Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.02"]
     assert entries[2].startswith("own: Φ = 1 - c*tanh(a*u/c)")

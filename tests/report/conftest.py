@@ -59,10 +59,8 @@ def poor(tmp_path_factory) -> Poor:
         ' "conventions": {"<u onfocus=x>any</u>": "not testable"}}]}'
     )
     claims.write_text(as_json(content))
-    summaries, figures = (
-        {path.stem: path for path in (folder / place).glob(f"*{suffix}")}
-        for place, suffix in (("summary", ".nc"), ("figures", ".png"))
-    )
+    files = (folder.glob(f"{place}/*.{suffix}") for place, suffix in (("summary", "nc"), ("figures", "png")))
+    summaries, figures = ({path.stem: path for path in one} for one in files)
     return Poor(study, Sources(claims, summaries, figures, folder / "benchmarks"), folder)
 
 

@@ -61,9 +61,8 @@ def test_eigenvalues_and_growth_rates(found):
     assert real.sel(law="linearized", a=0.3).values.tolist() == [0.15] * 6
     assert real.sel(law="nonlinear", a=0.3).values == pytest.approx([0.15 / 1.03**2] * 6, rel=1e-15)
     assert (real.sel(a=0.0) == 0.0).all()
-    assert imaginary.sel(law="linearized", a=0.0).values ** 2 == pytest.approx(
-        np.repeat([3.0 - 3.0**0.5, 2.0, 3.0 + 3.0**0.5], 2), abs=1e-11
-    )
+    squares = np.repeat([3.0 - 3.0**0.5, 2.0, 3.0 + 3.0**0.5], 2)
+    assert imaginary.sel(law="linearized", a=0.0).values ** 2 == pytest.approx(squares, abs=1e-11)
     assert abs(found["growth_rate"] - real.max("mode")).max() < 1e-11
     assert (found["equilibrium_drift"] < 1e-13).all()
 

@@ -10,6 +10,7 @@ from tests.grids import PAPER_MODELS, grid_of
 from tests.summaries.points import write_points
 
 SETTINGS = {"transient": 10.0, "window": 20.0, "batches": 2, "event_window": 5.0}
+OTHER_SOURCES = "was made by other sources of the simulation than those of now"
 POINT = ("nonlinear", "plus", "0.20")
 
 
@@ -72,10 +73,7 @@ def spoil(path, change):
     [
         (lambda dataset: dataset.setncattr("history", "bk simulate"), "is another run: "),
         (lambda dataset: dataset.setncattr("software", "older 0"), "was made by older 0, now "),
-        (
-            lambda dataset: dataset.setncattr("title", ""),
-            "was made by other sources of the simulation than those of now",
-        ),
+        (lambda dataset: dataset.setncattr("title", ""), OTHER_SOURCES),
         (lambda dataset: dataset.delncattr("software"), "is not a point file "),
     ],
 )
