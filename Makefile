@@ -10,8 +10,11 @@ BIN := .venv/bin
 KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd) \
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+# pip compiles one file after the other, and the packages' own tests as well.
+INSTALL := $(PIP) install --no-compile --require-hashes --requirement
+COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib
 
-.PHONY: study announce setup kernel test test-oldest durations benchmark faults fuzz mutants size docs site lock clean
+.PHONY: study announce setup kernel test types style test-oldest durations benchmark faults fuzz mutants size docs site lock clean
 
 study: announce setup
 	$(BIN)/snakemake -c2
@@ -30,9 +33,8 @@ endif
 .venv/study: requirements/study.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv
-	$(PIP) install --no-compile --require-hashes --requirement $<
-	@# pip compiles one file after the other, and the packages' own tests as well.
-	$(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib
+	$(INSTALL) $<
+	$(COMPILE)
 	@touch $@
 
 .venv/kernel: .venv/study setup.py pyproject.toml $(KERNEL)
@@ -45,16 +47,23 @@ kernel: .venv/study
 	@touch .venv/kernel
 
 .venv/test: requirements/test.lock .venv/study
-	$(PIP) install --require-hashes --requirement $<
+	$(INSTALL) $<
+	$(COMPILE)
 	@touch $@
 
+# One core is enough for the types, the other one does the rest meanwhile.
 test: .venv/kernel .venv/test
+	@$(MAKE) --no-print-directory --jobs=2 types style
+	$(BIN)/python -m pytest
+
+types: .venv/kernel .venv/test
+	$(BIN)/mypy
+
+style: .venv/kernel .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy
 	$(BIN)/snakefmt --check workflow
 	$(BIN)/snakemake --lint
-	$(BIN)/python -m pytest
 
 # The lock files hold the newest; between the two is what pyproject.toml states.
 .venv-oldest/ready: requirements/test.lock requirements/oldest.txt setup.py pyproject.toml $(KERNEL)
@@ -114,7 +123,8 @@ mutants: .venv/kernel .venv/test .venv-mutants/ready
 	.venv-mutants/bin/python benchmarks/mutants.py
 
 .venv/site: requirements/site.lock .venv/study
-	$(PIP) install --require-hashes --requirement $<
+	$(INSTALL) $<
+	$(COMPILE)
 	@touch $@
 
 # Its pages open offline, also without a server.

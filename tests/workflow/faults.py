@@ -16,6 +16,7 @@ from pathlib import Path
 import psutil
 
 from tests.workflow.conftest import Study
+from tests.workflow.snakemake import Fork
 
 #: Folders of results/<study> that are compared byte by byte.
 COMPARED = ("points", "summary", "figures", "attractors", "basins", "phases", "solvers")
@@ -82,7 +83,14 @@ def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None =
         )
 
 
-def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] | None = None) -> bool:
+def begin_fork(study: Study) -> Fork:
+    """Do the same in forks of processes that have imported what Snakemake and its scripts need."""
+    (study.folder / BEGUN).touch()
+    screen = study.folder / "screen"
+    return Fork(study.command(), study.folder, study.environment(), screen, screen, own_group=True)
+
+
+def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] | Fork | None = None) -> bool:
     """Wait until a condition holds; return False if the process ended before."""
     end = time.monotonic() + PATIENCE
     while not condition():
@@ -90,11 +98,11 @@ def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] |
             return bool(condition())
         if time.monotonic() > end:
             raise TimeoutError(f"not within {PATIENCE:g} s")
-        time.sleep(0.02)
+        time.sleep(0.05)
     return True
 
 
-def wait_for_stages(study: Study, stages: Collection[str], process: subprocess.Popen[bytes]) -> bool:
+def wait_for_stages(study: Study, stages: Collection[str], process: subprocess.Popen[bytes] | Fork) -> bool:
     """Wait until a job of one of the stages runs; return False if the process ended before."""
     return wait_for(lambda: not stages_running(study).isdisjoint(stages), process)
 

@@ -1,12 +1,13 @@
 """Runs of Snakemake in forks of a process that has imported it, and of its scripts in forks of another one.
 
-Tests that kill a study, and those on a terminal, start the program itself.
+Tests of signals that a program handles, and those on a terminal, start the program itself.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import select
 import socket
 import subprocess
 import sys
@@ -15,87 +16,132 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
-#: Makes a fork the process of a command. Nothing of the project is imported before: each folder may have another one.
-BECOME = """
-import json, os, socket, sys
+#: Does each call that comes through a socket in a fork, and answers with the number of its process and its exit code.
+#: Nothing of the project is imported before: each folder may have another one. Several may run at a time: for each
+#: there is another fork that waits for it.
+SERVE = """
+import json, os, signal, socket, sys
 def become(call):
     os.chdir(call["folder"])
     os.environ.clear()
     os.environ.update(call["environment"])
     sys.path[:0] = os.environ["PYTHONPATH"].split(os.pathsep)
     sys.argv = sys.orig_argv = call["command"]
-other = socket.socket(fileno=int(sys.argv[1]))
+def serve(calls, run):
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    while True:
+        message, answering, _, _ = socket.recv_fds(calls, 1 << 20, 1)
+        if not message:
+            break
+        if not os.fork():
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+            call, answers = json.loads(message), open(*answering, "w", buffering=1)
+            # Whoever kills the group of a Snakemake kills its scripts.
+            os.setpgid(0, call["group"])
+            process = os.fork()
+            if not process:
+                become(call)
+                run(call)
+                sys.exit()
+            print(process, file=answers)
+            print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), file=answers)
+            os._exit(0)
+        os.close(*answering)
+calls, *others = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
 """
 
-#: Lets each script be run by the other process, which answers with the number of the process and its exit code.
-SNAKEMAKE = f"""{BECOME}
+#: Lets each script be run by the other process.
+SNAKEMAKE = f"""{SERVE}
 import subprocess
-import snakemake.cli, snakemake.dag, snakemake.report, snakemake.script
+import snakemake.cli, snakemake.dag, snakemake.report.html_reporter, snakemake.script
 import netCDF4, numpy, scipy.linalg, scipy.optimize, smart_open, xarray
 from snakemake.benchmark import benchmarked
 def execute_script(self, name, edit=False):
     answers, answering = os.pipe()
-    call = dict(command=[name], folder=os.getcwd(), environment=dict(os.environ))
-    socket.send_fds(other, [json.dumps(call).encode()], [answering])
+    call = dict(command=[name], folder=os.getcwd(), environment=dict(os.environ), group=os.getpgrp())
+    socket.send_fds(*others, [json.dumps(call).encode()], [answering])
     os.close(answering)
     with open(answers) as answers, benchmarked(int(answers.readline()), self.bench_record):
         code = int(answers.readline() or 1)
     if code:
         raise subprocess.CalledProcessError(code, name)
 snakemake.script.PythonScript.execute_script = execute_script
-for line in sys.stdin:
-    call = json.loads(line)
-    process = os.fork()
-    if not process:
-        become(call)
-        for number, name in enumerate([os.devnull, "output", "error"]):
-            os.dup2(os.open(os.path.join(call["written"], name), os.O_RDWR | os.O_CREAT), number)
-        sys.exit(snakemake.cli.main(call["command"][1:]))
-    print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), flush=True)
+def run(call):
+    if call["own_group"]:
+        os.setpgid(0, 0)
+    for number, name in enumerate([os.devnull, *call["written"]]):
+        os.dup2(os.open(name, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666), number)
+    sys.exit(snakemake.cli.main(call["command"][1:]))
+# What it knows of its plugins is kept.
+snakemake.cli.get_argument_parser()
+serve(calls, run)
 """
 
-#: Several scripts may run at a time: for each there is a fork that waits for it.
-SCRIPTS = f"""{BECOME}
-import runpy, signal
+SCRIPTS = f"""{SERVE}
+import runpy
 import matplotlib.backends.backend_agg, matplotlib.backends.backend_pdf, matplotlib.patches, matplotlib.ticker
 import flint, jinja2, netCDF4, numpy, plotly.offline, scipy.optimize, scipy.signal, scipy.spatial, xarray
 import snakemake.script
-signal.signal(signal.SIGCHLD, signal.SIG_IGN)
-while True:
-    message, answering, _, _ = socket.recv_fds(other, 1 << 20, 1)
-    if not message:
-        break
-    if not os.fork():
-        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        answers = open(*answering, "w", buffering=1)
-        print(os.getpid(), file=answers)
-        process = os.fork()
-        if not process:
-            become(json.loads(message))
-            runpy.run_path(sys.argv[0], run_name="__main__")
-            sys.exit()
-        print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), file=answers)
-        os._exit(0)
-    os.close(*answering)
+serve(calls, lambda call: runpy.run_path(sys.argv[0], run_name="__main__"))
 """
 
 
 @cache
-def _servers(seed: str) -> tuple[subprocess.Popen[str], subprocess.Popen[str]]:
-    """Return the processes that run Snakemake and its scripts; they end with this one, whose pipe the first one reads.
+def _server(seed: str) -> socket.socket:
+    """Return where calls of Snakemake are sent to; the processes end with this one, which alone has that end.
 
     seed : of the order in which sets are walked
     """
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": seed}
+    ends = [end for _ in range(2) for end in socket.socketpair(type=socket.SOCK_SEQPACKET)]
+    for program, *own in ((SNAKEMAKE, ends[1], ends[2]), (SCRIPTS, ends[3])):
+        numbers = [end.fileno() for end in own]
+        command = [sys.executable, "-P", "-c", program, *map(str, numbers)]
+        subprocess.Popen(command, pass_fds=numbers, env=environment, stdin=subprocess.DEVNULL)
+    for end in ends[1:]:
+        end.close()
+    return ends[0]
 
-    def start(program: str, end: socket.socket) -> subprocess.Popen[str]:
-        command, number = [sys.executable, "-P", "-c", program], end.fileno()
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-        return subprocess.Popen([*command, str(number)], pass_fds=[number], env=environment, **pipes)
 
-    one, other = socket.socketpair(type=socket.SOCK_SEQPACKET)
-    with one, other:
-        return start(SNAKEMAKE, one), start(SCRIPTS, other)
+class Fork:
+    """A Snakemake that has begun, with the methods of `subprocess.Popen` that tests use."""
+
+    def __init__(
+        self, command: Sequence[str], folder: Path, environment: Mapping[str, str], *written: Path, own_group: bool
+    ) -> None:
+        """Begin.
+
+        environment : of the run; PYTHONPATH leads to the package
+        written : files of standard output and error
+        own_group : whether it begins a group of processes, to which its jobs will belong
+        """
+        call = {"command": command, "folder": str(folder), "environment": dict(environment), "own_group": own_group}
+        call |= {"written": [*map(str, written)], "group": os.getpgrp()}
+        self._answers, answering = os.pipe()
+        server = _server(environment.get("PYTHONHASHSEED", "random"))
+        socket.send_fds(server, [json.dumps(call).encode()], [answering])
+        os.close(answering)
+        self._said: list[bytes] = []
+        self._listen()
+        self.pid = int(self._said[0])
+
+    def _listen(self) -> None:
+        said = os.read(self._answers, 64).split()
+        assert said, "the server of Snakemake has died"
+        self._said += said
+
+    def poll(self) -> int | None:
+        """Return the exit code, None if it still runs."""
+        if len(self._said) == 1 and select.select([self._answers], [], [], 0.0)[0]:
+            self._listen()
+        return int(self._said[1]) if len(self._said) > 1 else None
+
+    def wait(self) -> int:
+        """Wait for its end and return the exit code."""
+        if len(self._said) == 1:
+            self._listen()
+            os.close(self._answers)
+        return int(self._said[1])
 
 
 def run_snakemake(
@@ -105,12 +151,8 @@ def run_snakemake(
 
     environment : of the run; PYTHONPATH leads to the package
     """
-    server, _ = _servers(environment.get("PYTHONHASHSEED", "random"))
-    assert server.stdin is not None
-    assert server.stdout is not None
-    with tempfile.TemporaryDirectory() as written:
-        call = {"command": command, "folder": str(folder), "environment": dict(environment), "written": written}
-        print(json.dumps(call), file=server.stdin, flush=True)
-        code = int(server.stdout.readline())
-        output, error = (Path(written, name).read_text() for name in ("output", "error"))
+    with tempfile.TemporaryDirectory() as name:
+        written = Path(name, "output"), Path(name, "error")
+        code = Fork(command, folder, environment, *written, own_group=False).wait()
+        output, error = (path.read_text() for path in written)
     return subprocess.CompletedProcess(command, code, output, error)

@@ -15,6 +15,7 @@ from tests.workflow.faults import (
     COMPARED,
     STAGES,
     begin,
+    begin_fork,
     broken,
     crash,
     differences,
@@ -46,7 +47,7 @@ def test_killed_in_every_stage(limited, tmp_path):
     left = set(STAGES)
     flag = ""
     while left:
-        process = begin(study)
+        process = begin_fork(study)
         assert wait_for_stages(study, left, process), f"not hit: {left}"
         time.sleep(chance.uniform(0.0, 0.2))
         os.killpg(process.pid, signal.SIGKILL)

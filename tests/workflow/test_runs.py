@@ -5,7 +5,7 @@ import re
 import shutil
 import subprocess
 
-from tests.workflow.conftest import TINY, Study
+from tests.workflow.conftest import LIMITS, TINY, Study
 from tests.workflow.snakemake import run_snakemake
 
 
@@ -28,7 +28,7 @@ def test_nothing_to_do_with_the_snakefile_by_another_path(finished):
     assert "Nothing to be done" in run.stdout + run.stderr
 
 
-def test_the_same_bytes_on_one_core_and_in_a_second_checkout(finished, tmp_path, repository, monkeypatch):
+def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, repository, monkeypatch):
     """Points, summaries, and figures of both kinds; the kernel is copied (benchmarks/faults.py compiles it)."""
     # Sets are walked in another order.
     monkeypatch.setenv("PYTHONHASHSEED", "1")
@@ -38,14 +38,10 @@ def test_the_same_bytes_on_one_core_and_in_a_second_checkout(finished, tmp_path,
     # The commit is recorded in summaries.
     if (repository / ".git").exists():
         (checkout / ".git").symlink_to(repository / ".git")
-    study = Study(tmp_path / "study", repository=checkout)
-    # tests/workflow/test_proof.py makes it anew.
-    (study.folder / "results/tiny/summary").mkdir(parents=True)
-    for path in (finished.folder / "results/tiny/summary").glob("proof.*"):
-        shutil.copy(path, study.folder / "results/tiny/summary")
-    study.ok("points", "summary", *(f"results/tiny/figures/{name}.png" for name in ("distance", "basins")), cores=1)
-    mine, other = (each.files("points", "summary", "figures") for each in (study, finished))
-    assert len(mine) == 16 + 23 + 4
+    study = Study(tmp_path / "study", LIMITS, checkout)
+    study.ok("points", "summary", *(f"results/limits/figures/{name}.png" for name in ("distance", "basins")), cores=1)
+    mine, other = (each.files("points", "summary", "figures") for each in (study, limited))
+    assert len(mine) == 8 + 19 + 4
     assert [name for name in mine if mine[name] != other[name]] == []
 
 

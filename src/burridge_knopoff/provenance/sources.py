@@ -53,9 +53,10 @@ def sources_of(*entries: str | Path) -> tuple[Path, ...]:
         if path not in found:
             found.add(path)
             waiting += _needs(path)
-    return tuple(sorted(found))
+    return tuple(sorted(found, key=str))
 
 
+@cache
 def _name(path: Path) -> str:
     return path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name
 
@@ -70,8 +71,13 @@ def files_of(module: str) -> list[Path]:
     if files and path.parent == PACKAGE / "kernel":
         files.append(COMPILATION)
     elif files and path.parent != PACKAGE:
-        files += sorted(asset for asset in path.parent.rglob("*") if asset.suffix in ASSETS)
+        files += _assets(path.parent)
     return files
+
+
+@cache
+def _assets(folder: Path) -> list[Path]:
+    return sorted(asset for asset in folder.rglob("*") if asset.suffix in ASSETS)
 
 
 @cache
