@@ -272,11 +272,10 @@ def test_a_study_of_another_version_is_refused_in_a_line(results, capsys):
         assert "study.json: not a study of this version" in capsys.readouterr().err
 
 
-DEEP = b"[" * 100_000 + b"]" * 100_000
 WRONG = b'{"software": "", "git_commit": "", "arguments": "", "config_file": "", "given": {}, "config": 6, "grid": {}}'
 
 
-@pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}", DEEP, WRONG])
+@pytest.mark.parametrize("content", [None, b"", b"{", b"\xff", b"[]", b"{}", WRONG])
 def test_a_folder_that_is_no_study_is_refused_in_a_line(tmp_path, capsys, content):
     if content is not None:
         (tmp_path / "study.json").write_bytes(content)

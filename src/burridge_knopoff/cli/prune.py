@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
 
     studies = []
     for folder in map(Path, options.results):
-        record, study = recorded_study(folder)
+        record, study, _ = recorded_study(folder)
         if (found := changed(folder, record)) and found.kind == "stale":
             raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
         studies.append((folder, study))

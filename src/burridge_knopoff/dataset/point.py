@@ -15,8 +15,7 @@ from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIM
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.seal import identity, seal
-from burridge_knopoff.provenance.software import SOFTWARE, provenance
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.trajectory import Trajectory
 
