@@ -1,13 +1,10 @@
-"""The seal of a file: no changed byte passes, and no netCDF program minds it."""
+"""The seal of a file: what it says, and that no netCDF program minds it; tests/fuzzing changes sealed files."""
 
 import subprocess
 
 import netCDF4
-import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import point_identity, write_point
@@ -42,34 +39,6 @@ def test_the_netcdf_library_reads_a_sealed_file(path, tmp_path):
 def test_ncdump_reads_a_sealed_file(path):
     said = subprocess.run([setting("BK_NCDUMP"), "-v", "status", str(path)], capture_output=True, text=True)
     assert "status = 0" in said.stdout, said.stderr
-
-
-CHANGES = {
-    "flip": lambda content, at, byte: content[:at] + bytes([content[at] ^ (byte or 1)]) + content[at + 1 :],
-    "cut": lambda content, at, byte: content[:at],
-    "lose": lambda content, at, byte: content[:at] + content[at + 1 + byte :],
-    "insert": lambda content, at, byte: content[:at] + bytes([byte]) + content[at:],
-    "append": lambda content, at, byte: content + bytes([byte]) * (1 + at % 5),
-    "noise": lambda content, at, byte: content[:at] + np.random.default_rng(at).bytes(100) + content[at + 100 :],
-}
-
-
-@given(st.sampled_from(sorted(CHANGES)), st.data())
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_no_change_of_a_file_passes(path, tmp_path, kind, data):
-    content = path.read_bytes()
-    # Half of the changes in the last bytes, where the seal is.
-    first = data.draw(st.sampled_from([0, len(content) - 120]))
-    at = data.draw(st.integers(first, len(content) - 1))
-    changed = CHANGES[kind](content, at, data.draw(st.integers(0, 255)))
-    target = tmp_path / "changed.nc"
-    target.write_bytes(changed)
-    if changed == content:
-        assert read_seal(target)[1] == "completed"
-        return
-    with pytest.raises(BadFile, match=r"changed\.nc: .*; remake it: snakemake -c2 -R .*changed\.nc$") as caught:
-        read_seal(target)
-    assert "\n" not in str(caught.value)
 
 
 def test_missing_empty_and_unreadable_files(tmp_path):

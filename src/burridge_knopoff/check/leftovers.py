@@ -23,27 +23,26 @@ _WILDCARDS = {
 Named = tuple[str, str, list[dict[str, str]]]
 
 
-def leftovers(results: Path, study: Study) -> tuple[list[Path], list[Path]]:
-    """Return the files of results that belong to no point of a study, and the logs and benchmarks that do not."""
-    found: dict[bool, list[Path]] = {True: [], False: []}
-    patterns, whole = list(_patterns(study)), results.resolve()
-    for path in sorted(results.rglob("*")):
-        name = path.relative_to(results).as_posix()
-        for pattern, belonging, is_result in patterns:
-            match = pattern.fullmatch(name)
-            # What a link leads to is not the study's own.
-            if match and match[1] not in belonging and path.resolve() == whole / name and path.is_file():
-                found[is_result].append(path)
-    return found[True], found[False]
-
-
-def _patterns(study: Study) -> Iterator[tuple[re.Pattern[str], set[str], bool]]:
-    """Yield patterns of paths, those of the study without suffix, and whether they are of results or of logs."""
-    for file, log, known in (*run_files(study), *_other_files(study)):
+def leftovers(results: Path, study: Study) -> list[Path]:
+    """Return the results, logs and benchmarks that belong to no point of a study."""
+    patterns: list[str] = []
+    known: set[str] = set()
+    for file, log, named in (*run_files(study), *_other_files(study)):
         suffix = "pdf|png" if file.startswith("figures/") else "nc"
         for form, ends in ((file, suffix), (f"logs/{log}", "log"), (f"benchmarks/{log}", "tsv")):
-            pattern = re.compile(rf"({form.format(**_WILDCARDS)})\.(?:{ends})")
-            yield pattern, {form.format(**wildcards) for wildcards in known}, form == file
+            patterns.append(rf"{form.format(**_WILDCARDS)}\.(?:{ends})")
+            known.update(form.format(**wildcards) for wildcards in named)
+    pattern, whole = re.compile("|".join(patterns)), results.resolve()
+    names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
+    return [
+        path
+        for path, name in names.items()
+        if pattern.fullmatch(name)
+        and name.rpartition(".")[0] not in known
+        # What a link leads to is not the study's own.
+        and path.resolve() == whole / name
+        and path.is_file()
+    ]
 
 
 def run_files(study: Study) -> list[Named]:

@@ -19,6 +19,8 @@ from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries.points import check_run
 
 KINDS = ("missing", "corrupt", "stale", "failed")
+#: How results end, and no log.
+RESULTS = (".nc", ".pdf", ".png")
 #: Files that a command is printed with; more are left to --paths.
 MOST_IN_COMMAND = 8
 
@@ -91,17 +93,15 @@ def check_study(results: str | Path) -> Check:
     """
     results = Path(results)
     record, study, points = recorded_study(results)
-    left, logs = leftovers(results, study)
+    left = leftovers(results, study)
     notes = []
     # Nobody who asks for points only asks for them by other solvers.
     if not ((results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()):
         unasked = [points.pop(path) for path in list(points) if path.is_relative_to(results / "solvers")]
-        if unasked:
-            notes.append(
-                f"not counted: {counted(len(unasked), 'run')} of other solvers, none of which was asked for yet"
-            )
-    if left or logs:
-        files = counted(len(left) + len(logs), "file")
+        runs = counted(len(unasked), "run")
+        notes += [f"not counted: {runs} of other solvers, none of which was asked for yet"] if unasked else []
+    if left:
+        files = counted(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
     unknown = {path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")}
@@ -112,7 +112,7 @@ def check_study(results: str | Path) -> Check:
         f"{counted(len(points), 'point')} and {counted(len(summaries), 'other file')}",
         sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
         [
-            *(Finding("leftover", path, "belongs to no point of the study") for path in left),
+            *(Finding("leftover", path, "belongs to no point of the study") for path in left if path.suffix in RESULTS),
             *(Finding("unknown", path, "no point of a study has that name") for path in sorted(unknown)),
             *filter(None, [changed(results, record)]),
         ],
@@ -128,17 +128,14 @@ def recorded_study(results: Path) -> tuple[dict[str, Any], Study, dict[Path, tup
     record = read_study_record(results)
     study = Study(record["config"], record["grid"])
     try:
-        return (
-            record,
-            study,
-            {
-                results / f"{file}.nc".format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
-                for file, log, runs in run_files(study)
-                for run in runs
-            },
-        )
+        points = {
+            results / f"{file}.nc".format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
+            for file, log, runs in run_files(study)
+            for run in runs
+        }
     except (LookupError, TypeError, AttributeError, ValueError) as error:
         raise ValueError(f"{results / NAME}: not a study of this version ({error}); run snakemake again") from None
+    return record, study, points
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:

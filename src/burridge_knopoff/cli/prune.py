@@ -32,11 +32,10 @@ def run(options: argparse.Namespace) -> int:
             raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
         studies.append((folder, study))
     for folder, study in studies:
-        results, logs = leftovers(folder, study)
-        for path in (*results, *logs):
+        left = leftovers(folder, study)
+        for path in left:
             print(path)
         if not options.dry_run:
-            delete(folder, [*results, *logs])
-        done = "would be deleted" if options.dry_run else "deleted"
-        print(f"{folder}: {counted(len(results) + len(logs), 'file')} {done}")
+            delete(folder, left)
+        print(f"{folder}: {counted(len(left), 'file')} {'would be ' * options.dry_run}deleted")
     return 0

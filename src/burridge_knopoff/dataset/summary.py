@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
+from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable, described
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, seal
 from burridge_knopoff.provenance.sources import provenance, source_fingerprint
@@ -42,10 +42,6 @@ def summary(
 
     module : name of the module that makes the values
     """
-    data = {
-        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
-        for name, item in variables.items()
-    }
     head = {
         "Conventions": CONVENTIONS,
         "title": title,
@@ -53,7 +49,7 @@ def summary(
         **attributes,
         **provenance(module),
     }
-    return xarray.Dataset(data, dict(coordinates), head)
+    return xarray.Dataset(described(variables, values), dict(coordinates), head)
 
 
 def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
