@@ -1,6 +1,6 @@
 """Configs that are not allowed, as they would stand in a file, and what the one line says: key, value, what is allowed.
 
-tests/test_config.py has more of them, as changes to a good one.
+tests/study/test_config.py has more of them, as changes to a good one.
 """
 
 GRID = "a: [0.1]\n"
@@ -42,6 +42,11 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # Keys.
     "twice": (f"{GOOD}a: [0.2]\n", ["a: stands twice (line 4)", "once is allowed"]),
     "twice_quoted": (f"study: x\n{GRID}initial: {{minus: {{}}, 'minus': {{}}}}\n", ["minus: stands twice (line 3)"]),
+    "twice_at_once": (f"study: y\n{GOOD}", ["study: stands twice (line 2)"]),
+    "twice_inside": (
+        f"study: x\na:\n  - {{from: 0, to: 1, from: 0.5, step: 0.5}}\n{STATES}",
+        ["from: stands twice (line 3)"],
+    ),
     "unknown": (f"{GOOD}windows: 7000\n", ["windows: unknown key", "window"]),
     "upper_case": (f"{GOOD}Window: 7000\n", ["Window: unknown key", "window"]),
     "key_of_two_lines": (f'{GOOD}"a\\nb": 1\n', ["'a\\nb': unknown key"]),
@@ -83,7 +88,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "no_values": (f"study: x\na: []\n{STATES}", ["a: []", "at least 1"]),
     "large_a": (f"study: x\na: [0.1, 101]\n{STATES}", ["a[1]: 101", "≤ 100"]),
     "value_twice": (f"study: x\na: [0.1, {{from: 0, to: 0.2, step: 0.1}}]\n{STATES}", ["a: 0.1 is listed twice"]),
-    "one_name": (f"study: x\na: [0.1, 0.10001]\n{STATES}", ["a: 0.1 and 0.10001", "a_digits"]),
+    "one_name": (
+        f"study: x\na: [0.1, 0.10001]\n{STATES}",
+        ["a: 0.1 and 0.10001 share the file name a0.1000.nc", "a_digits"],
+    ),
     "crooked": (f"study: x\na: [{{from: 0, to: 1, step: 0.3}}]\n{STATES}", ["a[0].step: 0.3", "divide"]),
     "falling": (f"study: x\na: [{{from: 1, to: 0, step: 0.1}}]\n{STATES}", ["a[0].to: 0", "at least from"]),
     "billion": (f"study: x\na: [{{from: 0, to: 1, step: 1.0e-9}}]\n{STATES}", ["a[0].step: 1e-09", "100000 values"]),
@@ -145,7 +153,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "figure_law": (f"{GOOD}figures: {{law: stribeck}}\n", ["figures.law: 'stribeck'", "linearized | nonlinear"]),
     "solver_law": (f"{GOOD}solver: {{stribeck: series}}\n", ["solver.stribeck: unknown key", "linearized, nonlinear"]),
     # States, and what does not fit together.
-    "unknown_state": (f"study: x\n{GRID}initial: {{middle: {{}}}}\n", ["initial.middle: unknown", "minus | plus"]),
+    "unknown_state": (
+        f"study: x\n{GRID}initial: {{middle: {{}}}}\n",
+        ["initial.middle: unknown initial state", "minus | plus"],
+    ),
     "no_velocity": (f"study: x\n{GRID}initial: {{m: {{position: [0, 0]}}}}\n", ["initial.m.velocity: missing"]),
     "many_blocks": (
         f"study: x\n{GRID}initial: {{m: {{position: {BLOCKS}, velocity: {BLOCKS}}}}}\n",

@@ -1,17 +1,19 @@
-"""Whose results a folder holds."""
+"""Whose results a folder holds, and of which commit; also in a worktree and with packed references."""
 
 import json
+import subprocess
 
 import pytest
 
+from burridge_knopoff.provenance import record
 from burridge_knopoff.provenance.record import check_owner
 
 GIVEN = {"study": "mine", "a": [0.1], "v": 0.1}
 
 
-def recorded(folder, **other):
-    record = {"software": "", "git_commit": "", "arguments": "", "config_file": "mine.yaml", "given": GIVEN}
-    (folder / "study.json").write_text(json.dumps({**record, "config": {}, "grid": {}, **other}))
+def recorded(folder):
+    texts = {"software": "", "git_commit": "", "arguments": "", "config_file": "mine.yaml"}
+    (folder / "study.json").write_text(json.dumps({**texts, "given": GIVEN, "config": {}, "grid": {}}))
 
 
 @pytest.mark.parametrize(
@@ -45,3 +47,46 @@ def test_another_config_of_the_same_name_is_refused(tmp_path, monkeypatch):
 def test_a_damaged_record_refuses_nobody(tmp_path):
     (tmp_path / "study.json").write_text("{")
     check_owner(tmp_path, "other.yaml", GIVEN)
+
+
+def git(folder, *command):
+    identity = ("-c", "user.name=test", "-c", "user.email=test@example.org")
+    done = subprocess.run(["git", *identity, *command], cwd=folder, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """A repository with one commit; its package folder stands in for the real one."""
+
+    def look(folder):
+        monkeypatch.setattr(record, "PACKAGE", folder / "src" / "burridge_knopoff")
+        record.git_commit.cache_clear()
+        return record.git_commit()
+
+    root = tmp_path / "root"
+    root.mkdir()
+    git(root, "init", "-q")
+    git(root, "commit", "-q", "--allow-empty", "-m", "first")
+    yield root, look
+    record.git_commit.cache_clear()
+
+
+def test_the_commit_of_a_checkout_a_worktree_and_a_detached_head(checkout):
+    root, look = checkout
+    commit = git(root, "rev-parse", "HEAD")
+    assert look(root) == commit
+    git(root, "worktree", "add", "-q", "-b", "other", "../other")
+    assert look(root.parent / "other") == commit
+    git(root.parent / "other", "commit", "-q", "--allow-empty", "-m", "second")
+    second = git(root, "rev-parse", "other")
+    assert look(root.parent / "other") == second != commit
+    git(root, "pack-refs", "--all")
+    assert (look(root), look(root.parent / "other")) == (commit, second)
+    git(root, "checkout", "-q", "--detach")
+    assert look(root) == commit
+
+
+def test_no_checkout_has_no_commit(checkout, tmp_path):
+    _, look = checkout
+    assert look(tmp_path / "elsewhere") == "unknown"

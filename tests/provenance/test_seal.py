@@ -1,17 +1,14 @@
-"""The seal of a file: no changed byte passes, and no netCDF program minds it."""
+"""The seal of a file: what it says, and that no netCDF program minds it; tests/fuzzing changes sealed files."""
 
 import subprocess
 
 import netCDF4
-import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import point_identity, write_point
-from burridge_knopoff.provenance.seal import BadFile, Seal, identity, read_seal, seal
+from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, seal
 from tests.optional import needs, setting
 
 
@@ -25,7 +22,7 @@ def path(tmp_path_factory):
 def test_the_seal_of_a_point(path):
     with xr.open_dataset(path) as dataset:
         about = point_identity(dataset.attrs["history"])
-    assert read_seal(path) == Seal(about, "completed")
+    assert read_seal(path) == (about, "completed")
     assert point_identity("bk simulate --law linearized --a 0.09") != about
 
 
@@ -44,34 +41,6 @@ def test_ncdump_reads_a_sealed_file(path):
     assert "status = 0" in said.stdout, said.stderr
 
 
-CHANGES = {
-    "flip": lambda content, at, byte: content[:at] + bytes([content[at] ^ (byte or 1)]) + content[at + 1 :],
-    "cut": lambda content, at, byte: content[:at],
-    "lose": lambda content, at, byte: content[:at] + content[at + 1 + byte :],
-    "insert": lambda content, at, byte: content[:at] + bytes([byte]) + content[at:],
-    "append": lambda content, at, byte: content + bytes([byte]) * (1 + at % 5),
-    "noise": lambda content, at, byte: content[:at] + np.random.default_rng(at).bytes(100) + content[at + 100 :],
-}
-
-
-@given(st.sampled_from(sorted(CHANGES)), st.data())
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_no_change_of_a_file_passes(path, tmp_path, kind, data):
-    content = path.read_bytes()
-    # Half of the changes in the last bytes, where the seal is.
-    first = data.draw(st.sampled_from([0, len(content) - 120]))
-    at = data.draw(st.integers(first, len(content) - 1))
-    changed = CHANGES[kind](content, at, data.draw(st.integers(0, 255)))
-    target = tmp_path / "changed.nc"
-    target.write_bytes(changed)
-    if changed == content:
-        assert read_seal(target).status == "completed"
-        return
-    with pytest.raises(BadFile, match=r"changed\.nc: .*; remake it: snakemake -c2 -R .*changed\.nc$") as caught:
-        read_seal(target)
-    assert "\n" not in str(caught.value)
-
-
 def test_missing_empty_and_unreadable_files(tmp_path):
     for name, make, reason in (
         ("none.nc", lambda path: None, "is missing"),
@@ -87,14 +56,10 @@ def test_missing_empty_and_unreadable_files(tmp_path):
 def test_another_seal_is_no_seal(path, tmp_path):
     """The line is part of what is sealed: nobody's status or subject can be written into it."""
     target = tmp_path / "forged.nc"
-    for old, new in ((b" completed ", b" diverged "), (point_line(path), identity("another").encode())):
+    for old, new in ((b" completed ", b" diverged "), (read_seal(path)[0].encode(), identity("another").encode())):
         target.write_bytes(path.read_bytes().replace(old, new))
         with pytest.raises(BadFile, match="has other bytes than were written"):
             read_seal(target)
     target.write_bytes(b"data")
     seal(target, identity("this"), "diverged")
-    assert read_seal(target) == Seal(identity("this"), "diverged")
-
-
-def point_line(path):
-    return read_seal(path).identity.encode()
+    assert read_seal(target) == (identity("this"), "diverged")

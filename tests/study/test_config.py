@@ -19,41 +19,28 @@ STATES = {"minus": {}, "plus": {}}
 RANGE = {"from": 0, "to": 0.3, "step": 0.0025}
 PAIR = {"position": [-1.0, -1.0], "velocity": [0.1, 0.1]}
 
-# (keys to change, what the one line must say: the key, and the value or what is allowed)
+# (keys to change, what the one line must say: the key, and the value or what is allowed); tests/bad_configs.py has more
 BAD = [
-    ({"study": None}, ["study: missing"]),
     ({"a": None}, ["a: missing"]),
     ({"initial": None}, ["initial: missing"]),
-    ({"transients": 10}, ["transients: unknown key", "transient"]),
     ({"agreement": {"tolerance": 1}}, ["agreement.tolerance: unknown key", "relative_tolerance"]),
     ({"figures": {"colour": 1}}, ["figures.colour: unknown key"]),
-    ({"solver": {"linear": "map"}}, ["solver.linear: unknown key"]),
     ({"study": ""}, ["study: ''"]),
-    ({"study": "a/b"}, ["study: 'a/b'"]),
-    ({"study": ".."}, ["study: '..'"]),
     ({"study": 7}, ["study: 7"]),
-    ({"study": "x" * 70}, ["study: 'xxx"]),
-    ({"a": []}, ["a: []", "at least 1"]),
     ({"a": 0.1}, ["a: 0.1", "list"]),
     ({"a": "0.1"}, ["a: '0.1'"]),
     ({"a": ["0.1"]}, ["a[0]: '0.1'"]),
     ({"a": [True]}, ["a[0]: True"]),
     ({"a": [None]}, ["a[0]: None"]),
     ({"a": [-0.1]}, ["a[0]: -0.1", "≥ 0"]),
-    ({"a": [0.1, 100.5]}, ["a[1]: 100.5", "≤ 100"]),
     ({"a": [NAN]}, ["a[0]: nan"]),
     ({"a": [INFINITE]}, ["a[0]: inf"]),
     ({"a": [0.1, 0.1]}, ["a: 0.1 is listed twice"]),
     ({"a": [0.0, -0.0]}, ["a: 0.0 is listed twice"]),
-    ({"a": [0.1, 0.10001]}, ["share the file name a0.1000.nc", "a_digits"]),
-    ({"a": [RANGE, 0.0025]}, ["a: 0.0025 is listed twice"]),
     ({"a": [{"from": 0, "to": 0.3}]}, ["a[0].step: missing"]),
     ({"a": [{"from": 0, "to": 0.3, "stepp": 0.1}]}, ["a[0].stepp: unknown key"]),
-    ({"a": [{"from": 0, "to": 0.3, "step": 0.007}]}, ["a[0].step: 0.007", "divide"]),
     ({"a": [{"from": 0, "to": 0.3, "step": 0}]}, ["a[0].step: 0", "> 0"]),
     ({"a": [{"from": 0, "to": 0.3, "step": -0.1}]}, ["a[0].step: -0.1"]),
-    ({"a": [{"from": 0, "to": 0.3, "step": 1e-9}]}, ["a[0].step: 1e-09", "100000"]),
-    ({"a": [{"from": 0.3, "to": 0.1, "step": 0.1}]}, ["a[0].to: 0.1"]),
     ({"a": [{"from": 0, "to": INFINITE, "step": 0.1}]}, ["a[0].to: inf"]),
     ({"a": [{"from": NAN, "to": 1, "step": 0.1}]}, ["a[0].from: nan"]),
     ({"a_digits": 0}, ["a_digits: 0"]),
@@ -61,16 +48,12 @@ BAD = [
     ({"initial": {}}, ["initial: {}", "at least 1"]),
     ({"initial": "plus"}, ["initial: 'plus'"]),
     ({"initial": ["plus"]}, ["initial: ['plus']"]),
-    ({"initial": {"middle": {}}}, ["initial.middle: unknown initial state", "minus | plus"]),
     ({"initial": {"two words": PAIR}}, ["'two words'"]),
-    ({"initial": {"x": {"position": [0, 0]}}}, ["initial.x.velocity: missing"]),
     ({"initial": {"x": {**PAIR, "speed": 1}}}, ["initial.x.speed: unknown key"]),
     ({"initial": {"x": {**PAIR, "velocity": [0.1]}}}, ["initial.x.velocity: [0.1]"]),
     ({"initial": {"x": {**PAIR, "velocity": [0.1, 0.1, 0.1]}}}, ["initial.x.velocity: 3 numbers for 2"]),
-    ({"initial": {"x": {**PAIR, "velocity": [0.1, -0.1]}}}, ["initial.x.velocity: -0.1", "one_sided"]),
     ({"initial": {"x": {**PAIR, "position": [0.1, NAN]}}}, ["initial.x.position[1]: nan"]),
     ({"initial": {"x": {**PAIR, "position": [0.1, "b"]}}}, ["initial.x.position[1]: 'b'"]),
-    ({"initial": {"x": PAIR, "plus": {}}}, ["initial: states of one study", "x: 2", "plus: 3"]),
     ({"v": 0}, ["v: 0"]),
     ({"v": "fast"}, ["v: 'fast'"]),
     ({"v": True}, ["v: True"]),
@@ -90,33 +73,24 @@ BAD = [
     ({"chain": {"coupling": []}}, ["chain.coupling: 0 numbers for 2 springs"]),
     ({"chain": {"pulling": [1, NAN, 1]}}, ["chain.pulling[1]: nan"]),
     ({"chain": {"threshold": 1e7}}, ["chain.threshold: 10000000.0 is not allowed: a number ≥ 1e-06 and ≤ 1e+06"]),
-    ({"solver": {"nonlinear": "map"}}, ["solver.nonlinear: 'map'", "series | rk4"]),
     ({"solver": "map"}, ["solver.nonlinear: 'map'", "no straight line"]),
     ({"transient": 0}, ["transient: 0", "> 0"]),
-    ({"transient": -1}, ["transient: -1"]),
     ({"transient": NAN}, ["transient: nan"]),
     ({"window": 0}, ["window: 0"]),
-    ({"window": INFINITE}, ["window: inf"]),
     ({"window": None, "windows": 10}, ["windows: unknown key"]),
     ({"batches": 1}, ["batches: 1"]),
-    ({"batches": 2.5}, ["batches: 2.5", "whole number"]),
     ({"batches": 7.0}, ["batches: 7.0", "whole number"]),
     ({"window": 10**400}, ["window: 1000"]),
-    ({"sampling": 1e-5}, ["sampling: 1e-05", "samples"]),
     ({"window": 1e8, "sampling": 1e3}, ["window: 100000000.0", "numbers"]),
     ({"transient": 1e8, "sampling": 1e3}, ["transient: 100000000.0", "numbers"]),
     ({"window": 1e7, "events": "all", "sampling": 1e3}, ["events: 'all'", "numbers"]),
     ({"window": 1e7, "event_window": 1e7, "sampling": 1e3}, ["event_window: 10000000.0", "numbers"]),
-    ({"solver": {"nonlinear": "rk4"}, "step": 1e-9}, ["step: 1e-09", "3.33e+09 steps"]),
-    ({"basins": {"pixels": 16384, "a": {"nonlinear": [0.1]}}}, ["basins.pixels: 16384", "numbers"]),
     (
         {"basins": {"pixels": 9000, "tiles": 1, "a": {"linearized": [0.1], "nonlinear": []}}},
         ["basins.tiles: 1", "numbers"],
     ),
-    ({"basins": {"pairs": 10**7}}, ["basins.pairs: 10000000", "numbers"]),
     ({"phases": {"samples": 10**5, "amplitude": [*range(1, 50)]}}, ["phases.samples: 100000", "numbers"]),
     ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "samples"]),
-    ({"study": "x\n"}, ["study: 'x\\n'"]),
     ({"initial": {1: PAIR}}, ["initial: 1 is not allowed: letters"]),
     ({"sampling": 0}, ["sampling: 0"]),
     ({"events": "none"}, ["events: 'none'", "window | all"]),
@@ -145,7 +119,6 @@ BAD = [
     ({"attractors": {"velocity": [0.1]}}, ["attractors.velocity: [0.1]", "[low, high]"]),
     ({"attractors": {"resolution": 0}}, ["attractors.resolution: 0"]),
     ({"attractors": {"time_limit": NAN}}, ["attractors.time_limit: nan"]),
-    ({"basins": {"a": {"linearized": [0.0801]}}}, ["basins.a.linearized: 0.0801", "grid"]),
     ({"basins": {"linearized": [0.08]}}, ["basins.linearized: unknown key", "a, first_position"]),
     ({"basins": {"a": {"nonlinear": [0.1, 0.1]}}}, ["basins.a.nonlinear: [0.1, 0.1]"]),
     ({"basins": {"pixels": 0}}, ["basins.pixels: 0"]),
@@ -170,7 +143,6 @@ BAD = [
     ({"chains": {"laws": ["linear"]}}, ["chains.laws[0]: 'linear'", "linearized | nonlinear"]),
     ({"chains": {"samples": 0}}, ["chains.samples: 0", "≥ 1"]),
     ({"chains": {"samples": 3}}, ["chains.symmetric_samples: 4", "at most samples (3)"]),
-    ({"chains": {"position": [1.0, -1.0]}}, ["chains.position: [1.0, -1.0]", "low < high"]),
     ({"chains": {"position": [1.0]}}, ["chains.position: [1.0]", "[low, high]"]),
     ({"chains": {"velocity": [-0.1, 0.1]}}, ["chains.velocity: [-0.1, 0.1]", "≥ 0"]),
     ({"chains": {"time_limit": 100}}, ["chains.time_limit: 100", "≥ 200"]),
@@ -184,6 +156,17 @@ BAD = [
 ]
 
 
+def refused(words, file, read):
+    """Require that what is read is refused in one line that names the file and has these words."""
+    with pytest.raises(ConfigError) as caught:
+        read()
+    message = str(caught.value)
+    assert f"{file}: " in message
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
 def load(**changes):
     config = {"study": "test", "a": [RANGE], "initial": copy.deepcopy(STATES), **changes}
     return load_study({key: value for key, value in config.items() if value is not None}, "config/test.yaml")
@@ -191,13 +174,7 @@ def load(**changes):
 
 @pytest.mark.parametrize(("changes", "words"), BAD)
 def test_bad_configs_get_one_line(changes, words):
-    with pytest.raises(ConfigError) as caught:
-        load(**changes)
-    message = str(caught.value)
-    assert message.startswith("config/test.yaml: ")
-    assert "\n" not in message
-    for word in words:
-        assert word in message
+    refused(words, "config/test.yaml", lambda: load(**changes))
 
 
 @pytest.mark.parametrize("case", [name for name in BAD_FILES if name != "template"])
@@ -205,29 +182,7 @@ def test_bad_files_get_one_line(tmp_path, case):
     content, words = BAD_FILES[case]
     path = tmp_path / "study.yaml"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    with pytest.raises(ConfigError) as caught:
-        load_study(read_config(path), str(path))
-    message = str(caught.value)
-    assert "study.yaml: " in message
-    assert "\n" not in message
-    for word in words:
-        assert word in message
-
-
-@pytest.mark.parametrize(
-    ("text", "key"),
-    [
-        ("study: x\nstudy: y\n", "study"),
-        ("a: [0.1]\nstudy: x\na: [0.2]\n", "a"),
-        ("initial: {minus: {}, minus: {}}\n", "minus"),
-        ("a:\n  - {from: 0, to: 1, from: 0.5, step: 0.5}\n", "from"),
-    ],
-)
-def test_a_key_that_stands_twice_is_refused(tmp_path, text, key):
-    path = tmp_path / "twice.yaml"
-    path.write_text(text)
-    with pytest.raises(ConfigError, match=rf"twice\.yaml: {key}: stands twice \(line \d\)"):
-        read_config(path)
+    refused(words, "study.yaml", lambda: load_study(read_config(path), str(path)))
 
 
 @pytest.mark.parametrize("name", ["paper", "smoke"])
@@ -321,7 +276,7 @@ def test_where_commands_differ():
     assert difference(commands["nonlinear"], study.command("nonlinear", "plus", "0.0500")) == (
         "--a 0.08 instead of --a 0.05"
     )
-    assert difference("bk 'simulate", "bk simulate") == "`bk 'simulate` instead of `bk simulate`"
+    assert difference("snakemake", "bk simulate") == "`snakemake` instead of `bk simulate`"
 
 
 def test_command_of_another_solver():

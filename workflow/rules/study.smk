@@ -1,6 +1,5 @@
 # The study that the config describes, where its results lie, and what rules of several stages use.
 import copy
-import hashlib
 import json
 import os
 import shlex
@@ -27,6 +26,7 @@ from burridge_knopoff.provenance.files import (
     nearest_folder,
 )
 from burridge_knopoff.provenance.record import check_owner, write_study_record
+from burridge_knopoff.provenance.seal import identity
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study import (
     ConfigError,
@@ -120,10 +120,11 @@ def check_cluster():
     """End a run whose jobs go to a Slurm that does not answer, before each of them tries for minutes."""
     submit = Path(getattr(workflow.executor_settings, "submit_cmd", None) or "")
     if submit.name == "submit.py" and submit.with_name("jobs.py").is_file():
-        answer = subprocess.run([submit, "--probe"], capture_output=True, text=True)
+        asked = ["sh", "-c", "squeue --me --noheader"]
+        answer = subprocess.run(asked, capture_output=True, text=True)
         if answer.returncode:
             sys.exit(
-                f"no job is submitted, Slurm does not answer: {answer.stderr.strip()}"
+                f"no job is submitted, Slurm does not answer: squeue: {answer.stderr.strip()}"
             )
 
 
@@ -197,5 +198,4 @@ def kept_folder(what, *decides):
 
     decides : all that decides it but the values of a
     """
-    digest = hashlib.sha256(json.dumps(decides).encode()).hexdigest()[:16]
-    return f".snakemake/kept/{STUDY.name}/{what}/{digest}"
+    return f".snakemake/kept/{STUDY.name}/{what}/{identity(json.dumps(decides))}"

@@ -10,9 +10,10 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 from importlib import import_module
 
 from burridge_knopoff.figures.style import write_figure
-from burridge_knopoff.summaries.points import Grid, open_runs
+from burridge_knopoff.summaries.points import Grid, open_point
 
 params = snakemake.params
 module = import_module(f"burridge_knopoff.figures.{params.figure}")
-runs = open_runs(Grid.of(params.runs["folder"], params.runs))
+grid = Grid.of(params.runs["folder"], params.runs)
+runs = {initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}
 write_figure(module.draw(runs), *snakemake.output)

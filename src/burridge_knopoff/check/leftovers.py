@@ -1,4 +1,4 @@
-"""Results that belong to no point of a study: of a law, a state or a value of a that its config had once."""
+"""Files with a law, a state or a value of a in their names: those of a study, and those that its config had once."""
 
 from __future__ import annotations
 
@@ -19,37 +19,44 @@ _WILDCARDS = {
     "tile": r"(?:0|[1-9]\d*)",
 }
 
-
-def leftovers(results: Path, study: Study) -> tuple[list[Path], list[Path]]:
-    """Return the files of results that belong to no point of a study, and the logs and benchmarks that do not."""
-    found: dict[bool, list[Path]] = {True: [], False: []}
-    patterns, whole = list(_patterns(study)), results.resolve()
-    for path in sorted(results.rglob("*")):
-        name = path.relative_to(results).as_posix()
-        for pattern, belonging, is_result in patterns:
-            match = pattern.fullmatch(name)
-            # What a link leads to is not the study's own.
-            if match and match[1] not in belonging and path.resolve() == whole / name and path.is_file():
-                found[is_result].append(path)
-    return found[True], found[False]
+#: The forms of a file below the results and of its log, both without suffix, and all wildcards that a study has there.
+Named = tuple[str, str, list[dict[str, str]]]
 
 
-def _patterns(study: Study) -> Iterator[tuple[re.Pattern[str], set[str], bool]]:
-    """Yield patterns of paths, those of the study without suffix, and whether they are of results or of logs."""
-    for file, log, known in _named(study):
+def leftovers(results: Path, study: Study) -> list[Path]:
+    """Return the results, logs and benchmarks that belong to no point of a study."""
+    patterns: list[str] = []
+    known: set[str] = set()
+    for file, log, named in (*run_files(study), *_other_files(study)):
         suffix = "pdf|png" if file.startswith("figures/") else "nc"
         for form, ends in ((file, suffix), (f"logs/{log}", "log"), (f"benchmarks/{log}", "tsv")):
-            pattern = re.compile(rf"({form.format(**_WILDCARDS)})\.(?:{ends})")
-            yield pattern, {form.format(**wildcards) for wildcards in known}, form == file
+            patterns.append(rf"{form.format(**_WILDCARDS)}\.(?:{ends})")
+            known.update(form.format(**wildcards) for wildcards in named)
+    pattern, whole = re.compile("|".join(patterns)), results.resolve()
+    names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
+    return [
+        path
+        for path, name in names.items()
+        if pattern.fullmatch(name)
+        and name.rpartition(".")[0] not in known
+        # What a link leads to is not the study's own.
+        and path.resolve() == whole / name
+        and path.is_file()
+    ]
 
 
-def _named(study: Study) -> Iterator[tuple[str, str, list[dict[str, str]]]]:
-    """Yield files below the results, their logs and benchmarks, and all wildcards that these have in the study."""
+def run_files(study: Study) -> list[Named]:
+    """Return the point files of all runs: the wildcards of each are the arguments of `Study.command`."""
     place = POINT.removesuffix(".nc")
     points = [dict(zip(("law", "initial", "a"), point, strict=True)) for point in all_points(study)]
     others = [dict(zip(("law", "solver", "initial", "a"), point, strict=True)) for point in solver_points(study)]
-    yield f"points/{place}", f"simulate/{place}", points
-    yield f"solvers/{{solver}}/{place}", f"simulate_solver/{{solver}}/{place}", others
+    return [
+        (f"points/{place}", f"simulate/{place}", points),
+        (f"solvers/{{solver}}/{place}", f"simulate_solver/{{solver}}/{place}", others),
+    ]
+
+
+def _other_files(study: Study) -> Iterator[Named]:
     names = {value: name for name, value in study.grid.items()}
     maps = [{"law": law, "a": names[a]} for law, a in study.basin_maps if a in names]
     tiles = [{**one, "tile": str(tile)} for one in maps for tile in range(study.config["basins"]["tiles"])]

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.check.leftovers import leftovers
+from burridge_knopoff.check.leftovers import leftovers, run_files
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.study import ConfigError, Study, all_points, solver_points
+from burridge_knopoff.study import ConfigError, Study
 from burridge_knopoff.study.job_log import last_words
-from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries.points import check_run
 
 KINDS = ("missing", "corrupt", "stale", "failed")
+#: How results end, and no log.
+RESULTS = (".nc", ".pdf", ".png")
 #: Files that a command is printed with; more are left to --paths.
 MOST_IN_COMMAND = 8
 
@@ -41,20 +41,17 @@ class Finding:
 class Check:
     """What was found in the results of a study.
 
-    points, summaries : numbers of point files that should be there, and of other netCDF files that are
+    files : what was looked at, in words
     findings : what is wrong with these files
     others : what no run of the config of the last run mends: what is left over, of an unknown name, or another config
-    unasked : number of runs of other solvers, none of which has been asked for
-    leftover_logs : number of logs and benchmarks that belong to no point of the study; see `leftovers`
+    notes : what else there is to say, in lines
     """
 
     results: Path
-    points: int
-    summaries: int
-    findings: tuple[Finding, ...]
-    others: tuple[Finding, ...]
-    unasked: int
-    leftover_logs: int
+    files: str
+    findings: list[Finding]
+    others: list[Finding]
+    notes: list[str]
 
     @property
     def exit_code(self) -> int:
@@ -68,30 +65,19 @@ class Check:
         return [str(finding.path) for finding in self.findings if finding.kind != "failed"]
 
     def lines(self) -> list[str]:
-        """Return all findings and their sum, a line each."""
+        """Return all findings and their sum, a line each, and the command that makes what is listed again."""
         counts = Counter(finding.kind for finding in self.findings)
-        left = sum(finding.kind == "leftover" for finding in self.others) + self.leftover_logs
-        files = f"{counted(self.points, 'point')} and {counted(self.summaries, 'other file')}"
-        lines = [str(finding) for finding in (*self.findings, *self.others)]
-        lines.append(f"{self.results}: {files}: {', '.join(f'{counts[kind]} {kind}' for kind in KINDS)}")
-        if self.unasked:
-            runs = counted(self.unasked, "run")
-            lines.append(f"not counted: {runs} of other solvers, none of which was asked for yet")
-        if left:
-            files = counted(left, "file")
-            lines.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {self.results}")
-        if self.paths:
-            lines.append(f"remake: {self._remake()}")
-        return lines
+        numbers = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
+        lines = [*map(str, (*self.findings, *self.others)), f"{self.results}: {self.files}: {numbers}", *self.notes]
+        return [*lines, f"remake: {self._remake()}"] if self.paths else lines
 
     def _remake(self) -> str:
-        """Return the command that makes what is listed again, from wherever it is called."""
-        root, here = root_of(self.results), self.results.absolute()
+        # From wherever it is called.
+        root = root_of(self.results)
         place = "" if root.resolve() == Path.cwd() else f"cd {shlex.quote(str(root))} && "
-        below = here.relative_to(root)
-        named: list[str] = [f"$(bk check --paths {below})"]
-        if len(self.paths) <= MOST_IN_COMMAND:
-            named = [str(Path(path).absolute().relative_to(root)) for path in self.paths]
+        named = [str(Path(path).absolute().relative_to(root)) for path in self.paths]
+        if len(named) > MOST_IN_COMMAND:
+            named = [f"$(bk check --paths {self.results.absolute().relative_to(root)})"]
         return place + remake_command(self.results / NAME, *named)
 
 
@@ -106,52 +92,50 @@ def check_study(results: str | Path) -> Check:
     Raises ValueError, one line, if the folder holds no study.
     """
     results = Path(results)
-    record, study = recorded_study(results)
-    runs = list(_runs(study))
+    record, study, points = recorded_study(results)
+    left = leftovers(results, study)
+    notes = []
     # Nobody who asks for points only asks for them by other solvers.
-    asked = (results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()
-    wanted = [run for run in runs if asked or not run[0].startswith("solvers/")]
-    points = {results / place: (results / log, command) for place, log, command in wanted}
-    left, logs = leftovers(results, study)
-    known = {*points, *left}
-    files = sorted(path for path in results.rglob("*.nc") if not path.name.startswith("."))
-    others = [path for path in files if path not in known]
-    unknown = [path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")]
-    summaries = [path for path in others if path not in unknown]
-    found = [*(_look(path, command, log) for path, (log, command) in points.items()), *map(_look, summaries)]
-    findings = sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path))
-    elsewhere = [
-        *(Finding("leftover", path, "belongs to no point of the study") for path in left),
-        *(Finding("unknown", path, "no point of a study has that name") for path in unknown),
-        *filter(None, [changed(results, record)]),
-    ]
-    numbers = len(points), len(summaries)
-    return Check(results, *numbers, tuple(findings), tuple(elsewhere), len(runs) - len(wanted), len(logs))
+    if not ((results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()):
+        unasked = [points.pop(path) for path in list(points) if path.is_relative_to(results / "solvers")]
+        runs = counted(len(unasked), "run")
+        notes += [f"not counted: {runs} of other solvers, none of which was asked for yet"] if unasked else []
+    if left:
+        files = counted(len(left), "file")
+        notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
+    others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
+    unknown = {path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")}
+    summaries = others - unknown
+    found = [*(_look(path, *run) for path, run in points.items()), *map(_look, summaries)]
+    return Check(
+        results,
+        f"{counted(len(points), 'point')} and {counted(len(summaries), 'other file')}",
+        sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
+        [
+            *(Finding("leftover", path, "belongs to no point of the study") for path in left if path.suffix in RESULTS),
+            *(Finding("unknown", path, "no point of a study has that name") for path in sorted(unknown)),
+            *filter(None, [changed(results, record)]),
+        ],
+        notes,
+    )
 
 
-def recorded_study(results: Path) -> tuple[dict[str, Any], Study]:
-    """Return the record of a folder of results and the study that it describes.
+def recorded_study(results: Path) -> tuple[dict[str, Any], Study, dict[Path, tuple[str, Path]]]:
+    """Return the record of a folder of results, the study that it describes, and its {point file: (command, log)}.
 
     Raises ValueError, one line, if the folder holds no study, or one that this version cannot read.
     """
     record = read_study_record(results)
     study = Study(record["config"], record["grid"])
     try:
-        # All of the config that matters here is looked at.
-        list(_runs(study))
+        points = {
+            results / f"{file}.nc".format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
+            for file, log, runs in run_files(study)
+            for run in runs
+        }
     except (LookupError, TypeError, AttributeError, ValueError) as error:
         raise ValueError(f"{results / NAME}: not a study of this version ({error}); run snakemake again") from None
-    return record, study
-
-
-def _runs(study: Study) -> Iterator[tuple[str, str, str]]:
-    """Yield file, log and command of every run of a study, the paths below its results."""
-    points = [(law, None, initial, a) for law, initial, a in all_points(study)]
-    for law, solver, initial, a in (*points, *solver_points(study)):
-        place = POINT.format(law=law, initial=initial, a=a)
-        folder, rule = (f"solvers/{solver}", f"simulate_solver/{solver}") if solver else ("points", "simulate")
-        log = f"logs/{rule}/{place.removesuffix('.nc')}.log"
-        yield f"{folder}/{place}", log, study.command(law, initial, a, solver)
+    return record, study, points
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
@@ -159,7 +143,7 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
     try:
         if not command:
             open_summary(path)
-        elif (status := check_run(path, command).status) != "completed":
+        elif (status := check_run(path, command)) != "completed":
             return Finding("failed", path, f"ended with status {status}")
     except BadFile as error:
         reason = error.reason
@@ -172,15 +156,14 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
 
 def changed(results: Path, record: dict[str, Any]) -> Finding | None:
     """Return that the config file is not that of the last run: stale, or a note if it is not there to be compared."""
-    file = record["config_file"]
-    path = root_of(results) / file
     # Which file it was can be told from where it lay only.
+    file, path = Path(record["config_file"]), root_of(results) / record["config_file"]
     if not path.exists():
-        return Finding("note", Path(file), "is not there; what is checked is the config of the last run")
+        return Finding("note", file, "is not there; what is checked is the config of the last run")
     try:
         if read_yaml(path) != record["given"]:
-            return Finding("stale", Path(file), "has changed since the last run, whose config is checked")
+            return Finding("stale", file, "has changed since the last run, whose config is checked")
     except ConfigError as error:
-        file, _, reason = str(error).partition(": ")
-        return Finding("stale", Path(file), f"{reason}; what is checked is the config of the last run")
+        reason = str(error).partition(": ")[2]
+        return Finding("stale", file, f"{reason}; what is checked is the config of the last run")
     return None

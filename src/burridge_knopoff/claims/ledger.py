@@ -32,7 +32,7 @@ from burridge_knopoff.model.fields import FOLLOWS, Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text, Whole, refusal
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 

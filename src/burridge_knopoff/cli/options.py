@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import re
 import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,7 +17,7 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, Text, Whole
+from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, Whole
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS
 from burridge_knopoff.provenance.files import check_target
 
@@ -25,51 +27,34 @@ _T = TypeVar("_T")
 Group = argparse._ActionsContainer
 
 
-def number(text: str) -> float:
-    """Return the number that a text is."""
-    # Python also takes 1_0 for ten, and the digits of every script.
-    if not re.fullmatch(r"[-+.0-9a-zA-Z]+", text):
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: a number")
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: a number") from None
+def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Callable[[str], Any]:
+    """Return a function of the text of an option: what it is read as, or its refusal, which says what is allowed."""
+
+    def value(text: str) -> Any:
+        with contextlib.suppress(ValueError):
+            if re.fullmatch(pattern, text):
+                return read(text)
+        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: {words}")
+
+    return value
 
 
-def count(text: str) -> int:
-    """Return the whole number that a text is."""
-    if not re.fullmatch(r"[-+]?[0-9]{1,9}", text):
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: a whole number")
-    return int(text)
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    try:
-        return tuple(number(part) for part in text.split(","))
-    except argparse.ArgumentTypeError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: numbers with commas between them") from None
+# Python also takes 1_0 for ten, and the digits of every script.
+number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
+count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
+_numbers = _reader(
+    r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
+)
+_named_number = _reader(
+    r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",
+    "NAME=NUMBER, as sigma=0.01",
+    lambda text: (text.partition("=")[0], number(text.partition("=")[2])),
+)
 
 
 def _strength(text: str) -> str | float | tuple[float, ...]:
     values = NEIGHBOURS if text == NEIGHBOURS else _numbers(text)
     return values[0] if len(values) == 1 else values
-
-
-def _named_number(text: str) -> tuple[str, float]:
-    name, sign, value = text.partition("=")
-    if not sign or not re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", name) or name in ("name", "law", "formula"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not allowed: NAME=NUMBER, as sigma=0.01")
-    return name, number(value)
-
-
-def _named(allowed: Text) -> Callable[[str], str]:
-    def name(text: str) -> str:
-        try:
-            return allowed.form(text, "")
-        except ValueError as error:
-            raise argparse.ArgumentTypeError(f"{error}") from None
-
-    return name
 
 
 #: How the text of an option is read, by the range of its setting; any other is a word.
@@ -88,21 +73,15 @@ _METAVARS = {
     "threshold": "F1,F2,...",
     "position": "U1,U2,...",
     "velocity": "U1',U2',...",
-    "position_box": "LOW,HIGH",
-    "velocity_box": "LOW,HIGH",
-    "first_position": "LOW,HIGH",
-    "last_position": "LOW,HIGH",
 }
-
-#: Options whose value may begin with a minus, without being a plain number: argparse would take it for an option.
-_SIGNED = tuple(f"--{key.replace('_', '-')}" for key in ("formula", *_METAVARS))
 
 
 def join_signed(arguments: Sequence[str]) -> list[str]:
-    """Write `--position -1,2` as `--position=-1,2`."""
+    """Write `--position -1,2` as `--position=-1,2`: argparse would take numbers or a formula for an option."""
     joined: list[str] = []
     for argument in arguments:
-        if joined and joined[-1] in _SIGNED:
+        option = re.fullmatch("--[a-z-]+", joined[-1]) if joined else None
+        if option and (option[0] == "--formula" or re.match(r"-[.\d]", argument)):
             joined[-1] += f"={argument}"
         else:
             joined.append(argument)
@@ -124,7 +103,7 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
             f"--{key.replace('_', '-')}",
             type=_READERS.get(type(field.range), str),
             default=default,
-            metavar=_METAVARS.get(key),
+            metavar="LOW,HIGH" if isinstance(field.range, Interval) else _METAVARS.get(key),
             help=words if default is None else f"{words} (default: {shown})",
         )
         if isinstance(field.range, OneOf):
@@ -157,7 +136,10 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         help="a number of the law; as often as it has some",
     )
     model.add_argument(
-        "--law-name", type=_named(LAW_NAME), metavar="NAME", help="name of the law in files (default: LAW)"
+        "--law-name",
+        type=_reader(LAW_NAME.pattern, LAW_NAME.words),
+        metavar="NAME",
+        help="name of the law in files (default: LAW)",
     )
     model.add_argument("--a", required=True, type=number, help="friction parameter, 0 or more")
     add(model, Chain, *CHAIN_OPTIONS)
@@ -172,7 +154,7 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
     state = parser.add_argument_group("initial state")
     initial = state.add_argument(
         "--initial",
-        type=_named(STATE_NAME),
+        type=_reader(STATE_NAME.pattern, STATE_NAME.words),
         metavar="NAME",
         help=f"{' | '.join(PAPER_STATES)} (the paper's), or a name for the numbers given below (default: {usual}; "
         f"{OWN} for numbers)",
@@ -232,12 +214,9 @@ def check_out(path: str) -> None:
 
 def command_of(options: argparse.Namespace) -> str:
     """Return the command that was given, without the files that it was to write: what a file says that made it."""
-    words = [word for word in options.given if not re.match(r"--(attractors-)?out=", word)]
-    for option in ("--out", "--attractors-out"):
-        if option in words:
-            place = words.index(option)
-            del words[place : place + 2]
-    return shlex.join(["bk", *words])
+    files, words = ("--out", "--attractors-out"), ["bk", *options.given]
+    told = [word for before, word in pairwise(words) if before not in files and not word.startswith(files)]
+    return shlex.join(["bk", *told])
 
 
 def said_of(model: Model) -> str:

@@ -27,16 +27,15 @@ def run(options: argparse.Namespace) -> int:
 
     studies = []
     for folder in map(Path, options.results):
-        record, study = recorded_study(folder)
+        record, study, _ = recorded_study(folder)
         if (found := changed(folder, record)) and found.kind == "stale":
             raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
         studies.append((folder, study))
     for folder, study in studies:
-        results, logs = leftovers(folder, study)
-        for path in (*results, *logs):
+        left = leftovers(folder, study)
+        for path in left:
             print(path)
         if not options.dry_run:
-            delete(folder, [*results, *logs])
-        done = "would be deleted" if options.dry_run else "deleted"
-        print(f"{folder}: {counted(len(results) + len(logs), 'file')} {done}")
+            delete(folder, left)
+        print(f"{folder}: {counted(len(left), 'file')} {'would be ' * options.dry_run}deleted")
     return 0

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, fill, flag
+from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, described, fill, flag
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.seal import identity, seal
-from burridge_knopoff.provenance.software import SOFTWARE, provenance
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.trajectory import Trajectory
 
@@ -160,18 +159,6 @@ def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
     """Return a trajectory as the xarray Dataset that its point file opens as."""
     import xarray
 
-    values = point_values(trajectory)
-    variables = {
-        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
-        for name, item in POINT_VARIABLES.items()
-    }
-    auxiliary = set(TIMES.values())
-    return xarray.Dataset(
-        {name: value for name, value in variables.items() if not _is_coordinate(name, auxiliary)},
-        {name: value for name, value in variables.items() if _is_coordinate(name, auxiliary)},
-        point_attributes(trajectory),
-    )
-
-
-def _is_coordinate(name: str, auxiliary: set[str]) -> bool:
-    return POINT_VARIABLES[name].coordinate or name in auxiliary
+    data = described(POINT_VARIABLES, point_values(trajectory))
+    coordinates = {name for name, item in POINT_VARIABLES.items() if item.coordinate} | set(TIMES.values())
+    return xarray.Dataset(data, attrs=point_attributes(trajectory)).set_coords(coordinates)

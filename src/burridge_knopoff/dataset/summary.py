@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable
+from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable, described
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, seal
-from burridge_knopoff.provenance.software import provenance
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import provenance, source_fingerprint
 
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),
@@ -43,10 +42,6 @@ def summary(
 
     module : name of the module that makes the values
     """
-    data = {
-        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
-        for name, item in variables.items()
-    }
     head = {
         "Conventions": CONVENTIONS,
         "title": title,
@@ -54,7 +49,7 @@ def summary(
         **attributes,
         **provenance(module),
     }
-    return xarray.Dataset(data, dict(coordinates), head)
+    return xarray.Dataset(described(variables, values), dict(coordinates), head)
 
 
 def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
@@ -64,7 +59,7 @@ def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
         encoding[str(name)] = {"_FillValue": None}
         if variable.dtype != object and variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
-    about = _identity(dataset)
+    about = identity(*(dataset.attrs[key] for key in ("software", "source_module", "source_fingerprint")))
 
     def write(name: str) -> None:
         dataset.to_netcdf(name, engine="netcdf4", encoding=encoding)
@@ -79,16 +74,9 @@ def open_summary(path: str | Path) -> xarray.Dataset:
     Raises BadFile if it is missing, damaged, or made by other sources than those of this package.
     """
     read_seal(path)
-    try:
-        dataset = xarray.load_dataset(path, engine="netcdf4")
-        module, fingerprint = dataset.attrs["source_module"], dataset.attrs["source_fingerprint"]
-    except (OSError, RuntimeError, ValueError, KeyError) as error:
-        raise BadFile(path, f"is not a summary ({error})") from None
+    dataset = xarray.load_dataset(path, engine="netcdf4")
+    module, fingerprint = dataset.attrs["source_module"], dataset.attrs["source_fingerprint"]
     current = source_fingerprint(module)
     if fingerprint != current:
         raise BadFile(path, f"was made by other sources ({module} {fingerprint}, now {current})")
     return dataset
-
-
-def _identity(dataset: xarray.Dataset) -> str:
-    return identity(*(dataset.attrs[key] for key in ("software", "source_module", "source_fingerprint")))

@@ -51,6 +51,14 @@ DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 TIMES = {"sample": "time", "event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
 
 
+def described(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return variables with the values under the same names, as an xarray Dataset takes them."""
+    return {
+        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
+        for name, item in variables.items()
+    }
+
+
 def fill(
     dataset: netCDF4.Dataset,
     variables: Mapping[str, Variable],

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.lazy_point import NUMBERS, lazy_point
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import AXES, axes
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.study.paths import POINT
+
+#: What is one number a point.
+NUMBERS = tuple(name for name, item in POINT_VARIABLES.items() if not item.dimensions and not item.coordinate)
 
 
 def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
@@ -48,7 +49,7 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
                 for k, a in enumerate(values):
                     name = f"points/{POINT.format(law=law, initial=initial, a=a)}"
                     if (results / name).is_file():
-                        point = nodes[name.removesuffix(".nc")] = _opened(results / name, lazy_point)
+                        point = nodes[name.removesuffix(".nc")] = _opened(results / name)
                         for number, everywhere in found.items():
                             everywhere[i, j, k] = point.variables[number].values
         nodes["grid"] = xarray.Dataset(
@@ -56,7 +57,7 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
             axes(states, list(values.values()), laws),
         )
     for path in sorted(results.glob("summary/*.nc")):
-        nodes[f"summary/{path.stem}"] = _opened(path, xarray.open_dataset)
+        nodes[f"summary/{path.stem}"] = _opened(path)
     return xarray.DataTree.from_dict(nodes, name=config["study"])
 
 
@@ -66,8 +67,8 @@ def _absent(name: str) -> Any:
     return kind.type(np.nan if kind.kind == "f" else -1)
 
 
-def _opened(path: Path, how: Callable[[Path], xarray.Dataset]) -> xarray.Dataset:
+def _opened(path: Path) -> xarray.Dataset:
     try:
-        return how(path)
-    except (OSError, RuntimeError, ValueError, LookupError) as error:
+        return xarray.open_dataset(path)
+    except (OSError, RuntimeError, ValueError) as error:
         raise ValueError(f"{path}: cannot be read ({error})") from error

@@ -95,8 +95,7 @@ class Model:
 
         Raises ValueError where the state does not fit the chain, or slips backward under one-sided contact.
         """
-        if start not in STARTS:
-            raise ValueError(f"start: {start!r} is not allowed: {' | '.join(STARTS)}")
+        OneOf(STARTS).form(start, "start")
         if len(initial.position) != self.blocks:
             raise ValueError(
                 f"blocks: {self.blocks} is not allowed for initial state {initial.name!r}, "

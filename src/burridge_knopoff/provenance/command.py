@@ -58,10 +58,7 @@ def _text(value: Any) -> str:
 
 def difference(found: str, expected: str) -> str:
     """Return in words where two commands differ: `--a 0.08 instead of --a 0.05`."""
-    try:
-        one, other = (dict(_OPTION.findall(" ".join(shlex.split(text)))) for text in (found, expected))
-    except ValueError:
-        one = other = {}
+    one, other = (dict(_OPTION.findall(" ".join(shlex.split(text)))) for text in (found, expected))
     for key in [*other, *one]:
         if one.get(key) != other.get(key):
             named = [f"--{key} {options[key]}" if key in options else f"no --{key}" for options in (one, other)]

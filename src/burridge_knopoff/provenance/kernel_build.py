@@ -50,9 +50,9 @@ def check_kernel(*, compiled: bool = False) -> None:
         if compiled:
             raise KernelError("the kernel is not compiled")
         return
-    current, recorded = kernel_sources(), recorded_sources()
+    recorded = recorded_sources()
     if recorded is None:
         raise KernelError(f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole")
-    for name in sorted(current.keys() | recorded.keys()):
-        if current.get(name) != recorded.get(name):
-            raise KernelError(f"{name}: has changed since the kernel was compiled")
+    changed = {name for name, _ in recorded.items() ^ kernel_sources().items()}
+    if changed:
+        raise KernelError(f"{min(changed)}: has changed since the kernel was compiled")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import json
+import subprocess
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.provenance.files import display_path, write_text
-from burridge_knopoff.provenance.software import SOFTWARE, git_commit
+from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
 
 if TYPE_CHECKING:
     from burridge_knopoff.study import Study
@@ -20,6 +22,18 @@ _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
     **dict.fromkeys(("given", "config", "grid"), dict),
 }
+
+
+@cache
+def git_commit() -> str:
+    """Return the commit that is checked out around the package, or "unknown" outside a checkout."""
+    checkout = PACKAGE.parent.parent
+    # The checkout may lie in the folder of another user.
+    command = ["git", "-c", "safe.directory=*", "rev-parse", "HEAD"]
+    with contextlib.suppress(OSError, subprocess.CalledProcessError):
+        if (checkout / ".git").exists():
+            return subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True).stdout.strip()
+    return "unknown"
 
 
 def write_study_record(
@@ -53,8 +67,8 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: not readable ({error}); run snakemake again, it writes it") from None
+    except ValueError:
+        record = None
     if not isinstance(record, dict) or {key: type(value) for key, value in record.items()} != _TYPES:
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from burridge_knopoff.provenance.record import remake_command
@@ -29,14 +28,6 @@ class BadFile(ValueError):
         super().__init__(f"{path}: {reason}; remake it: {remake_command(path)}")
 
 
-@dataclass(frozen=True)
-class Seal:
-    """What a seal says: the digest of what the file is about, and the status of a run."""
-
-    identity: str
-    status: str
-
-
 def identity(*parts: str) -> str:
     """Return 16 hexadecimal digits for what a file is about."""
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
@@ -50,8 +41,8 @@ def seal(path: str | Path, about: str, status: str = "made") -> None:
         file.write(head + f"{digest}\n".encode())
 
 
-def read_seal(path: str | Path) -> Seal:
-    """Return the seal of a file after holding it against all bytes before it.
+def read_seal(path: str | Path) -> tuple[str, str]:
+    """Return what a file is about, see `identity`, and how its run ended, after holding all its bytes against its seal.
 
     Raises BadFile if the file is not there, has no seal, or is not what was sealed.
     """
@@ -67,4 +58,4 @@ def read_seal(path: str | Path) -> Seal:
         raise BadFile(path, reason, "corrupt")
     if hashlib.sha256(content[: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
         raise BadFile(path, "has other bytes than were written", "corrupt")
-    return Seal(found[1].decode(), found[2].decode())
+    return found[1].decode(), found[2].decode()

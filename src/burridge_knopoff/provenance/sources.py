@@ -1,4 +1,4 @@
-"""Which sources a result depends on, and a fingerprint of their code that no comment and no docstring changes.
+"""What a result comes from: the software, and a fingerprint of its sources that no comment and no docstring changes.
 
 Snakemake looks at a rule and its script only, not at what a script imports. Here the imports are followed, from the
 module or script that makes a result to every file of the package that it reaches, at the top of a file or inside a
@@ -12,6 +12,9 @@ import re
 from functools import cache
 from pathlib import Path
 
+from burridge_knopoff import __version__
+
+SOFTWARE = f"burridge-knopoff {__version__}"
 PACKAGE = Path(__file__).parents[1]
 
 #: Moves bytes, reads arguments and names sources: it decides no number, so that a change of it remakes nothing.
@@ -30,6 +33,14 @@ _DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|(?<!\*):[ \t]*\n)\s*{_TEXT}[ \t]*$"
 #: Comments that Cython obeys.
 _DIRECTIVE = re.compile(r"#\s*(cython|distutils)\s*:")
 _IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?c?import\s+(\([^)]*\)|.+)", re.MULTILINE)
+
+
+def provenance(module: str) -> dict[str, str]:
+    """Return the provenance attributes of what a module of the package makes, by its full name.
+
+    Nothing in them depends on user, host, time of day or commit, so that the same inputs give the same bytes.
+    """
+    return {"software": SOFTWARE, "source_module": module, "source_fingerprint": source_fingerprint(module)}
 
 
 @cache

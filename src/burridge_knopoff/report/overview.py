@@ -13,7 +13,8 @@ import yaml
 from burridge_knopoff.figures.friction_laws import law_text
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.software import git_commit, provenance
+from burridge_knopoff.provenance.record import git_commit
+from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.report.numbers import text
 from burridge_knopoff.study import Study, all_points
 from burridge_knopoff.study.words import counted

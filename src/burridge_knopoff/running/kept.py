@@ -6,6 +6,7 @@ SciPy, and the arguments by value.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import pickle
 from collections.abc import Callable, Collection, Iterator
@@ -19,6 +20,7 @@ import numpy as np
 import scipy
 
 from burridge_knopoff.provenance.files import write_whole
+from burridge_knopoff.provenance.seal import BadFile, read_seal, seal
 from burridge_knopoff.provenance.sources import source_fingerprint
 
 _DIGIT = "[0-9a-f]"
@@ -33,15 +35,16 @@ def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, 
     for part in _parts([function, *items]):
         digest.update(part)
     path = folder / digest.hexdigest()[:32]
-    try:
-        check, content = path.read_bytes().split(b"\n", 1)
-        if check == _check(content):
-            return pickle.loads(content), path, True
-    except (OSError, ValueError):
-        pass
+    with contextlib.suppress(BadFile):
+        read_seal(path)
+        return pickle.loads(path.read_bytes()), path, True
     result = function(*items)
-    content = pickle.dumps(result)
-    write_whole(path, lambda name: Path(name).write_bytes(_check(content) + b"\n" + content))
+
+    def write(name: str) -> None:
+        Path(name).write_bytes(pickle.dumps(result))
+        seal(name, path.name[:16])
+
+    write_whole(path, write)
     return result, path, False
 
 
@@ -54,10 +57,6 @@ def forget(folder: Path, asked: Collection[Path]) -> None:
     for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
         if path not in asked:
             path.unlink(missing_ok=True)
-
-
-def _check(content: bytes) -> bytes:
-    return hashlib.sha256(content).hexdigest().encode()
 
 
 def _parts(value: Any) -> Iterator[bytes]:

@@ -8,7 +8,7 @@ from typing import Annotated
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.model import START, STARTS
-from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.model.ranges import Number, OneOf, Whole, refusal
 
 SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")
@@ -80,24 +80,18 @@ class Settings:
             ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
         ):
             if samples > 1e7:
-                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: it asks for more than 1e7 samples")
+                raise refusal(key, getattr(self, key), "it asks for more than 1e7 samples")
 
     def check_blocks(self, blocks: int) -> None:
         """Raise ValueError if the settings do not fit a chain of that many blocks, or ask for more than it can do."""
         if self.lyapunov_exponents > 2 * blocks:
-            raise ValueError(
-                f"lyapunov_exponents: {self.lyapunov_exponents!r} is not allowed: at most {2 * blocks}, two a block"
-            )
+            raise refusal("lyapunov_exponents", self.lyapunov_exponents, f"at most {2 * blocks}, two a block")
         if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
-            raise ValueError(
-                f"step: {self.step!r} is not allowed: transient and window in at most {MOST_STEPS / blocks:.3g} steps"
-            )
+            raise refusal("step", self.step, f"transient and window in at most {MOST_STEPS / blocks:.3g} steps")
         for key, numbers in self._kept(blocks).items():
             if numbers > MOST_NUMBERS:
-                raise ValueError(
-                    f"{key}: {getattr(self, key)!r} is not allowed: the run would keep {numbers:.1e} numbers for it, "
-                    f"at most {MOST_NUMBERS:.0e}"
-                )
+                allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
+                raise refusal(key, getattr(self, key), allowed)
 
     def _kept(self, blocks: int) -> dict[str, float]:
         """Return how many numbers the run keeps, by the setting that decides it; those of events are an estimate."""

@@ -53,10 +53,7 @@ class Result:
     def made_by(self) -> str:
         """What made the file, and whether the sources of now are the same, in a line."""
         attributes = self.data.attrs
-        try:
-            same = source_fingerprint(attributes["source_module"]) == attributes["source_fingerprint"]
-        except OSError:
-            same = False
+        same = source_fingerprint(attributes["source_module"]) == attributes["source_fingerprint"]
         words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"
         return words if same else f"{words} (other sources than those of now)"
 
@@ -70,12 +67,8 @@ def open_result(path: str | Path) -> Result:
     study = study_folder(path)
     try:
         read_seal(path)
-        data = xarray.load_dataset(path, engine="netcdf4")
-        if missing := {"software", "source_module", "source_fingerprint"} - data.attrs.keys():
-            raise ValueError(f"no attribute {min(missing)}")
     except BadFile as error:
         # What makes it again is known of the files of a study only.
         raise error if study else ValueError(f"{path}: {error.reason}") from None
-    except (OSError, RuntimeError, ValueError) as error:
-        raise ValueError(f"{path}: is not a file of this software ({error})") from None
+    data = xarray.load_dataset(path, engine="netcdf4")
     return Result(path, data, study, read_study_record(study) if study else {})

@@ -233,18 +233,15 @@ def _study(config: Mapping[str, Any]) -> Study:
     study = Study(filled, grid)
     rules.fill_states(filled)
     rules.fill_chains(filled)
-    rules.fill_laws(filled)
+    rules.fill_names(filled)
     rules.check_models(filled, values, study.blocks)
-    rules.fill_solver(filled, values, study.blocks)
     for law in study.laws:
         study.settings(law).check_blocks(study.blocks)
-    rules.fill_basins(filled, set(values))
     with rules.under("basins."):
         _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
-    rules.fill_phases(filled, set(values), study.blocks)
-    rules.fill_compared(filled, set(values), study.shown_a)
+    rules.fill_values(filled, set(values), study.blocks, study.shown_a)
     rules.check_size(filled, len(grid), study.blocks)
     rules.leave_out(filled, study.left_out)
     return study

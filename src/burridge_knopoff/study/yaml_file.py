@@ -61,20 +61,20 @@ def read_yaml(path: str | Path) -> Any:
 
     Raises ConfigError, one line, if it cannot be read, or a key stands twice in one place or is not text.
     """
-    file = display_path(path)
     try:
         if Path(path).exists() and not Path(path).is_file():
             raise OSError("it is not a regular file")
         return yaml.load(Path(path).read_text(encoding="utf-8-sig"), Loader=_Loader)
     except ConfigError as error:
-        raise ConfigError(f"{file}: {error}") from None
+        reason = f"{error}"
     except OSError as error:
-        raise ConfigError(f"{file}: cannot be read: {error.strerror or error}") from None
+        reason = f"cannot be read: {error.strerror or error}"
     except UnicodeDecodeError:
-        raise ConfigError(f"{file}: cannot be read: not UTF-8 text") from None
+        reason = "cannot be read: not UTF-8 text"
     # PyYAML also raises what Python does, as for a date that is none.
     except Exception as error:
         mark = getattr(error, "problem_mark", None)
         problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
         place = f" (line {mark.line + 1})" if mark else ""
-        raise ConfigError(f"{file}: not YAML{place}: {problem.encode('ascii', 'replace').decode()}") from None
+        reason = f"not YAML{place}: {problem.encode('ascii', 'replace').decode()}"
+    raise ConfigError(f"{display_path(path)}: {reason}")

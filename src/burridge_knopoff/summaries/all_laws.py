@@ -16,7 +16,7 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.stability.joining import joined
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import MotionKind

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.software import provenance
+from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.stability.chains import (
     Outcome,
     Sample,

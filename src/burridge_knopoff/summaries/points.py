@@ -15,8 +15,8 @@ from burridge_knopoff.dataset.point import point_identity
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.command import difference, simulate_command
-from burridge_knopoff.provenance.seal import BadFile, Seal, read_seal
-from burridge_knopoff.provenance.software import SOFTWARE
+from burridge_knopoff.provenance.seal import BadFile, read_seal
+from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paths import POINT
@@ -114,53 +114,33 @@ def read_run(path: Path, command: str, names: Sequence[str]) -> dict[str, np.nda
     Raises BadFile as `read_point` does.
     """
     check_run(path, command)
-    try:
-        with netCDF4.Dataset(path) as dataset:
-            dataset.set_auto_mask(False)
-            return {name: dataset[name][...] for name in names}
-    except (OSError, RuntimeError, IndexError, KeyError) as error:
-        raise BadFile(path, f"is not a point file ({error})") from error
+    with netCDF4.Dataset(path) as dataset:
+        dataset.set_auto_mask(False)
+        return {name: dataset[name][...] for name in names}
 
 
 def open_point(grid: Grid, law: str, initial: str, a: str) -> xarray.Dataset:
     """Return one point as an xarray Dataset, loaded into memory; raises BadFile as `read_point` does."""
     path = grid.path(law, initial, a)
     check_run(path, grid.command(law, initial, a))
-    try:
-        return xarray.load_dataset(path, engine="netcdf4")
-    except (OSError, RuntimeError, ValueError) as error:
-        raise BadFile(path, f"is not a point file ({error})") from error
+    return xarray.load_dataset(path, engine="netcdf4")
 
 
-def open_runs(grid: Grid) -> dict[str, xarray.Dataset]:
-    """Return the points of a grid of one law and one a, as `open_point` does, by initial state."""
-    (law,), (a,) = grid.laws, grid.a
-    return {initial: open_point(grid, law, initial, a) for initial in grid.initial}
-
-
-def check_run(path: Path, command: str) -> Seal:
-    """Return the seal of the point file of a run after comparing it with the command and the present sources.
+def check_run(path: Path, command: str) -> str:
+    """Return how the run of a point file ended, after comparing its seal with the command and the present sources.
 
     Raises BadFile as `read_point` does.
     """
-    seal = read_seal(path)
-    if seal.identity != point_identity(command):
-        raise BadFile(path, _other(path, command))
-    return seal
-
-
-def _other(path: Path, command: str) -> str:
-    """Return in words how a sealed file differs from the run of a command."""
-    try:
-        with netCDF4.Dataset(path) as dataset:
-            found, software = dataset.history, dataset.software
-    except (OSError, RuntimeError, AttributeError) as error:
-        return f"is not a point file ({error})"
+    about, status = read_seal(path)
+    if about == point_identity(command):
+        return status
+    with netCDF4.Dataset(path) as dataset:
+        found, software = dataset.history, dataset.software
     if found != command:
-        return f"is another run: {difference(found, command)}"
+        raise BadFile(path, f"is another run: {difference(found, command)}")
     if software != SOFTWARE:
-        return f"was made by {software}, now {SOFTWARE}"
-    return "was made by other sources of the simulation than those of now"
+        raise BadFile(path, f"was made by {software}, now {SOFTWARE}")
+    raise BadFile(path, "was made by other sources of the simulation than those of now")
 
 
 def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -7,68 +7,44 @@ Slurm is that of the folder: a job whose Snakemake was killed is found again by 
 These programs use nothing but the standard library of any Python 3 from 3.8.
 """
 
-import json
-import re
+import itertools
 import subprocess
 import time
 from pathlib import Path
 
 FOLDER = Path(".snakemake/slurm")
+#: In the folder of a job.
+RECORD, OUTPUT = "record.json", "output.txt"
 #: Seconds for which a controller that does not answer is asked again, and between two attempts.
 PATIENCE, PAUSE = 300.0, 5.0
-#: What Slurm's programs say when the controller does not answer or has no room now.
-NO_ANSWER = re.compile(
-    "contact|timed out|connect|communication|zero bytes|temporarily|try again|submit limit", re.IGNORECASE
-)
 
 
-class Job:
-    """A submission: its folder, and what lies there."""
-
-    def __init__(self, name):
-        self.name = name
-        self.folder = FOLDER / name
-
-    @property
-    def output(self):
-        """What the script wrote, by Slurm."""
-        return self.folder / "output.txt"
-
-    def record(self):
-        """Return the content of record.json; {} if it cannot be read."""
-        try:
-            return json.loads((self.folder / "record.json").read_text())
-        except (OSError, ValueError):
-            return {}
-
-    def submitted(self):
-        """Return when the record was written, by the clock of the file system that also holds the inputs."""
-        return (self.folder / "record.json").stat().st_mtime
-
-    def exit_code(self):
-        """Return the exit code of the script; None while it has none."""
-        try:
-            # To list a folder makes a network file system look again.
-            list(self.folder.iterdir())
-            return int((self.folder / "exit").read_text())
-        except (OSError, ValueError):
-            return None
-
-
-def known_jobs():
-    """Return the jobs of all folders."""
-    return [Job(path.name) for path in sorted(FOLDER.iterdir())] if FOLDER.is_dir() else []
+def exit_code(job):
+    """Return the exit code of the script in the folder of a job; None while it has none."""
+    try:
+        # To list a folder makes a network file system look again.
+        list(job.iterdir())
+        return int((job / "exit").read_text())
+    except (OSError, ValueError):
+        return None
 
 
 def live_jobs():
     """Return {name: Slurm's number} of the jobs of this user that have not ended; raise OSError if Slurm cannot say."""
-    end = time.monotonic() + PATIENCE
-    while True:
+    for _ in attempts():
         answer = ask("squeue", "--me", "--noheader", "--format=%A|%j")
         if answer.returncode == 0:
             return {name: number for number, _, name in (line.partition("|") for line in answer.stdout.splitlines())}
+    raise OSError("squeue: " + one_line(answer.stderr))
+
+
+def attempts():
+    """Count the attempts to reach a controller that does not answer, with a pause after each."""
+    end = time.monotonic() + PATIENCE
+    for number in itertools.count():
+        yield number
         if time.monotonic() > end:
-            raise OSError("squeue: " + one_line(answer.stderr))
+            return
         time.sleep(PAUSE)
 
 

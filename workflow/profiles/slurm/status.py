@@ -12,7 +12,7 @@ import shutil
 import sys
 import time
 
-from jobs import Job, ask
+from jobs import FOLDER, OUTPUT, ask, exit_code
 
 #: States of a job that is yet to end.
 LIVE = {"PENDING", "CONFIGURING", "RUNNING", "SUSPENDED", "COMPLETING", "STAGE_OUT", "SIGNALING", "STOPPED", "RESIZING"}
@@ -25,18 +25,18 @@ LATENCY = 60.0
 def main():
     """Print the status; return the exit code."""
     number, _, name = sys.argv[1].partition(":")
-    job = Job(name)
+    job = FOLDER / name
     # Slurm first: a job that ends after the answer is found at the next call.
     state = slurm_state(number, name)
-    code = job.exit_code()
+    code = exit_code(job)
     if code == 0:
-        shutil.rmtree(job.folder, ignore_errors=True)
+        shutil.rmtree(job, ignore_errors=True)
         print("success")
     elif state in LIVE or (code is None and state in ENDED and waited(job) < LATENCY):
         print("running")
     else:
         words = "no exit code" if code is None else f"exit code {code}"
-        print(f"Slurm job {number} {name}: {state}, {words}, output in {job.output}", file=sys.stderr)
+        print(f"Slurm job {number} {name}: {state}, {words}, output in {job / OUTPUT}", file=sys.stderr)
         print("failed")
     return 0
 
@@ -55,16 +55,14 @@ def slurm_state(number, name):
 
 def waited(job):
     """Return for how many seconds it has been known that a job has ended."""
-    mark = job.folder / "ended"
+    mark = job / "ended"
     try:
+        if not mark.exists():
+            mark.touch()
         return time.time() - mark.stat().st_mtime
     except OSError:
-        try:
-            mark.touch()
-        except OSError:
-            # The folder itself is gone: nothing is to come.
-            return LATENCY
-        return 0.0
+        # The folder itself is gone: nothing is to come.
+        return LATENCY
 
 
 if __name__ == "__main__":

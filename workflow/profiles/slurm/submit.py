@@ -2,13 +2,10 @@
 """Submits a job script of Snakemake to Slurm and prints `<Slurm's number>:<name>`; makes nothing twice.
 
     BK_RESULTS=results/STUDY submit.py JOBSCRIPT
-    submit.py --probe
 
 A job of an earlier run that makes the same files from the same study, and runs or has ended well without a Snakemake
 to take note, is returned instead. One that would make some of the files from something else is cancelled, and the new
 job begins when it has ended.
-
-With --probe nothing is submitted, and Slurm asked once whether it answers.
 
 Exit code 1, with one line on stderr, if Slurm refuses the job or does not answer.
 """
@@ -20,10 +17,9 @@ import re
 import secrets
 import shlex
 import sys
-import time
 from pathlib import Path
 
-from jobs import FOLDER, NO_ANSWER, PATIENCE, PAUSE, Job, ask, known_jobs, live_jobs, one_line
+from jobs import FOLDER, OUTPUT, RECORD, ask, attempts, exit_code, live_jobs, one_line
 
 #: Parts of the call in a job script that decide a result; "" is what comes before any option.
 STUDY_OPTIONS = ("", "--snakefile", "--configfiles", "--config")
@@ -32,6 +28,10 @@ WAIT_OPTIONS = ("--wait-for-files", "--wait-for-files-file")
 #: In the checkout of the Snakefile: what decides a result, given the config.
 SOURCES = ("config/claims.yaml", "src", "workflow")
 DEFAULT_CONFIG = "config/paper.yaml"
+#: What sbatch says when the controller does not answer or has no room now.
+NO_ANSWER = re.compile(
+    "contact|timed out|connect|communication|zero bytes|temporarily|try again|submit limit", re.IGNORECASE
+)
 #: What the Snakemake inside a job takes beside the job: MB, and minutes to start on a slow file system.
 SNAKEMAKE_MB, SNAKEMAKE_MINUTES = 250, 5
 
@@ -48,8 +48,6 @@ exit "${{ended:-$code}}"
 
 def main():
     """Find or submit the job; return the exit code."""
-    if sys.argv[1:] == ["--probe"]:
-        return probe()
     script = Path(sys.argv[1]).read_text()
     properties = json.loads(re.search("^# properties = (.*)$", script, re.MULTILINE).group(1))
     options = read_options(script)
@@ -63,11 +61,11 @@ def main():
             print(f"{live.get(same.name, 0)}:{same.name}")
             return 0
         label = properties["groupid"] if properties["type"] == "group" else properties["rule"]
-        job = Job(f"{label}-{secrets.token_hex(8)}")
-        job.folder.mkdir(parents=True)
-        (job.folder / "snakemake.sh").write_text(script)
+        job = FOLDER / f"{label}-{secrets.token_hex(8)}"
+        job.mkdir(parents=True)
+        (job / "snakemake.sh").write_text(script)
         # The record comes last: with it the folder is complete.
-        (job.folder / "record.json").write_text(json.dumps({"study": study, "targets": targets}))
+        (job / RECORD).write_text(json.dumps({"study": study, "targets": targets}))
         attempt = int(options["--attempt"][0])
         number = submit(job, requests(properties, attempt), others)
     except OSError as error:
@@ -77,28 +75,15 @@ def main():
     return 0
 
 
-def probe():
-    """Ask Slurm once; return the exit code."""
-    try:
-        answer = ask("squeue", "--me", "--noheader")
-        reason = one_line(answer.stderr) if answer.returncode else ""
-    except OSError as error:
-        reason = error.strerror
-    if reason:
-        print(f"squeue: {reason}", file=sys.stderr)
-    return 1 if reason else 0
-
-
 def read_options(script):
     """Return {option: values} of the Snakemake that a job script calls; what is no option stands under ""."""
-    options = {"": []}
-    option = ""
+    values = []
+    options = {"": values}
     for word in shlex.split(script, comments=True):
         if word.startswith("--"):
-            option = word
-            options[option] = []
+            options[word] = values = []
         else:
-            options[option].append(word)
+            values.append(word)
     return options
 
 
@@ -132,12 +117,17 @@ def newest_input(options):
 def earlier_jobs(targets, study, newest, live):
     """Return the job that makes just these targets, or None, and the numbers of those that new ones must wait for."""
     others = []
-    for job in known_jobs():
-        record = job.record()
-        if set(targets).isdisjoint(record.get("targets", [])):
+    for job in sorted(FOLDER.glob("*")):
+        try:
+            record = json.loads((job / RECORD).read_text())
+            # By the clock of the file system that also holds the inputs.
+            submitted = (job / RECORD).stat().st_mtime
+        except (OSError, ValueError):
             continue
-        current = record["study"] == study and job.submitted() > newest
-        if current and record["targets"] == targets and (job.name in live or job.exit_code() == 0):
+        if set(targets).isdisjoint(record["targets"]):
+            continue
+        current = record["study"] == study and submitted > newest
+        if current and record["targets"] == targets and (job.name in live or exit_code(job) == 0):
             return job, []
         if job.name in live:
             others.append(live[job.name])
@@ -164,23 +154,22 @@ def requests(properties, attempt):
 
 def submit(job, options, others):
     """Submit a job that begins when all others have ended; return Slurm's number, or raise OSError if it is refused."""
-    command = ["sbatch", "--parsable", f"--job-name={job.name}", f"--output={job.output}", *options]
+    command = ["sbatch", "--parsable", f"--job-name={job.name}", f"--output={job / OUTPUT}", *options]
     # Snakemake alone counts attempts and tries again.
     command.append("--no-requeue")
     if others:
         command.append("--dependency=afterany:" + ":".join(others))
-    end = time.monotonic() + PATIENCE
-    while True:
-        answer = ask(*command, input=SCRIPT.format(folder=FOLDER / job.name))
+    for number in attempts():
+        # It may have been taken, and the answer lost.
+        taken = live_jobs().get(job.name) if number else None
+        if taken:
+            return taken
+        answer = ask(*command, input=SCRIPT.format(folder=job))
         if answer.returncode == 0:
             return answer.stdout.strip().partition(";")[0]
-        if not NO_ANSWER.search(answer.stderr) or time.monotonic() > end:
-            raise OSError(one_line(answer.stderr))
-        time.sleep(PAUSE)
-        # It may have been taken, and the answer lost.
-        live = live_jobs()
-        if job.name in live:
-            return live[job.name]
+        if not NO_ANSWER.search(answer.stderr):
+            break
+    raise OSError(one_line(answer.stderr))
 
 
 if __name__ == "__main__":
