@@ -135,7 +135,8 @@ class Evidence:
         """Return the part of a summary in a range of a; raises NotTestableError for fewer values than `least`."""
         chosen = a.choose(dataset["a"].values)
         if chosen.sum() < least:
-            raise NotTestableError(f"a statement on all {a} takes {least} values of a; the grid has {chosen.sum()}")
+            there = f"what was computed has {chosen.sum()} there"
+            raise NotTestableError(f"a statement on all {a} needs {least} values of a; {there}")
         return dataset.isel(a=chosen)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:

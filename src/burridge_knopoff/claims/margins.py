@@ -79,6 +79,9 @@ def _changed(value: float, name: str, exponent: float) -> float:
 def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
     """Judge on both halves of the grid, and without each of the values at which solvers are compared."""
     for half, first in zip(evidence.halves, ("first", "second"), strict=True):
+        if not all(dataset.sizes.get("a", 1) for dataset in half.summaries.values()):
+            # Of one value there is no second half.
+            continue
         other = judge(half, parameters).verdict
         if other not in (verdict, NOT_TESTABLE):
             yield f"{other}: every second value of a, from the {first} on"

@@ -56,7 +56,7 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
     rest = [number for number, color in colors.items() if color == OTHER_COLOR]
     for numbers in (*shown, rest):
         members = np.isin(branch, numbers)
-        there = members.any(axis=1)
+        there = np.asarray(members.any(axis=1))
         if not there.any():
             continue
         color = colors[numbers[0]]
@@ -67,6 +67,9 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         interval[~there] = np.nan
         panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=name)
         panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
+        # A band has no width where neither neighbour is there.
+        alone = there & ~np.append(there[1:], False) & ~np.append(False, there[:-1])
+        panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
 
     undetermined = attractors["undetermined_count"].values / max(samples, 1)
     undetermined = np.where(undetermined > 0.0, undetermined, np.nan)

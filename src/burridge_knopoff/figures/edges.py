@@ -20,8 +20,8 @@ INPUTS = ("attractors", "edges")
 CAPTION = """\
 ⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to: solid
 where they are stable, dashed where they are not and were followed a little beyond an edge. Grey points: all attractors.
-Marks: edges, by what happens there; a short line is one that is only known to lie between two values of a. Below: the
-road from one period to chaos, enlarged, with the stops of the three blocks in a period.
+Marks: edges, by what happens there; a short line is one that is only known to lie between two values of a. Below, where
+the study covers it: the road from one period to chaos, enlarged, with the stops of the three blocks in a period.
 """
 
 # Marker and name of each kind of edge.
@@ -48,24 +48,33 @@ NAMED = 0.01
 def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and a mark at each edge, for each law."""
     laws = [str(law) for law in attractors["law"].values]
-    figure, panels = new_figure(page_width(len(laws)), 6.2, 2, len(laws), share_columns=False)
+    rows = 1 + _covers_road(attractors, edges)
+    figure, panels = new_figure(page_width(len(laws)), 0.2 + 3.0 * rows, rows, len(laws), share_columns=False)
     colors = branch_colors(attractors)
-    for number, law in enumerate(laws):
-        for panel in (panels[number], panels[len(laws) + number]):
-            _attractors(panel, attractors.sel(law=law))
-            _orbits(panel, edges, number, colors)
-            _edges(panel, edges, number)
-            panel.set_xlabel("$a$")
-        _stops(panels[len(laws) + number], edges, number)
-        panels[number].set_xlim(0.0, float(attractors["a"].values[-1]))
-        panels[number].set_ylim(-0.008, None)
-        panels[len(laws) + number].set_xlim(*ROAD[0])
-        panels[len(laws) + number].set_ylim(*ROAD[1])
+    for place, panel in enumerate(panels):
+        number = place % len(laws)
+        _attractors(panel, attractors.sel(law=laws[number]))
+        _orbits(panel, edges, number, colors)
+        _edges(panel, edges, number)
+        panel.set_xlabel("$a$")
+        if place < len(laws):
+            panel.set_ylim(-0.008, None)
+        else:
+            _stops(panel, edges, number)
+            panel.set_xlim(*ROAD[0])
+            panel.set_ylim(*ROAD[1])
     for panel in panels[:: len(laws)]:
         panel.set_ylabel(r"$\langle J\rangle$")
     _legend(figure)
-    label_panels(panels, [*(f"{law} law" for law in laws), *(f"{law} law, the road to chaos" for law in laws)])
+    label_panels(panels, [f"{law} law{end}" for end in ("", ", the road to chaos")[:rows] for law in laws])
     return figure
+
+
+def _covers_road(attractors: xarray.Dataset, edges: xarray.Dataset) -> bool:
+    """Tell whether the values of a reach beyond the road, and orbits of every law lie on it."""
+    a, mean, law = (edges[f"orbit_{name}"].values for name in ("a", "mean_distance", "law"))
+    inside = (a > ROAD[0][0]) & (a < ROAD[0][1]) & (mean > ROAD[1][0]) & (mean < ROAD[1][1])
+    return bool(attractors["a"].values[-1] >= ROAD[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
 
 
 def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:

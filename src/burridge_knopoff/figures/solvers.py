@@ -15,7 +15,7 @@ TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
-Every solver of each law at a few values of a: ⟨J⟩, its difference to that of the study's own solver with the standard
+Every solver of each law at a few values of a: ⟨J⟩, its difference from that of the study's own solver with the standard
 error of that difference as a bar, and the number of steps in a unit of time.
 """
 
@@ -72,7 +72,7 @@ def draw(solvers: xarray.Dataset) -> Figure:
     handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's steps"))
     legend_below(figure, handles)
     titles = [[r"$\langle J\rangle$" for _ in laws]]
-    titles.append([f"difference to {solvers.attrs[f'solver_{law}']}" for law in laws])
+    titles.append([f"difference from {solvers.attrs[f'solver_{law}']}" for law in laws])
     titles.append(["steps" for _ in laws])
     label_panels(panels, [f"{law} law: {what}" for row in titles for law, what in zip(laws, row, strict=True)])
     return figure

@@ -102,6 +102,7 @@ def render(study: Study, sources: Sources, configfile: str = "") -> str:
         maps=_of(summaries, "basins", _map_table, []),
         agreement=digest(summaries["agreement"]).splitlines(),
         chains=_of(summaries, "chains", tables.chain_table, []),
+        chains_command=commands.of_study("-c2", "chains"),
         chain_laws=_of(summaries, "chains", lambda chains: chains["law"].values.tolist(), []),
         chain_settings=_of(summaries, "chains", lambda chains: overview.foreign_settings(chains, study), []),
         unclear=unclear_runs(commands, summaries["mean_distance"], summaries["lyapunov"]),

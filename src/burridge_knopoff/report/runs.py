@@ -35,8 +35,11 @@ class Commands:
 
     def snakemake(self, law: str, initial: str, a: str) -> str:
         """Return the command that makes the point file again; the target stands before --configfile."""
-        words = ["snakemake", "-c1", "--force", f"results/{self.study.name}/{self.point(law, initial, a)}"]
-        return shlex.join([*words, *(["--configfile", self.configfile] if self.configfile else [])])
+        return self.of_study("-c1", "--force", f"results/{self.study.name}/{self.point(law, initial, a)}")
+
+    def of_study(self, *words: str) -> str:
+        """Return the command of Snakemake with these words, for the config of the study."""
+        return shlex.join(["snakemake", *words, *(["--configfile", self.configfile] if self.configfile else [])])
 
     def simulate(self, law: str, initial: str, a: str) -> str:
         """Return the command of the same run by hand; it writes a copy of the point file into the current folder."""

@@ -137,7 +137,8 @@ def motion_kind(
     Periodic if the section points repeat, even where an exponent is positive: a symmetric state stays on an orbit that
     repels all others (`is_unstable`), and chaos may have ended within the window. Chaotic if the largest exponent is
     above `chaotic_exponent` and above its error. Otherwise the largest must be 0, that of the flow; then the motion is
-    periodic if the next exponent is negative, and quasiperiodic if that one is 0 as well and the errors are small.
+    periodic if the next exponent is negative, and quasiperiodic if that one is 0 as well and the errors are small; but
+    end blocks that move as one hardly ever move on a torus, so that there it has to be 0 within one standard error.
     Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is within its error.
     """
     if period:
@@ -153,6 +154,8 @@ def motion_kind(
         return MotionKind.UNDETERMINED
     if len(known) > 1 and not zero[1]:
         return closed_kind(mean_distance, settings)
+    if len(known) > 1 and mean_distance < settings.synchronization_threshold and exponent[1] < -error[1]:
+        return MotionKind.UNDETERMINED
     return (
         MotionKind.QUASIPERIODIC
         if len(known) > 1 and exponent[0] <= settings.chaotic_exponent

@@ -154,20 +154,23 @@ def entries(
     found = []
     for change in changes:
         ends: list[Edge] = []
+        low, high = change.low, change.high
+        below, above = int(grid[grid <= low][-1]), int(grid[grid >= high][0])
+        reach = a[above] - a[below] if change.change == Change.CHANGE else np.inf
         numbers = of_slot.get((change.low, change.before)), of_slot.get((change.high, change.after))
         if numbers[0] is not None and numbers[0] == numbers[1]:
             # One orbit on both sides; only its section points were counted differently.
             continue
         for number, name in zip(numbers, ("high_end", "low_end"), strict=True):
             edge = getattr(stretches[number], name) if number is not None else None
-            if edge is not None and all(abs(edge.a - other.a) > LEAST_ERROR for other in ends):
+            if edge is None or any(abs(edge.a - other.a) <= LEAST_ERROR for other in ends):
+                continue
+            # An orbit that goes on for more than a step of the grid beyond a change did not bring it about.
+            if a[low] - reach <= edge.a <= a[high] + reach:
                 ends.append(edge)
-        low, high = change.low, change.high
-        below = range(low, int(grid[grid <= low][-1]) - 1, -1)
-        above = range(high, int(grid[grid >= high][0]) + 1)
         motion = (
-            _motion(kind, slots, below, change.from_branch),
-            _motion(kind, slots, above, change.to_branch),
+            _motion(kind, slots, range(low, below - 1, -1), change.from_branch),
+            _motion(kind, slots, range(high, above + 1), change.to_branch),
         )
         lifetime = _lifetime(one, change)
         own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
