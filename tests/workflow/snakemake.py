@@ -16,9 +16,11 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
+#: Of the package and of the display, in this checkout.
+SOURCES = Path(__file__).parents[2] / "src"
+
 #: Does each call that comes through a socket in a fork, and answers with the number of its process and its exit code.
-#: Nothing of the project is imported before: each folder may have another one. Several may run at a time: for each
-#: there is another fork that waits for it.
+#: Several may run at a time: for each there is another fork that waits for it.
 SERVE = """
 import json, os, signal, socket, sys
 def become(call):
@@ -50,7 +52,8 @@ def serve(calls, run):
 calls, *others = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
 """
 
-#: Lets each script be run by the other process.
+#: Lets each script be run by the other process. A fork that has imported the project serves the runs of this checkout;
+#: what is run with the sources of another one finds nothing imported.
 SNAKEMAKE = f"""{SERVE}
 import subprocess
 import snakemake.cli, snakemake.dag, snakemake.report.html_reporter, snakemake.script
@@ -59,7 +62,7 @@ from snakemake.benchmark import benchmarked
 def execute_script(self, name, edit=False):
     answers, answering = os.pipe()
     call = dict(command=[name], folder=os.getcwd(), environment=dict(os.environ), group=os.getpgrp())
-    socket.send_fds(*others, [json.dumps(call).encode()], [answering])
+    socket.send_fds(scripts, [json.dumps(call).encode()], [answering])
     os.close(answering)
     with open(answers) as answers, benchmarked(int(answers.readline()), self.bench_record):
         code = int(answers.readline() or 1)
@@ -72,8 +75,15 @@ def run(call):
     for number, name in enumerate([os.devnull, *call["written"]]):
         os.dup2(os.open(name, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666), number)
     sys.exit(snakemake.cli.main(call["command"][1:]))
-# What it knows of its plugins is kept.
-snakemake.cli.get_argument_parser()
+calls_here, scripts = others
+if not os.fork():
+    sys.path.insert(0, {str(SOURCES)!r})
+    from burridge_knopoff.provenance.sources import PACKAGE, source_fingerprint
+    import burridge_knopoff.claims.ledger, burridge_knopoff.figures.description, burridge_knopoff.study
+    source_fingerprint(*PACKAGE.rglob("*.py"))
+    snakemake.cli.get_argument_parser()
+    sys.path.pop(0)
+    calls = calls_here
 serve(calls, run)
 """
 
@@ -87,20 +97,21 @@ serve(calls, lambda call: runpy.run_path(sys.argv[0], run_name="__main__"))
 
 
 @cache
-def _server(seed: str) -> socket.socket:
-    """Return where calls of Snakemake are sent to; the processes end with this one, which alone has that end.
+def _servers(seed: str) -> tuple[socket.socket, socket.socket]:
+    """Return where calls of Snakemake are sent to, with the sources of another checkout and with those of this one.
 
+    The processes end with this one, which alone has these ends.
     seed : of the order in which sets are walked
     """
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": seed}
-    ends = [end for _ in range(2) for end in socket.socketpair(type=socket.SOCK_SEQPACKET)]
-    for program, *own in ((SNAKEMAKE, ends[1], ends[2]), (SCRIPTS, ends[3])):
-        numbers = [end.fileno() for end in own]
+    (elsewhere, one), (here, two), (asked, script) = (socket.socketpair(type=socket.SOCK_SEQPACKET) for _ in range(3))
+    for program, *ends in ((SNAKEMAKE, one, two, asked), (SCRIPTS, script)):
+        numbers = [end.fileno() for end in ends]
         command = [sys.executable, "-P", "-c", program, *map(str, numbers)]
         subprocess.Popen(command, pass_fds=numbers, env=environment, stdin=subprocess.DEVNULL)
-    for end in ends[1:]:
-        end.close()
-    return ends[0]
+        for end in ends:
+            end.close()
+    return elsewhere, here
 
 
 class Fork:
@@ -118,7 +129,8 @@ class Fork:
         call = {"command": command, "folder": str(folder), "environment": dict(environment), "own_group": own_group}
         call |= {"written": [*map(str, written)], "group": os.getpgrp()}
         self._answers, answering = os.pipe()
-        server = _server(environment.get("PYTHONHASHSEED", "random"))
+        is_here = environment["PYTHONPATH"].split(os.pathsep)[0] == str(SOURCES)
+        server = _servers(environment.get("PYTHONHASHSEED", "random"))[is_here]
         socket.send_fds(server, [json.dumps(call).encode()], [answering])
         os.close(answering)
         self._said: list[bytes] = []

@@ -167,7 +167,7 @@ def test_a_full_disk(finished, copy, path, free, log):
         assert temporaries(copy) == []
         ballast.unlink()
         assert go_on(copy, target) == []
-        assert go_on(copy) == []
+        assert go_on(copy, folder.name) == []
         assert differences(copy, finished) == []
 
 
