@@ -210,12 +210,16 @@ def test_no_events(tmp_path):
         (["completion", "csh"], "'csh'"),
     ],
 )
-def test_bad_input(tmp_path, arguments, words):
-    run = bk(*arguments, cwd=tmp_path)
-    assert run.returncode == 2
-    assert run.stdout == ""
-    assert run.stderr.count("\n") == 1
-    assert words in run.stderr
+def test_bad_input(tmp_path, monkeypatch, capsys, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(arguments)
+    except SystemExit as end:
+        code = end.code
+    said = capsys.readouterr()
+    assert (code, said.out) == (2, "")
+    assert said.err.count("\n") == 1
+    assert words in said.err
     assert list(tmp_path.iterdir()) == []
 
 

@@ -13,8 +13,7 @@ import numpy as np
 
 from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, described, fill, flag
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
-from burridge_knopoff.provenance.files import write_whole
-from burridge_knopoff.provenance.seal import identity, seal
+from burridge_knopoff.provenance.seal import identity, write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.trajectory import Trajectory
@@ -150,9 +149,8 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     def write(name: str) -> None:
         with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
             fill(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
-        seal(name, point_identity(attributes["history"]), trajectory.status)
 
-    write_whole(path, write)
+    write_sealed(path, write, point_identity(attributes["history"]), trajectory.status)
 
 
 def to_dataset(trajectory: Trajectory) -> xarray.Dataset:

@@ -10,8 +10,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable, described
-from burridge_knopoff.provenance.files import write_whole
-from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, seal
+from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, write_sealed
 from burridge_knopoff.provenance.sources import provenance, source_fingerprint
 
 AXES: dict[str, Variable] = {
@@ -60,12 +59,7 @@ def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
         if variable.dtype != object and variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
     about = identity(*(dataset.attrs[key] for key in ("software", "source_module", "source_fingerprint")))
-
-    def write(name: str) -> None:
-        dataset.to_netcdf(name, engine="netcdf4", encoding=encoding)
-        seal(name, about)
-
-    write_whole(path, write)
+    write_sealed(path, lambda name: dataset.to_netcdf(name, engine="netcdf4", encoding=encoding), about)
 
 
 def open_summary(path: str | Path) -> xarray.Dataset:

@@ -52,16 +52,12 @@ class Number(Range):
         return f"a {'' if limits else 'finite '}number {' and '.join(limits)}".rstrip()
 
 
-@dataclass(eq=False, repr=False)
-class Whole(Range):
+class Whole(Number):
     """A whole number from `least` to `most`; 7.0 is none."""
 
-    least: int
-    most: int
-
     def _fit(self, value: Any, key: str) -> int | None:
-        is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-        return int(value) if is_whole and self.least <= value <= self.most else None
+        is_whole = isinstance(value, int | np.integer) and super()._fit(value, key) is not None
+        return int(value) if is_whole else None
 
     def __str__(self) -> str:
         return f"a whole number ≥ {self.least} and ≤ {self.most}"

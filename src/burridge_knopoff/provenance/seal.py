@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Callable
 from pathlib import Path
 
+from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.record import remake_command
 
 _SEAL = re.compile(rb"\n#seal ([0-9a-f]{16}) ([a-z_]+) ([0-9a-f]{64})\n\Z")
@@ -31,6 +33,16 @@ class BadFile(ValueError):
 def identity(*parts: str) -> str:
     """Return 16 hexadecimal digits for what a file is about."""
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
+
+
+def write_sealed(path: str | Path, write: Callable[[str], object], about: str, status: str = "made") -> None:
+    """Let `write` fill a file and seal it, whole or not at all; see `write_whole`."""
+
+    def write_and_seal(name: str) -> None:
+        write(name)
+        seal(name, about, status)
+
+    write_whole(path, write_and_seal)
 
 
 def seal(path: str | Path, about: str, status: str = "made") -> None:

@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from burridge_knopoff.provenance.files import write_whole
-from burridge_knopoff.provenance.seal import BadFile, read_seal, seal
+from burridge_knopoff.provenance.seal import BadFile, read_seal, write_sealed
 from burridge_knopoff.provenance.sources import source_fingerprint
 
 _DIGIT = "[0-9a-f]"
@@ -39,12 +38,7 @@ def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, 
         read_seal(path)
         return pickle.loads(path.read_bytes()), path, True
     result = function(*items)
-
-    def write(name: str) -> None:
-        Path(name).write_bytes(pickle.dumps(result))
-        seal(name, path.name[:16])
-
-    write_whole(path, write)
+    write_sealed(path, lambda name: Path(name).write_bytes(pickle.dumps(result)), path.name[:16])
     return result, path, False
 
 
