@@ -55,6 +55,15 @@ def test_the_half_of_the_grid_that_turns_a_verdict_is_told(a, which):
     assert turns(judge, world, {}, judge(world, {})) == [f"fails: every second value of a, from the {which} on"]
 
 
+def test_of_one_value_of_a_no_half_is_judged():
+    world = Evidence({"mean_distance": xarray.Dataset(coords={"a": [0.1]})}, {})
+
+    def judge(evidence, _parameters):
+        return Verdict(HOLDS if evidence.summaries["mean_distance"]["a"].values.max() < 0.2 else FAILS, "")
+
+    assert turns(judge, world, {}, judge(world, {})) == []
+
+
 def test_nothing_turns_what_cannot_be_tested():
     judge = turning("tolerance", 0.9, FAILS, HOLDS)
     assert turns(judge, NOTHING, {"tolerance": 1.0}, Verdict(NOT_TESTABLE, "")) == []

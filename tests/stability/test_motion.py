@@ -100,6 +100,10 @@ def test_the_numbers_of_the_kinds():
         # Weak chaos or a torus: the error leaves both.
         (0.1, 0, (2e-3, 0.0), 1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (9e-4, 0.0), 1e-3, MotionKind.QUASIPERIODIC),
+        # End blocks that move as one are on a torus only if the second exponent is as good as 0.
+        (1e-9, 0, (0.0, -9e-4), 1e-3, MotionKind.QUASIPERIODIC),
+        (1e-9, 0, (0.0, -1.1e-3), 1e-3, MotionKind.UNDETERMINED),
+        (0.1, 0, (0.0, -1.1e-3), 1e-3, MotionKind.QUASIPERIODIC),
         (0.1, 0, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
         # Without exponents only a repetition of the section points says something.
         (0.1, 5, (), 1e-5, MotionKind.PERIODIC),
