@@ -12,8 +12,8 @@ from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.settings import MOTION, SearchSettings
-from burridge_knopoff.summaries.lyapunov import motion_of_run
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 GIVEN = ["--law", "linearized", "--a", "0.08"]

@@ -90,4 +90,4 @@ def test_the_figure_draws_every_solver(files):
     for solver in SOLVERS["linearized"]:
         assert dataset["mean_distance"].sel(law="linearized", solver=solver, initial="plus").values.tolist() in shown
     assert len(panels[1].containers) == 2
-    assert panels[3].get_title(loc="left") == "(d) nonlinear law: difference to series"
+    assert panels[3].get_title(loc="left") == "(d) nonlinear law: difference from series"

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.running import simulation
     from burridge_knopoff.show.words import table
     from burridge_knopoff.stability.chains import ALIGNMENT, transverse_exponent
-    from burridge_knopoff.summaries.lyapunov import motion_of_run
+    from burridge_knopoff.stability.motion import motion_of_run
 
     if options.out:
         check_out(options.out)

@@ -13,9 +13,9 @@ from burridge_knopoff.provenance.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.show.words import listed, paragraph
+from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.words import counted
-from burridge_knopoff.summaries.lyapunov import motion_of_run
 
 
 def point_lines(result: Result) -> list[str]:
@@ -73,7 +73,7 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
     yield "<J>", f"{point['mean_distance'].item():.9g} +- {point['mean_distance_error'].item():.2g}"
-    yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion.at_speed(point.attrs["v"])).words
+    yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion.at_speed(point["v"].item())).words
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
         words = (f"{value:.6f} +- {error:.6f}" if np.isfinite(value) else "-infinity" for value, error in exponents)

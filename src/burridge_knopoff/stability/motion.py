@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.settings import MotionSettings
 
 
@@ -174,3 +178,43 @@ def is_unstable(period: int, exponent: np.ndarray, error: np.ndarray, settings: 
 def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
     """Tell whether the largest exponent, if there is one, is certain to be positive."""
     return bool(len(exponent) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]))
+
+
+@dataclass(frozen=True)
+class MotionOfRun:
+    """The kind of motion that a run ended in.
+
+    section_period : upward section points after which the state repeats, 0 if it does not
+    unstable : whether it has stayed on a closed orbit that repels
+    """
+
+    kind: MotionKind
+    section_period: int
+    unstable: bool
+
+    @property
+    def words(self) -> str:
+        """The kind as a sentence has it."""
+        period = f", section points repeat after {self.section_period}" if self.section_period else ""
+        return f"{'unstable ' if self.unstable else ''}{self.kind.words}{period}"
+
+
+def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSettings) -> MotionOfRun:
+    """Return the kind of motion of a run; undetermined if it did not complete.
+
+    run : variables of its point file, or `vars` of its trajectory
+    symmetric : whether its chain is its own mirror image
+    """
+    exponent, error = run["lyapunov_exponent"], run["lyapunov_error"]
+    period = section_period(run, settings)
+    kind = MotionKind.UNDETERMINED
+    # A number in a file, a word in a trajectory.
+    if run["status"] in (Status.COMPLETED, Status.COMPLETED.name.lower()):
+        # End blocks that are not each other's mirror images do not synchronize.
+        mean = float(run["mean_distance"]) if symmetric else math.inf
+        kind = motion_kind(mean, period, exponent, error, settings)
+        upward = run["crossing_velocity"][run["crossing_direction"] > 0]
+        if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
+            # A weakly attracting orbit of a long period.
+            kind = MotionKind.PERIODIC
+    return MotionOfRun(kind, period, is_unstable(period, exponent, error, settings))

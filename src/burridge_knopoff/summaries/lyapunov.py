@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,16 +11,7 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import (
-    SECTION,
-    MotionKind,
-    is_unstable,
-    motion_kind,
-    section_closed,
-    section_period,
-    zero_exponents,
-)
+from burridge_knopoff.stability.motion import SECTION, MotionKind, motion_of_run, zero_exponents
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
 
@@ -50,46 +39,6 @@ VARIABLES = {
     "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
 }
 _COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
-
-
-@dataclass(frozen=True)
-class MotionOfRun:
-    """The kind of motion that a run ended in.
-
-    section_period : upward section points after which the state repeats, 0 if it does not
-    unstable : whether it has stayed on a closed orbit that repels
-    """
-
-    kind: MotionKind
-    section_period: int
-    unstable: bool
-
-    @property
-    def words(self) -> str:
-        """The kind as a sentence has it."""
-        period = f", section points repeat after {self.section_period}" if self.section_period else ""
-        return f"{'unstable ' if self.unstable else ''}{self.kind.words}{period}"
-
-
-def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSettings) -> MotionOfRun:
-    """Return the kind of motion of a run; undetermined if it did not complete.
-
-    run : variables of its point file, or `vars` of its trajectory
-    symmetric : whether its chain is its own mirror image
-    """
-    exponent, error = run["lyapunov_exponent"], run["lyapunov_error"]
-    period = section_period(run, settings)
-    kind = MotionKind.UNDETERMINED
-    # A number in a file, a word in a trajectory.
-    if run["status"] in (Status.COMPLETED, Status.COMPLETED.name.lower()):
-        # End blocks that are not each other's mirror images do not synchronize.
-        mean = float(run["mean_distance"]) if symmetric else math.inf
-        kind = motion_kind(mean, period, exponent, error, settings)
-        upward = run["crossing_velocity"][run["crossing_direction"] > 0]
-        if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
-            # A weakly attracting orbit of a long period.
-            kind = MotionKind.PERIODIC
-    return MotionOfRun(kind, period, is_unstable(period, exponent, error, settings))
 
 
 def summarize(

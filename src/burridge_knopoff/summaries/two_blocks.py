@@ -19,12 +19,11 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import MotionKind, motion_of_run
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
-from burridge_knopoff.summaries.lyapunov import motion_of_run
 
 BLOCKS = 2
 
