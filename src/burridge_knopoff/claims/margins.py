@@ -25,7 +25,7 @@ SHARES = ("share", "loose_share", "correlation")
 HALVINGS = 5
 
 #: Said of a verdict that nothing turns.
-NOTHING = "no tolerance within a factor of two, and, of what is judged on the grid, no half of it"
+NOTHING = "nothing that was tried"
 
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
 
