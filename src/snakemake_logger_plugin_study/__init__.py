@@ -17,7 +17,7 @@ from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
 from burridge_knopoff.study import ConfigError
-from burridge_knopoff.study.job_log import failure
+from burridge_knopoff.study.job_log import failure, interrupted
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost
 from snakemake_logger_plugin_study.past import write_past
@@ -73,7 +73,8 @@ class LogHandler(LogHandlerBase):
         if event == LogEvent.JOB_ERROR and (job := self._run.jobs.get(record.jobid)):
             # Snakemake's own block lists all input, which may be 10,000 files; version 9.22 tells of a failure twice.
             whole = self._everything or self.common_settings.show_failed_logs
-            told = None if whole else failure(job.name, record.log or [])
+            logs = record.log or []
+            told = None if whole else "" if interrupted(logs) else failure(job.name, logs)
             return "" if job.state == FAILED else told
         words = "" if event in _ROUTINE else reworded(record.getMessage()) if event in (None, LogEvent.ERROR) else None
         return None if words == "" and self._everything else words

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, untestable
-from burridge_knopoff.study.job_log import failure
+from burridge_knopoff.study.job_log import failure, interrupted
 from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.display import elapsed
 from snakemake_logger_plugin_study.run import DONE, FAILED, Run
@@ -24,11 +24,12 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
 
     stopped : whether Snakemake ended with an error, as after a signal that came when the last job was done
     """
-    results, failed, done = Path(run.results), run.of(FAILED), run.of(DONE)
-    missed = len(run.jobs) - len(failed) - len(done)
+    results, ended, done = Path(run.results), run.of(FAILED), run.of(DONE)
+    missed = len(run.jobs) - len(ended) - len(done)
+    failed = [job for job in ended if not interrupted(job.log)]
     made = _made(results, [path for job in done for path in job.output])
-    if failed or missed or stopped:
-        counts = ((len(failed), "failed"), (missed, "did not run"))
+    if ended or missed or stopped:
+        counts = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))
         reasons = ", ".join(f"{counted(count, 'job')} {what}" for count, what in counts if count)
         told = sorted((job.name, job.log) for job in failed)
         return [

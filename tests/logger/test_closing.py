@@ -87,6 +87,13 @@ def test_a_damaged_summary_gives_a_line_and_no_error(content):
     assert [line.partition(": cannot be read (")[0] for line in said] == [str(FOLDER / n) for n in RULES.values()]
 
 
+def test_jobs_that_ctrl_c_has_ended():
+    Path("log.txt").write_text("Traceback (most recent call last):\n  File\nKeyboardInterrupt\n")
+    jobs = [("simulate a=0.1", FAILED, [], ["log.txt"]), ("simulate a=0.2", WAITING, [], [])]
+    told = ["study paper: stopped after 1 s: 1 job interrupted, 1 job did not run", "made: nothing", AGAIN]
+    assert lines(*jobs, stopped=True) == told
+
+
 def test_a_run_that_failed():
     error = "Traceback (most recent call last):\n  raise\nburridge_knopoff.provenance.seal.BadFile: x.nc: is empty\n\n"
     Path("mean.log").write_text(error)

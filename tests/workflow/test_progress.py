@@ -67,7 +67,7 @@ def test_interrupted_on_a_terminal(study):
     code, written = on_a_terminal(study.command(), study.folder, until=b"2 running")
     text = plain(written)
     assert code != 0
-    assert re.search(r"study tiny: stopped after \d+ s: (\d+ jobs? failed, )?\d+ jobs did not run", text)
+    assert re.search(r"study tiny: stopped after \d+ s: (\d+ jobs? (failed|interrupted), )*\d+ jobs did not run", text)
     assert "the same command goes on where this run stopped" in text
     assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
 

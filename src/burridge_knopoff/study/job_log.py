@@ -32,6 +32,11 @@ def last_words(log: str | Path) -> str:
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 
+def interrupted(logs: Sequence[str | Path]) -> bool:
+    """Tell whether a job was ended by Ctrl-C."""
+    return any(last_words(log) == "KeyboardInterrupt" for log in logs)
+
+
 def failure(job: str, logs: Sequence[str | Path]) -> str:
     """Return the line that tells of a failed job: the job, its reason, and where its log lies."""
     reason = next((words for log in logs if (words := last_words(log))), SILENT)
