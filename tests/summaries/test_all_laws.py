@@ -54,10 +54,10 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
 def test_the_digest_tells_each_branch(one_law):
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
     assert all_laws.digest(found) == (
-        "linearized, synchronized: at 1 of 3 values of a, 0.05 to 0.05; <J> 0.0000 to 0.0000; synchronized; basin "
-        "fraction at most 0.250 (a = 0.05)\n"
+        "linearized, synchronized: at 1 of 3 values of a, 0.05; <J> 0.0000; synchronized; largest basin "
+        "fraction 0.250 (a = 0.05)\n"
         "linearized, mirror pair (1): at 2 of 3 values of a, 0.05 to 0.1; <J> 0.1400 to 0.1500; quasiperiodic, "
-        "transient chaos; basin fraction at most 1.000 (a = 0.1)\n"
+        "transient chaos; largest basin fraction 1.000 (a = 0.1)\n"
         "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
     )
 

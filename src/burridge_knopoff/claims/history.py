@@ -23,6 +23,7 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.words import span
 
 if TYPE_CHECKING:
     import xarray
@@ -233,8 +234,7 @@ def _fractions(claimed: xarray.DataArray, chosen: np.ndarray, share: float) -> t
 
 
 def _span(shares: np.ndarray) -> str:
-    low, high = (f"{100 * share:.1f}" for share in (shares.min(), shares.max()))
-    return f"{low} %" if low == high else f"{low} to {high} %"
+    return f"{span(*(f'{100 * share:.1f}' for share in (shares.min(), shares.max())))} %"
 
 
 def _values(numbers: np.ndarray) -> str:

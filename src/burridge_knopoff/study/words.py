@@ -4,3 +4,8 @@
 def counted(number: int, noun: str) -> str:
     """Return a number with its noun: 1 file, 2 files."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def span(low: str, high: str) -> str:
+    """Return from where to where numbers reach, or the one that they all are as they are written."""
+    return low if low == high else f"{low} to {high}"

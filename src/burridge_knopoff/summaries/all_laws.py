@@ -21,6 +21,7 @@ from burridge_knopoff.stability.joining import joined
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import SearchSettings
+from burridge_knopoff.study.words import span
 from burridge_knopoff.summaries.attractors import VARIABLES
 from burridge_knopoff.summaries.slots import NAMES, branch_names, missing
 
@@ -143,10 +144,10 @@ def digest(dataset: xarray.Dataset) -> str:
             kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
             share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)
             name = names[int(number)]
+            ends, means = span(f"{where[0]:g}", f"{where[-1]:g}"), span(f"{mean.min():.4f}", f"{mean.max():.4f}")
             lines.append(
-                f"{law}, {name}: at {len(where)} of {len(a)} values of a, {where[0]:g} to {where[-1]:g}; "
-                f"<J> {mean.min():.4f} to "
-                f"{mean.max():.4f}; {kinds}; basin fraction at most {share.max():.3f} (a = {a[share.argmax()]:g})"
+                f"{law}, {name}: at {len(where)} of {len(a)} values of a, {ends}; <J> {means}; {kinds}; "
+                f"largest basin fraction {share.max():.3f} (a = {a[share.argmax()]:g})"
             )
         undetermined = one["undetermined_count"].values
         empty = a[branch.max(axis=1) < 0]
