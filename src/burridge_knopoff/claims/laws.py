@@ -19,7 +19,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
 )
-from burridge_knopoff.stability.motion import REGULAR, MotionKind
+from burridge_knopoff.stability.motion import MotionKind, same_result
 
 
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
@@ -103,7 +103,7 @@ def solutions_agree(
             kinds = evidence.at(runs, value)["kind"].values
             if np.isnan(kinds).any() or (kinds == MotionKind.UNDETERMINED).any() or not there.any():
                 continue
-            laws = bool((kinds == kinds[0]).all() or np.isin(kinds, REGULAR).all())
+            laws = bool(same_result(kinds, kinds[0]).all())
             solved.append(within)
             compared.append(laws)
             largest = float(np.abs(difference[there]).max())

@@ -214,7 +214,6 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
     for claim in claims:
         verdict = judge(claim, known)
         verdicts[claim.name] = replace(verdict, turns=turns(partial(judge, claim), known, claim.parameters, verdict))
-    judged = [(claim, verdicts[claim.name]) for claim in claims]
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
@@ -243,7 +242,7 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                 "conventions": dict(verdict.conventions),
                 "figure": claim.figure if claim.figure in figures else "",
             }
-            for claim, verdict in judged
+            for claim, verdict in zip(claims, verdicts.values(), strict=True)
         ],
     }
 

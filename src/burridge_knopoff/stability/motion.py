@@ -42,6 +42,12 @@ class MotionKind(IntEnum):
 #: one value of a shows, another beside it need not.
 REGULAR = (MotionKind.PERIODIC, MotionKind.QUASIPERIODIC)
 
+
+def same_result(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Tell of which kinds of motion two are one result: synchrony, other regular motion, or chaos."""
+    return (one == other) | (np.isin(one, REGULAR) & np.isin(other, REGULAR))
+
+
 # Largest error of an exponent, in units of `chaotic_exponent`, with which exponents decide the kind.
 LARGEST_ERROR = 3.0
 

@@ -14,6 +14,9 @@ from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.pseudo_arclength import BranchOrbit
 
+# Orbits closer than this along a branch are not kept apart.
+CLOSE = 1e-5
+
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
@@ -52,6 +55,12 @@ class Stretch:
             point for points in (self.downward[:0:-1], self.upward) for point in points if _is_between(self, point)
         ]
         return sorted(found, key=lambda point: point.orbit.a)
+
+    @property
+    def shown(self) -> list[BranchOrbit]:
+        """All orbits from one end to the other, but for those on the way to a corner."""
+        both = (*self.downward[:0:-1], *self.upward)
+        return [point for point in both if point.corner or not 0.0 < point.length < CLOSE]
 
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
         """Tell whether an orbit is one of the stable ones: by its a, its stops, and its period within a share of it."""

@@ -131,7 +131,7 @@ def _stretch(orbit: PeriodicOrbit, largest: float) -> Stretch | OrbitError:
         found = stretch(orbit, (LEAST_A, largest), BEYOND, FOLLOWING)
         # Found here, these go with the stretch to the process that asks for them.
         _ = found.low_edges, found.high_edges, found.stable
-        _ = [point.orbit.mean_distance for point in (*found.downward, *found.upward)]
+        _ = [point.orbit.mean_distance for point in found.shown]
     except OrbitError as error:
         return error
     return found

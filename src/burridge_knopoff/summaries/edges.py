@@ -22,9 +22,6 @@ from burridge_knopoff.stability.stretch import Stretch
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
 from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries, followed
 
-# Orbits closer than this along a branch are not kept apart in the file.
-CLOSE = 1e-5
-
 PARTS = ("real", "imaginary")
 _EDGE, _ORBIT = ("edge",), ("orbit",)
 _V = Variable
@@ -160,10 +157,7 @@ def _append_edge(values: dict[str, list[Any]], entry: Entry, blocks: int) -> Non
 
 
 def _append_orbits(values: dict[str, list[Any]], number: int, branch: int, one: Stretch) -> None:
-    for point in [*one.downward[:0:-1], *one.upward]:
-        if 0.0 < point.length < CLOSE and not point.corner:
-            # On the way to a corner.
-            continue
+    for point in one.shown:
         values["orbit_law"].append(0)
         values["orbit_stretch"].append(number)
         values["orbit_branch"].append(branch)

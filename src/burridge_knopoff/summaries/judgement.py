@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.stability.motion import REGULAR, MotionKind
+from burridge_knopoff.stability.motion import MotionKind, same_result
 
 
 class Answer(IntEnum):
@@ -32,9 +32,8 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
     kind = values["kind"]
     values["difference"][...] = other - first
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
-    same = (kind[0] == kind[1]) | np.isin(kind, REGULAR).all(axis=0)
     determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
-    values["same_kind"][...] = np.where(determined, same, Answer.UNDETERMINED)
+    values["same_kind"][...] = np.where(determined, same_result(*kind), Answer.UNDETERMINED)
     tolerance = np.maximum.reduce(
         [
             agreement["relative_tolerance"] * np.maximum(first, other),
