@@ -42,7 +42,7 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
     assert holds(proved.symmetric_multiplier, exact.symmetric)
 
 
-# Below 0.0757 the lateral blocks start first.
+# Below 0.0757 the end blocks start first.
 @pytest.mark.parametrize("a", [0.05, 0.07, 0.08, 0.0869, 0.15, 0.3])
 def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     proved, orbit = proved_at(family, a), family.at(a)

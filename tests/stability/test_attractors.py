@@ -196,7 +196,7 @@ def test_attractors_of_any_model_are_what_runs_end_in(found_model):
 
 
 def test_synchrony_of_a_long_period_is_synchrony():
-    """Strong coupling: the outer blocks move as one, and the middle block repeats after many of their periods only."""
+    """Strong coupling: the end blocks move as one, and the middle block repeats after many of their periods only."""
     strong = Model(Chain(3, coupling=2.0), FormulaLaw(0.03, "1/(1 + a*u)**2"))
     reached, _ = find_attractors(strong, dataclasses.replace(SEARCH, samples=10))
     (as_one,) = [item.motion for item in reached if item.symmetry == SYNCHRONIZED]

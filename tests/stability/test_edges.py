@@ -36,7 +36,7 @@ def at(orbit, a):
 
 @pytest.fixture(scope="module")
 def six():
-    """The stretch of stable orbits on which the outer blocks stop six and three times."""
+    """The stretch of stable orbits on which the end blocks stop six and three times."""
     orbit = settled(0.12)
     assert orbit.signature == (6, 6, 3)
     return stretch(orbit, (0.1, 0.15), 4, STEPS)
@@ -86,7 +86,7 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing(famil
     assert found.low_end.kind == EdgeKind.PITCHFORK
     assert found.low_end.a == pytest.approx(critical_a(families["linearized"]), abs=1e-10)
     assert found.high_end.kind == EdgeKind.GRAZING
-    # The stick of one outer block vanishes, and with it the stability: a multiplier jumps over the unit circle.
+    # The stick of one end block vanishes, and with it the stability: a multiplier jumps over the unit circle.
     assert found.high_end.after.orbit.signature in ((1, 1, 0), (0, 1, 1))
     assert np.abs(found.high_end.before.multipliers.whole[0]) < 0.5
     assert np.abs(found.high_end.after.multipliers.whole[0]) > 1.3
@@ -111,7 +111,7 @@ def test_runs_leave_an_orbit_beyond_its_edge(six):
 
 @pytest.fixture(scope="module")
 def seven():
-    """The stretch of stable orbits on which the outer blocks stop seven and four times."""
+    """The stretch of stable orbits on which the end blocks stop seven and four times."""
     for u in (-0.989, 0.3, -0.4, 0.7):
         orbit = settled(0.15, (u, -0.993, -0.991))
         if sorted(orbit.signature) == [4, 7, 7]:

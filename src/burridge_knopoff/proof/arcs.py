@@ -1,7 +1,7 @@
-"""Arcs: the mirror-symmetric motion of three blocks from event to event, and a small difference of the outer two.
+"""Arcs: the mirror-symmetric motion of three blocks from event to event, and a small difference of the end blocks.
 
-Blocks 1 and 3, the lateral ones, move as one; block 2 is the center. Positions are co-moving and, like velocities,
-divided by v. With x, y the positions of a lateral block and of the center, slipping blocks obey
+Blocks 1 and 3, the end blocks (LATERAL), move as one; block 2 is the CENTER. Positions are co-moving and, like
+velocities, divided by v. With x, y the positions of an end block and of the center, slipping blocks obey
 
     x'' = −2x + y + w(x'),       y'' = −4y + 2x + w(y'),
 
@@ -60,7 +60,7 @@ class Flow(Protocol):
 class Arc:
     """The motion up to an event.
 
-    slips : whether the lateral blocks, and the center, slip
+    slips : whether the end blocks, and the center, slip
     ends : LATERAL or CENTER: which of them starts, if it sticks, or stops, if it slips, at the end of the arc
     flow : the friction law
     """

@@ -62,7 +62,7 @@ class Nonlinear:
         strength = a / (1 + b)
         # 1 + b + b p at the start, of both.
         heads = [_positive(1 + b + b * rate[0]) if moves else None for rate, moves in zip((p, q), slips, strict=True)]
-        # p/(1 + b + b p) of both, and 1/(1 + b + b p) of the lateral blocks, whose square the difference needs.
+        # p/(1 + b + b p) of both, and 1/(1 + b + b p) of the end blocks, whose square the difference needs.
         ratios: list[list[Any]] = [[], []]
         inverse: list[Any] = []
         square: list[Any] = []
