@@ -60,6 +60,13 @@ def test_help_says_every_percent_sign(capsys):
         assert "examples:" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("command", ["simulate", "exponents", "orbit", "attractors", "basins"])
+def test_what_is_said_of_a_setting_is_true_without_a_study(command, capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main([command, "--help"])
+    assert not re.findall(r"\b(study|stages?|jobs?|config|grid)\b", capsys.readouterr().out)
+
+
 #: What bash does when the tab key is pressed, and what it is to answer.
 ASK = 'ask() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _shtab_bk; echo "${COMPREPLY[@]}"; }'
 ANSWERS = {

@@ -37,7 +37,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     motion = parser.add_argument_group("motion from that state")
     add(motion, Settings, "start")
     parser.add_argument(
-        "--events", type=count, default=20, metavar="N", help="stops and starts to print (default: %(default)s)"
+        "--events",
+        type=count,
+        default=20,
+        metavar="N",
+        help="number of stops and starts printed (default: %(default)s)",
     )
     motion.add_argument(
         "--settling", type=number, default=3000.0, help="time that it is left to settle first (default: %(default)g)"

@@ -80,12 +80,12 @@ class SearchSettings:
     samples: Annotated[
         int,
         Whole(0, 1_000_000),
-        "initial states from which attractors are looked for at each a, besides those of the study",
+        "initial states drawn at each a, from which attractors are looked for, besides those that are given",
     ] = 200
     fraction_samples: Annotated[
         int, Whole(0, 10_000_000), "initial states drawn anew at each a, for the basin fractions"
     ] = 5000
-    seed: Annotated[int, SEED, "seed of all random numbers of this stage"] = 1
+    seed: Annotated[int, SEED, "seed of all random numbers of the search"] = 1
     position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
     velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
     transient: Annotated[
@@ -160,7 +160,7 @@ class BasinSettings:
         "pairs of near states of the plane, at each of thirteen separations, for the uncertainty exponent",
     ] = 1600
     tiles: Annotated[int, Whole(1, 16_384), "bands of rows of a map, each a job, at most as many as pixels"] = 2
-    threads: Annotated[int, Whole(1, 1024), "threads of each of these jobs; they change no label"] = 1
+    threads: Annotated[int, Whole(1, 1024), "threads that compute a map or each of its tiles; they change no label"] = 1
 
     def __post_init__(self) -> None:
         check_fields(self)
