@@ -1,10 +1,10 @@
-"""The common look: legends below the panels."""
+"""The common look: legends below the panels, of what these show."""
 
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import legend_below, styled
+from burridge_knopoff.figures.style import legend_below, legend_entries, styled
 
 
 @pytest.mark.parametrize(("width", "rows"), [(20.0, 1), (4.0, 3), (0.5, 6)])
@@ -23,3 +23,17 @@ def test_a_legend_has_as_many_columns_as_fit(width, rows):
     assert len(legend.get_texts()) == 6
     assert len(tops) == rows
     assert rows == 6 or legend.get_window_extent().width <= figure.bbox.width
+
+
+def test_a_legend_names_what_some_panel_shows_a_point_of_once():
+    panels = Figure().subplots(1, 2)
+    for panel, low in zip(panels, (0.0, 2.0), strict=True):
+        panel.plot([0.0, 1.0], [1.0, 3.0], label="both")
+        panel.plot([0.0, 1.0], [2.5, 4.0], label="second")
+        panel.errorbar([0.0, 1.0], [0.5, 0.5], 1.0, fmt="o", label="bars")
+        panel.plot([0.0, 1.0], [float("nan"), 9.0], label="none")
+        panel.plot([], [], label="empty")
+        panel.set_ylim(low, low + 1.1)
+    handles, labels = legend_entries(panels)
+    assert labels == ["both", "bars", "second"]
+    assert [handle.get_label() for handle in handles] == labels

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import cells, color, label_panels, new_figure, page_width, say_nothing, styled
+from burridge_knopoff.figures.style import (
+    cells,
+    color,
+    label_panels,
+    legend_entries,
+    new_figure,
+    page_width,
+    say_nothing,
+    styled,
+)
 
 TITLE = "Agreement of the laws"
 CATEGORY = "Friction laws"
@@ -45,7 +56,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
         for column, initial in enumerate(states):
             _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
         # Differences of synchronized runs are rounding; they set the scale of nothing.
-        for panel, floor in ((block[0, 0], ROUNDING), (block[1, 0], 1e-8)):
+        for panel, floor in ((block[0, 0], ROUNDING), (block[1, 0], 5e-9)):
             panel.set_ylim(floor, max(1.0, panel.get_ylim()[1]))
         for row, label in zip(block, LABELS, strict=True):
             row[0].set(ylabel=label, yscale="log")
@@ -54,14 +65,12 @@ def draw(agreement: xarray.Dataset) -> Figure:
         titles += [f"{initial}: {name}" for name in names for initial in states]
     for panel in rows[-1, -1]:
         panel.set_xlabel("$a$")
+    handles, labels = legend_entries(panels)
+    if (agreement["agrees"] == 0).any():
+        handles, labels = [*handles, Patch(facecolor="0.9", edgecolor="0.6")], [*labels, "the laws disagree"]
     panels[0].legend(
-        [*panels[0].get_lines()[:3], Patch(facecolor="0.9", edgecolor="0.6")],
-        [
-            "difference",
-            f"{agreement.attrs['standard_errors']:g} standard errors",
-            rf"{100 * agreement.attrs['relative_tolerance']:g} % of $\langle J\rangle$",
-            "the laws disagree",
-        ],
+        handles,
+        labels,
         loc="lower right",
         frameon=True,
         framealpha=1.0,
@@ -76,12 +85,14 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     a = run["a"].values
     edges = cells(a)
     difference, sections, order = panels
-    _curve(difference, a, abs(run["difference"]))
+    _curve(difference, a, abs(run["difference"]), label="difference")
     noise = _positive(settings["standard_errors"] * run["difference_error"])
-    difference.plot(a, noise, "--", linewidth=0.8, color=color(1))
+    name = f"{settings['standard_errors']:g} standard errors"
+    difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name)
     pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
     share = _positive(settings["relative_tolerance"] * pair.max("law"))
-    difference.plot(a, share, ":", linewidth=0.9, color=color(2))
+    name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
+    difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name)
     _curve(sections, a, run["section_distance"])
     _curve(order, a, run["event_order_time"])
     for panel in panels:
@@ -89,8 +100,8 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
             panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
 
 
-def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray) -> None:
-    panel.plot(a, _positive(values), "-o", markersize=2.2, linewidth=0.8, color=color(0))
+def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, **look: Any) -> None:
+    panel.plot(a, _positive(values), "-o", markersize=2.2, linewidth=0.8, color=color(0), **look)
 
 
 def _positive(values: xarray.DataArray) -> np.ndarray:

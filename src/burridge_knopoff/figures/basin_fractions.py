@@ -8,7 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
-from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, styled
+from burridge_knopoff.figures.style import (
+    label_panels,
+    legend_below,
+    legend_entries,
+    new_figure,
+    page_width,
+    styled,
+)
 from burridge_knopoff.stability.sampling import fraction_interval
 
 TITLE = "Basin fractions and sweeps"
@@ -39,9 +46,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     panels[0].set_ylabel("fraction of initial states")
     panels[0].set_ylim(-0.02, 1.02)
     panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
-    entries = {line.get_label(): line for panel in panels for line in panel.get_lines()}
-    handles = [line for name, line in entries.items() if not str(name).startswith("_")]
-    legend_below(figure, handles)
+    legend_below(figure, legend_entries(panels)[0])
     titles = [f"{law} law: {what}" for what in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure

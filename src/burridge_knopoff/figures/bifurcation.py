@@ -6,7 +6,7 @@ import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.dataset.variables import DIRECTION
-from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import color, label_panels, legend_entries, new_figure, page_width, styled
 from burridge_knopoff.summaries.bifurcation import section_points
 
 TITLE = "Bifurcation diagrams"
@@ -47,6 +47,6 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
         if number % len(initial) == 0:
             panel.set_ylabel("$W'$ at $W=0$")
         titles.append(f"{state}, {law} law")
-    panels[0].legend(title="crossing", markerscale=8, loc="center")
+    panels[0].legend(*legend_entries(panels), title="crossing", markerscale=8, loc="center")
     label_panels(panels, titles)
     return figure

@@ -9,7 +9,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_entries, styled
 from burridge_knopoff.figures.two_blocks import draw_panel
 from burridge_knopoff.stability.chains import STANDARD_ERRORS
 
@@ -55,9 +55,9 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
         panel.tick_params(labelbottom=True)
     for panel in grid[:, 0]:
         panel.set_ylabel("fraction")
-    handles, labels = panels[0].get_legend_handles_labels()
+    handles, labels = legend_entries(panels[: len(blocks)])
     # Points with bars come last of themselves.
-    order = np.roll(np.arange(len(labels)), chains.sizes["law"])
+    order = sorted(range(len(labels)), key=lambda k: not labels[k].startswith("synchronized"))
     panels[0].legend(
         [handles[k] for k in order], [labels[k] for k in order], loc="center right", handletextpad=0.3, fontsize=7.0
     )

@@ -65,7 +65,7 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
             panel.set_ylim(*ROAD[1])
     for panel in panels[:: len(laws)]:
         panel.set_ylabel(r"$\langle J\rangle$")
-    _legend(figure)
+    _legend(figure, edges)
     label_panels(panels, [f"{law} law{end}" for end in ("", ", the road to chaos")[:rows] for law in laws])
     return figure
 
@@ -133,19 +133,28 @@ def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
         panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
-def _legend(figure: Figure) -> None:
+def _legend(figure: Figure, edges: xarray.Dataset) -> None:
+    """Put a legend of what is drawn below all panels."""
+    kind, stable = edges["kind"].values, edges["orbit_stable"].values
+    located = kind[np.isfinite(edges["mean_distance"].values)]
+    orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
-        Line2D([], [], color="#555555", linewidth=1.3, label="stable orbits"),
-        Line2D([], [], color="#555555", linewidth=0.7, linestyle="--", label="unstable orbits"),
+        *(
+            Line2D([], [], color="#555555", linewidth=width, linestyle=line, label=name)
+            for number, width, line, name in orbits
+            if number in stable
+        ),
         *(
             Line2D(
                 [], [], color="black", linestyle="", marker=marker, markersize=4, markerfacecolor="white", label=name
             )
-            for marker, name in MARKS.values()
+            for one, (marker, name) in MARKS.items()
+            if one in located
         ),
         *(
             Line2D([], [], color="black", linewidth=0.7, linestyle=line, label=name)
-            for line, name in UNLOCATED.values()
+            for one, (line, name) in UNLOCATED.items()
+            if one in kind
         ),
     ]
     legend_below(figure, handles)

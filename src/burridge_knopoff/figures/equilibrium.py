@@ -47,7 +47,6 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
     plane.axvline(0.0, color="0.7", linewidth=0.6, zorder=0)
     plane.set(xlabel=r"$\mathrm{Re}\,\lambda$", ylabel=r"$\mathrm{Im}\,\lambda$")
     growth.set(xlabel="$a$", ylabel=r"largest $\mathrm{Re}\,\lambda$")
-    plane.legend(handles=[_gray(marker="o", linestyle="", label=f"$a={a[-1]:g}$")], loc="center right")
     growth.legend(
         handles=[
             growth.get_lines()[0],
@@ -64,7 +63,9 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
         loc="outside lower center",
         ncols=min(4, len(laws)),
     )
-    label_panels((plane, growth), ["eigenvalues of uniform sliding", "growth of perturbations"])
+    label_panels(
+        (plane, growth), [f"eigenvalues of uniform sliding, marked at $a={a[-1]:g}$", "growth of perturbations"]
+    )
     return figure
 
 

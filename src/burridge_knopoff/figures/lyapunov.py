@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import cells, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_entries, new_figure, page_width, styled
 from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Lyapunov exponents"
@@ -63,12 +63,12 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
             panel.set_ylabel("Lyapunov exponents")
     for panel in panels:
         panel.set_xlim(edges[0], edges[-1])
-    panels[0].legend(loc="upper left", bbox_to_anchor=(0.0, 0.93))
-    shown = sorted({int(kind) for kind in np.unique(lyapunov["kind"].values)})
+    panels[0].legend(*legend_entries(panels), loc="upper left", bbox_to_anchor=(0.0, 0.93))
+    kinds = sorted({int(kind) for kind in np.unique(lyapunov["kind"].values)})
     figure.legend(
-        handles=[Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown],
+        handles=[Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in kinds],
         loc="outside lower center",
-        ncols=len(shown),
+        ncols=len(kinds),
     )
     label_panels(panels, titles)
     return figure

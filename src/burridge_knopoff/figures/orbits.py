@@ -61,7 +61,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     panels[0].axhline(-1.0, color="0.6", linewidth=0.6, zorder=0)
     panels[0].legend(handles=_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric")))
     states = [
-        Line2D([], [], color="0.3", linestyle="none", marker=marker(k), markersize=3, label=f"run from {name}")
+        Line2D([], [], color="0.3", linestyle="none", label=f"run from {name}", **_run_look(k))
         for k, name in enumerate(runs["initial"].values)
     ]
     handles = [*laws, *_styles(("-", ":"), ("(b): stable orbit", "unstable orbit")), *states]
@@ -119,15 +119,12 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
     for k, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial).isel(a=near)
-        panel.plot(
-            run["a"].values,
-            run["mean_distance"].values,
-            marker(k),
-            color=hue,
-            markersize=3,
-            linestyle="none",
-            clip_on=True,
-        )
+        panel.plot(run["a"].values, run["mean_distance"].values, color=hue, linestyle="none", **_run_look(k))
+
+
+def _run_look(state: int) -> dict[str, Any]:
+    """Return the marker of an initial state: those of the first are open, so that what lies inside is seen."""
+    return {"marker": marker(state), "markersize": 3 if state else 4.5, "markerfacecolor": "none"}
 
 
 def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_below, new_figure, styled
+from burridge_knopoff.figures.motion import SHADES
+from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, new_figure, styled
 
 TITLE = "Stick-slip cycles"
 CATEGORY = "Runs"
@@ -20,8 +21,8 @@ FROM_STUDY = ("shown_law",)
 CAPTION = """\
 Cycles of each block against a, a column for each initial state: the time between two stops, the frequency of the end
 blocks over that of the middle block, by the peaks of the spectra of their velocities and by their stops, the
-correlation of the velocities of the end blocks, and the share of time for which each block sticks. The band and the
-dotted line are what the paper states.
+correlation of the velocities of the end blocks, and the share of time for which each block sticks. Bars are standard
+errors of cycle times and how finely the spectra resolve; the band and the dotted line are what the paper states.
 """
 
 #: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -30,7 +31,7 @@ PAPER_CYCLE = (2.0, 3.0)
 PAPER_RATIO = 0.5
 
 # The end blocks often coincide: the later one is drawn smaller, inside the marker of the earlier one.
-SIZES = (3.6, 2.4, 1.5)
+SIZES = (4.2, 2.6, 1.3)
 MARKERS = ("o", "s", "^")
 
 
@@ -39,8 +40,7 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
 
     A column for each initial state. Of the blocks the first, the middle and the last one are shown; ratios are those of
-    the end blocks to the middle one, shaded as far as the spectrum resolves them. Gaps are blocks that do not stop, and
-    runs that did not complete.
+    the end blocks to the middle one. Gaps are blocks that do not stop, and runs that did not complete.
     """
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
@@ -79,7 +79,7 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
 
 
 def _look(n: int) -> dict[str, Any]:
-    return {"color": color(n), "marker": MARKERS[n], "markersize": SIZES[n], "markeredgewidth": 0.5, "linestyle": ""}
+    return {"color": SHADES[n], "marker": MARKERS[n], "markersize": SIZES[n], "markeredgewidth": 0.5, "linestyle": ""}
 
 
 def _points(panel: Axes, n: int, values: xarray.DataArray, errors: xarray.DataArray | None = None) -> None:
@@ -92,8 +92,7 @@ def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) ->
     ratio = end["velocity_frequency"] / middle["velocity_frequency"]
     shares = [(one["velocity_frequency_error"] / one["velocity_frequency"]).values for one in (end, middle)]
     error = ratio * np.hypot(shares[0], shares[1])
-    panel.fill_between(end["a"], ratio - error, ratio + error, step="mid", color=color(n), alpha=0.12, linewidth=0)
-    panel.plot(end["a"], ratio, **_look(n))
+    _points(panel, n, ratio, error)
     stops = end["stop_rate"] / middle["stop_rate"].where(middle["stop_rate"] > 0.0)
     panel.plot(end["a"], stops, markerfacecolor="none", **_look(n))
 
@@ -104,7 +103,6 @@ def _legend(shown: list[int]) -> list[Line2D | Patch]:
         *(Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)),
         Line2D([], [], **gray, label="frequency of the velocity"),
         Line2D([], [], **gray, markerfacecolor="none", label="frequency of the stops"),
-        Patch(facecolor=color(0), alpha=0.12, label="resolution of the spectra"),
         Patch(facecolor="0.88", label="the paper's 2 to 3"),
         Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's 1/2"),
     ]

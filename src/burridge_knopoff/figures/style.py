@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import get_registered_canvas_class
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -79,6 +80,7 @@ def new_figure(
         sharey="row" if share_rows else False,
         squeeze=False,
     )
+    figure.align_ylabels()
     return figure, list(axes.flat)
 
 
@@ -95,6 +97,19 @@ def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
         columns = place.get_gridspec().ncols if place is not None else 1
         width = figure.get_figwidth() / columns if figure is not None else PAGE
         panel.set_title(_wrapped(f"({letter}) {title}", round(LETTERS * width)), loc="left")
+
+
+def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
+    """Return the handles and labels of what some panel shows a point of, each label once."""
+    entries: dict[str, Artist] = {}
+    for panel in panels:
+        (left, right), (bottom, top) = panel.get_xlim(), panel.get_ylim()
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            line: Any = handle[0] if isinstance(handle, ErrorbarContainer) else handle
+            x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+            if ((x >= left) & (x <= right) & (y >= bottom) & (y <= top)).any():
+                entries.setdefault(label, handle)
+    return list(entries.values()), list(entries)
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:

@@ -30,7 +30,8 @@ def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     """Draw the same into a panel of a figure."""
     a = two_blocks["a"].values
     half = 0.5 * (np.diff(a).min() if len(a) > 1 else 0.0)
-    for value in a[(two_blocks["agrees"] == 0).any(("other_law", "state")).values]:
+    disagree = a[(two_blocks["agrees"] == 0).any(("other_law", "state")).values]
+    for value in disagree:
         panel.axvspan(value - half, value + half, color="0.9", linewidth=0, zorder=0)
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
@@ -42,5 +43,5 @@ def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     panel.set_xlabel("$a$")
     panel.set_ylabel(r"$\langle J\rangle$")
     laws = two_blocks["law"].values
-    shaded = {1: None, 2: "shaded: the laws disagree"}.get(len(laws), f"shaded: one disagrees\nwith the {laws[0]} law")
-    panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title=shaded)
+    shaded = "shaded: the laws disagree" if len(laws) == 2 else f"shaded: one disagrees\nwith the {laws[0]} law"
+    panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title=shaded if len(disagree) else None)
