@@ -12,6 +12,7 @@ from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.show.attractors import attractor_table
 from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.settings import MOTION, SearchSettings
 
@@ -41,6 +42,9 @@ def test_attractors(capsys, tmp_path):
     assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)
     rows = printed.splitlines()
     assert rows[0] == f"linearized law, a = 0.08, v = 0.1, 3 blocks: {len(found)} attractors"
+    # An exponent is 0 within its error from either side.
+    below = written.assign(lyapunov_exponent=xr.full_like(written["lyapunov_exponent"], -1e-5))
+    assert all("   0.0000  0.0000  0.0000" in line for line in attractor_table(below, {})[1:])
     for slot, name in enumerate(written["branch_name"].values):
         row = next(line for line in rows if line.startswith(f"{name}  "))
         assert f"  {written['mean_distance'].values[0, 0, slot]:.6f} +- " in row
@@ -64,7 +68,7 @@ def test_basins(capsys, tmp_path):
         row = next(line for line in printed.splitlines() if line.startswith(f"{name}  "))
         assert row.endswith(f"  {100 * (branch == number).mean():.2f} %")
     picture = tmp_path / "basins.png"
-    assert f"{picture}: Maps over the initial positions" in said(capsys, "show", str(files[0]), "--plot", str(picture))
+    assert f"{picture}: Basins of attraction. Maps over" in said(capsys, "show", str(files[0]), "--plot", str(picture))
     assert picture.stat().st_size > 10_000
 
 

@@ -101,10 +101,13 @@ def test_every_summary_in_words(study):
         assert not any("other sources" in line for line in lines)
 
 
-@pytest.mark.parametrize("name", ["mean_distance", "basins"])
-def test_a_summary_as_its_figure(study, tmp_path, capsys, name):
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("mean_distance", "⟨J⟩ against a. The time average ⟨J⟩"), ("basins", "Basins of attraction. Maps over")],
+)
+def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
     """With the summaries and the properties of the study that the figure takes besides."""
-    shown(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
+    assert f"x.pdf: {words} " in shown(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
     assert (tmp_path / "x.pdf").read_bytes().startswith(b"%PDF")
 
 

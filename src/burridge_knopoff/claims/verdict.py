@@ -167,7 +167,7 @@ def with_error(value: float, error: float | None = None) -> str:
     digits = max(0, 1 - math.floor(math.log10(error)))
     if digits > 12:
         return f"{value:.12g}".replace("-", "−")
-    return f"{value:.{digits}f} ± {error:.{digits}f}".replace("-", "−")
+    return f"{value:z.{digits}f} ± {error:.{digits}f}".replace("-", "−")
 
 
 def at_values(a: np.ndarray, chosen: np.ndarray) -> str:

@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     trajectory = simulation.run(model, state, settings_of(Settings, options))
     print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
     exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
-    rows = [(str(k), f"{value + 0.0:.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
+    rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
     if trajectory.lyapunov_infinite_count > 0:
         print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         value, error = transverse_exponent(model, start, max(options.transient, ALIGNMENT), options.window)
-        print(f"transverse exponent of the symmetric motion beside it: {value:.6f} +- {error:.6f}")
+        print(f"transverse exponent of the symmetric motion beside it: {value:z.6f} +- {error:.6f}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")

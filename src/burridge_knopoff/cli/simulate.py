@@ -71,5 +71,5 @@ def outcome(trajectory: Trajectory) -> str:
     words = f"<J> = {trajectory.mean_distance:.6g} +- {trajectory.mean_distance_error:.2g}"
     for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
         if not math.isnan(error):
-            words += f", largest Lyapunov exponent {exponent:.5f} +- {error:.5f}"
+            words += f", largest Lyapunov exponent {exponent:z.5f} +- {error:.5f}"
     return f"{words}, {trajectory.event_count} stops and starts until tau = {trajectory.end_time:g}"

@@ -65,14 +65,14 @@ def with_error(value: Any, error: Any) -> str:
     if len(stored.digits) >= STORED_DIGITS and isinstance(stored.exponent, int):
         decimals = min(decimals, -stored.exponent)
     if 0 <= decimals <= 6 or (decimals > 6 and abs(value) >= 1e-3):
-        shown = f"{value:.{decimals}f} ± " + (f"{error:.{decimals}f}" if decimals <= 6 else f"{error:.{digits}e}")
+        shown = f"{value:z.{decimals}f} ± " + (f"{error:.{decimals}f}" if decimals <= 6 else f"{error:.{digits}e}")
     elif decimals < 0:
-        shown = f"{round(value, decimals):.0f} ± {round(error, decimals):.0f}"
+        shown = f"{round(value, decimals):z.0f} ± {round(error, decimals):.0f}"
     else:
         # Small numbers share the power of ten of the value.
         power = math.floor(math.log10(max(abs(value), error)))
         places = max(0, decimals + power)
-        shown = f"({value / 10**power:.{places}f} ± {error / 10**power:.{places}f})e{power}"
+        shown = f"({value / 10**power:z.{places}f} ± {error / 10**power:.{places}f})e{power}"
     return shown.replace("-", MINUS)
 
 

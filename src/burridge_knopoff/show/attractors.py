@@ -29,7 +29,7 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
                 called(found, one["branch"].item(), one["side"].item()),
                 f"{kind.words} {period}" if period else kind.words,
                 f"{one['mean_distance'].item():.6f} +- {one['mean_distance_error'].item():.1g}",
-                " ".join(f"{value:7.4f}" for value in one["lyapunov_exponent"].values + 0.0),
+                " ".join(f"{value:z7.4f}" for value in one["lyapunov_exponent"].values),
                 *(column[slot] for column in columns.values()),
             )
         )

@@ -50,7 +50,7 @@ def write_picture(result: Result, path: str | Path) -> str:
         # Made by other sources, or a part of a summary.
         raise ValueError(f"{result.path}: the figure {figure.name} cannot show it ({error})") from None
     write_figure(drawn, path)
-    return f"{path}: {figure.caption_of({})}"
+    return f"{path}: {figure.title_of({})}. {figure.caption_of({})}"
 
 
 def _figure_of(result: Result) -> Description:

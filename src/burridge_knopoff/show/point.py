@@ -76,7 +76,7 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion.at_speed(point["v"].item())).words
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
-        words = (f"{value:.6f} +- {error:.6f}" if np.isfinite(value) else "-infinity" for value, error in exponents)
+        words = (f"{value:z.6f} +- {error:.6f}" if np.isfinite(value) else "-infinity" for value, error in exponents)
         yield "exponents", ", ".join(words)
         if run["lyapunov_infinite_count"] > 0:
             yield "", f"at least {run['lyapunov_infinite_count']} of all {2 * chain.blocks} are -infinity"
