@@ -23,7 +23,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "utf16": (GOOD.encode("utf-16"), ["not UTF-8 text"]),
     "nul": (f"{GOOD}v: 0.1\0\n", ["not YAML", "special characters"]),
     "control": (f"{GOOD}v: \x07\n", ["not YAML", "special characters"]),
-    "tab": ("study: x\na:\n\t- 0.1\n", ["not YAML (line 3)", "cannot start any token"]),
+    "tab": (
+        "study: x\na:\n\t- 0.1\n",
+        ["not YAML (line 3)", "cannot start any token: a tab, where YAML takes spaces only"],
+    ),
     "open": ("study: x\na: [0.1\ninitial: {minus: {}}\n", ["not YAML (line 3)"]),
     "colon": (f"{GOOD}v 0.1\n", ["not YAML (line 5)", "':'"]),
     "json": ('{"study": "x", "a": [0.1', ["not YAML (line 1)"]),

@@ -12,12 +12,15 @@ from pathlib import Path
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.ledger import Claim, judge, read_claims
 from burridge_knopoff.claims.verdict import Verdict
+from burridge_knopoff.figures.description import picture_names
+from burridge_knopoff.model.initial import PAPER_STATES
 from tests.claims.alterations import CASES, Alteration
 from tests.claims.worlds import evidence, paper_world
 
 ROOT = Path(__file__).parents[2]
 FILE = Path(__file__).with_name("said.json")
-CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(ROOT / "config/claims.yaml")}
+PICTURES = picture_names(PAPER_STATES)
+CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(ROOT / "config/claims.yaml", PICTURES)}
 
 
 def altered(name: str, alteration: Alteration) -> Verdict:

@@ -17,7 +17,7 @@ from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Rang
 from burridge_knopoff.claims.verdict import content_digest as digest_of
 from burridge_knopoff.claims.verdict import with_error as shown
 from burridge_knopoff.study import ConfigError
-from tests.claims.said import CLAIMS
+from tests.claims.said import CLAIMS, PICTURES
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.refused import refused
 
@@ -42,7 +42,7 @@ regular:
 def read(tmp_path: Path, text: str | bytes) -> list:
     file = tmp_path / "claims.yaml"
     file.write_bytes(text.encode() if isinstance(text, str) else text)
-    return read_claims(file)
+    return read_claims(file, PICTURES)
 
 
 def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
@@ -77,6 +77,8 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, "edge:", "1:", "is not allowed as a key"),
         (EDGE, "  place: Fig. 3\n", "", "place: missing"),
         (EDGE, "figure: orbits", "figure: ../orbits", "figure: '../orbits' is not allowed"),
+        (EDGE, "figure: orbits", "figure: no_such", "edge.figure: 'no_such' is not allowed: agreement | basin"),
+        (EDGE, "figure: orbits", "figure: motion_middle", "'motion_middle' is not allowed"),
         (EDGE, "  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
         (EDGE, "  figure", "  place: Fig. 4\n  figure", "place: stands twice"),
         (RANGED, "{above: 0}", "{}", "a: {} is not allowed: at least one end"),
@@ -98,7 +100,7 @@ def test_what_is_not_allowed_is_said_in_one_line(tmp_path: Path, text: str, old:
 
 def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
-        read_claims(tmp_path / "missing.yaml")
+        read_claims(tmp_path / "missing.yaml", ())
     with pytest.raises(ConfigError, match=r"claims.yaml: cannot be read: not UTF-8 text"):
         read(tmp_path, b"\xff\xfe\x00")
 
@@ -157,7 +159,9 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
     # A bar inside a cell is escaped.
     assert all(row.replace("\\|", "").count("|") == 7 for row in rows)
-    assert text.startswith("41 holds; 0 holds loosely; 0 depends on convention; 0 fails; 0 not testable.\n\n### Sync")
+    assert text.startswith(
+        "holds: 41; holds loosely: 0; depends on convention: 0; fails: 0; not testable: 0.\n\n### Sync"
+    )
     claim = next(claim for claim in content["claims"] if claim["figure"])
     claim |= {"verdict": "fails", "reason": "a|b", "changes": "nowhere"}
     claim |= {"turns": ["holds: near below 1 (2)", "holds: c"]}

@@ -19,6 +19,8 @@ except KernelError as error:
     sys.exit(f"{error}")
 
 from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.figures.description import picture_names
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.provenance.files import (
     check_folder,
@@ -58,7 +60,7 @@ OVERRIDES = {} if IMPORTED else workflow.config_settings.config
 
 try:
     CLAIMS_FILE = ROOT / "config/claims.yaml"
-    read_claims(CLAIMS_FILE)
+    read_claims(CLAIMS_FILE, picture_names(PAPER_STATES))
     CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
     WRITTEN = config if IMPORTED else read_config(CONFIG_FILE)

@@ -120,14 +120,18 @@ class Claim:
     figure: str
 
 
-def read_claims(path: str | Path) -> list[Claim]:
+def read_claims(path: str | Path, figures: Collection[str]) -> list[Claim]:
     """Return the claims in a YAML file, in its order.
 
+    figures : names of all figures that a study can have
     Raises ConfigError, one line: file, key, value, what is allowed.
     """
     content = read_yaml(path)
     try:
-        return claims_of(content)
+        claims = claims_of(content)
+        for claim in claims:
+            OneOf(tuple(sorted(figures))).form(claim.figure, f"{claim.name}.figure")
+        return claims
     except ValueError as error:
         raise ConfigError(f"{display_path(path)}: {error}") from error
 
@@ -281,9 +285,7 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
 
     figures : folder of the figures that a table links to, relative to the file that it goes into
     """
-    lines = [
-        "; ".join(f"{count} {name}" for name, count in content["counts"].items()) + ".",
-    ]
+    lines = ["; ".join(f"{name}: {count}" for name, count in content["counts"].items()) + "."]
     for topic in TOPICS:
         claims = [claim for claim in content["claims"] if claim["topic"] == topic and claim["verdict"] != NOT_TESTABLE]
         if not claims:

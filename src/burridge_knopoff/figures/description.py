@@ -75,6 +75,11 @@ def figure_descriptions() -> tuple[Description, ...]:
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
+def picture_names(states: Collection[str]) -> set[str]:
+    """Return the names of all pictures, without suffix, of a study that has some initial states."""
+    return {_filled(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
+
+
 def described_picture(file: str, summaries: Collection[str]) -> tuple[str, str]:
     """Return title and caption of a picture by the name of its file, in a study with some summaries.
 

@@ -75,6 +75,7 @@ def read_yaml(path: str | Path) -> Any:
     except Exception as error:
         mark = getattr(error, "problem_mark", None)
         problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
+        problem += ": a tab, where YAML takes spaces only" if "'\\t'" in problem else ""
         place = f" (line {mark.line + 1})" if mark else ""
         reason = f"not YAML{place}: {problem.encode('ascii', 'replace').decode()}"
     raise ConfigError(f"{display_path(path)}: {reason}")
