@@ -240,6 +240,8 @@ def test_the_report_of_a_study(browser, reported):
         )
         phone.draw_everything()
         assert phone.page.evaluate("document.documentElement.scrollWidth") <= width
+        stacked = phone.page.locator(".scroll:has(.stacked)")
+        assert stacked.evaluate("box => box.scrollWidth - box.clientWidth") == 0
         assert phone.page.evaluate(paper) != light[0]
         phone.close()
 
