@@ -1,4 +1,4 @@
-"""docs/extending.md: its edits, applied to a copy of the tree, give a law, an observable and a figure that are right.
+"""docs/extending.md: its edits, applied to a copy of the tree, give a law, an observable, a figure and a claim.
 
 Of the kernel of the copy only what depends on the edits is compiled; tests/kernel/test_builds.py builds all of one.
 """
@@ -92,12 +92,30 @@ for panel, law in zip(panels, laws):
 """
 
 
+CLAIM = """
+import numpy as np
+import xarray as xr
+from burridge_knopoff.claims.ledger import judge, read_claims
+from burridge_knopoff.figures.description import picture_names
+from tests.claims.worlds import evidence
+claims = read_claims("config/claims.yaml", picture_names(["minus", "plus"]))
+(claim,) = [claim for claim in claims if claim.name == "top_speed"]
+axes = {"law": ["linearized"], "initial": ["plus"], "a": [0.08], "block": [1, 2, 3]}
+for largest, verdict in ((0.234, "holds"), (0.24, "holds loosely"), (0.3, "fails"), (np.nan, "not testable")):
+    values = np.reshape([np.nan, 0.2 if largest > 0 else np.nan, largest], (1, 1, 1, 3))
+    summary = xr.Dataset({"window_largest_velocity": (tuple(axes), values)}, axes)
+    judged = judge(claim, evidence({"largest_velocity": summary}))
+    assert judged.verdict == verdict, judged
+    assert [item.value for item in judged.measured] == [largest][: len(judged.measured)]
+"""
+
+
 def extend(folder):
     """Make a copy of the tree with the edits of the page, and compile its kernel."""
     for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
     shutil.copy(REPOSITORY / "pyproject.toml", folder)
-    assert len(apply(PAGE, folder)) == 9
+    assert len(apply(PAGE, folder)) == 11
     compiled = run(folder, sys.executable, "-c", COMPILE).split()
     assert "observe" in compiled
     assert "series" not in compiled
@@ -130,6 +148,10 @@ def test_the_observable_is_right(extended, tmp_path):
     run(extended, sys.executable, "-c", OBSERVABLE, folder=tmp_path)
 
 
+def test_the_claim_is_judged(extended):
+    run(extended, sys.executable, "-c", CLAIM)
+
+
 def test_the_law_meets_its_obligations(extended):
     ran = run(
         extended, sys.executable, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", "tests/laws", "-k", "quadratic"
@@ -149,6 +171,7 @@ def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
     assert {path.name for path in (results / "points").iterdir()} == names
     assert (results / "figures" / "largest_velocity.png").is_file()
     assert "aU′(1 + U′/c)" in (results / "report.html").read_text()
+    assert '"top_speed"' in (results / "summary" / "claims.json").read_text()
 
 
 def test_a_study_of_the_chain_ends_in_its_report(extended, tmp_path):
