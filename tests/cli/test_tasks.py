@@ -42,6 +42,7 @@ def test_attractors(capsys, tmp_path):
     assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)
     rows = printed.splitlines()
     assert rows[0] == f"linearized law, a = 0.08, v = 0.1, 3 blocks: {len(found)} attractors"
+    assert "  motion, section points  " in rows[2]
     # An exponent is 0 within its error from either side.
     below = written.assign(lyapunov_exponent=xr.full_like(written["lyapunov_exponent"], -1e-5))
     assert all("   0.0000  0.0000  0.0000" in line for line in attractor_table(below, {})[1:])

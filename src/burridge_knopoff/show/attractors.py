@@ -33,4 +33,4 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
                 *(column[slot] for column in columns.values()),
             )
         )
-    return table(("attractor", "motion, period", "<J>", "Lyapunov exponents", *columns), rows)
+    return table(("attractor", "motion, section points", "<J>", "Lyapunov exponents", *columns), rows)
