@@ -16,6 +16,7 @@ from burridge_knopoff.figures.style import (
     color,
     label_panels,
     legend_below,
+    legend_entries,
     marker,
     new_figure,
     say_nothing,
@@ -60,15 +61,17 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     panels[0].axhline(1.0, color="0.6", linewidth=0.6, zorder=0)
     panels[0].axhline(-1.0, color="0.6", linewidth=0.6, zorder=0)
     panels[0].legend(handles=_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric")))
-    states = [
-        Line2D([], [], color="0.3", linestyle="none", label=f"run from {name}", **_run_look(k))
-        for k, name in enumerate(runs["initial"].values)
-    ]
-    handles = [*laws, *_styles(("-", ":"), ("(b): stable orbit", "unstable orbit")), *states]
-    legend_below(figure, handles)
     panels[1].set(xlabel="$a$", ylabel=r"$\langle J\rangle$")
     branching = orbits["branch_mean_distance"].max().item()
     panels[1].set_ylim(-0.001, 1.08 * branching if branching > 0.0 else None)
+    _, near = legend_entries(panels[1:2])
+    states = [
+        Line2D([], [], color="0.3", linestyle="none", label=f"run from {name}", **_run_look(k))
+        for k, name in enumerate(runs["initial"].values)
+        if f"run from {name}" in near
+    ]
+    handles = [*laws, *_styles(("-", ":"), ("(b): stable orbit", "unstable orbit")), *states]
+    legend_below(figure, handles)
     if np.isfinite(orbits["branch_offset"]).any():
         panels[2].set(xlabel=r"$|a - a_c|$", ylabel=r"$|x_1 - x_3|$", xscale="log", yscale="log")
         panels[2].legend(loc="upper left")
@@ -119,7 +122,8 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
     for k, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial).isel(a=near)
-        panel.plot(run["a"].values, run["mean_distance"].values, color=hue, linestyle="none", **_run_look(k))
+        look = {"color": hue, "linestyle": "none", "label": f"run from {initial}", **_run_look(k)}
+        panel.plot(run["a"].values, run["mean_distance"].values, **look)
 
 
 def _run_look(state: int) -> dict[str, Any]:
