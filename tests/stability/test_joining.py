@@ -51,6 +51,17 @@ def test_branches_are_joined_whatever_their_numbers(models, found):
         assert joined([models[0]], [models[1]], states, there, SETTINGS) == expected
 
 
+@pytest.mark.parametrize(("threshold", "expected"), [(1.0, {0: 0, 3: 1}), ([1.0, 1.0, 1.1], {0: 0})])
+def test_mirror_images_are_one_branch_in_a_mirror_symmetric_chain_only(threshold, expected, found, monkeypatch):
+    chain = Chain(3, threshold=threshold)
+    models = [Model(chain, law_of(law, A)) for law in ("linearized", "nonlinear")]
+    returns = found[1][1].motion.returns
+    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: Returns(returns, returns, 0.0, 0.0))
+    start = found[0][1].motion.instant()
+    there = {3: {0: found[1][1].motion.instant().mirrored()}}
+    assert joined([models[0]], [models[1]], {1: {0: start}}, there, SETTINGS) == expected
+
+
 @pytest.fixture
 def follow(tell):
     """Return what `follow_law` finds where the set at each step is told by its place; None where nothing settles."""

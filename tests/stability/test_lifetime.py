@@ -51,9 +51,9 @@ def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
 
 @pytest.fixture
 def find(monkeypatch, tell):
-    """Return how lifetimes are found of trajectories whose labels at the end, and whose ends, are told."""
+    """Return how lifetimes are found of trajectories whose labels and ends are told for each round."""
 
-    def found(attractors, reached, ends):
+    def found(attractors, *rounds):
         runs = []
 
         class Ensemble:
@@ -62,8 +62,10 @@ def find(monkeypatch, tell):
                 return {"position": position[:, None], "velocity": velocity[:, None]}
 
         monkeypatch.setattr(lifetime, "new_ensemble", lambda model: Ensemble())
-        left = np.where(np.isnan(ends), -1, 0), np.array(ends)
-        asked = tell(lifetime, "label", [(np.array(reached), np.zeros(len(reached))), left])
+        labels = []
+        for reached, ends in rounds:
+            labels += [(np.array(reached), np.zeros(len(reached))), (np.where(np.isnan(ends), -1, 0), np.array(ends))]
+        asked = tell(lifetime, "label", labels)
         lives = lifetimes(MODEL, attractors, SETTINGS)
         return lives, runs + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
 
@@ -74,23 +76,37 @@ def chaos(partner=0):
     return stand_in(partner=partner, kind=MotionKind.CHAOTIC)
 
 
+MANY = 32 * TUNING.undecided
+#: More than enough to show that chaos lasts: none of so many trajectories leaves.
+ALL_STAY = ([0] * MANY, [])
+
+
 def test_trajectories_that_have_left_are_counted_with_their_times(find):
-    """Two are captured by the other attractor, and of one it is not known what it has reached, nor when."""
-    found, asked = find([chaos(), stand_in(partner=1)], [0] * 29 + [1, 1, -1], [20.0, 40.0, math.nan])
-    assert found == [Lifetime(3, 29 * TIME + 20.0 + 40.0 + 0.5 * TIME), None]
-    assert asked == [(32, [TIME]), (32, 50.0, 2), (3, TIME, 1)]
+    """Six are captured by the other attractor soon, and of seven it is not known what they have reached, nor when."""
+    found, asked = find([chaos(), stand_in(partner=1)], ([0] * 19 + [1] * 6 + [-1] * 7, [20.0] * 6 + [math.nan] * 7))
+    assert found == [Lifetime(13, 19 * TIME + 6 * 20.0 + 7 * 0.5 * TIME), None]
+    assert not found[0].lasts(SETTINGS.lifetime)
+    assert asked == [(32, [TIME]), (32, 50.0, 2), (13, TIME, 1)]
+
+
+def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
+    found, asked = find([chaos(), stand_in(partner=1)], ([0] * 31 + [1], [20.0]), ALL_STAY)
+    assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
+    assert found[0].lasts(SETTINGS.lifetime)
+    assert asked[:2] == [(32, [TIME]), (MANY, [TIME])]
 
 
 def test_who_leaves_after_the_time_of_watching_has_not_left(find):
-    found, _ = find([chaos(), stand_in(partner=1)], [0] * 29 + [1, 1, 1], [20.0, math.nan, math.nan])
-    assert found == [Lifetime(1, 31 * TIME + 20.0), None]
+    first = [0] * 29 + [1, 1, 1], [20.0, math.nan, math.nan]
+    found, _ = find([chaos(), stand_in(partner=1)], first, ALL_STAY)
+    assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
 
 
 def test_a_change_to_the_mirror_image_is_no_end(find):
-    found, asked = find([chaos(1), chaos(0)], [0, 1] * 16, [])
+    found, asked = find([chaos(1), chaos(0)], ([0, 1] * 16, []))
     assert found == [Lifetime(0, 32 * TIME)] * 2
     assert asked == [(32, [TIME]), (32, 50.0, 2), (0, TIME, 0)]
 
 
 def test_motion_that_is_not_chaotic_has_no_lifetime(find):
-    assert find([stand_in()], [], []) == ([None], [])
+    assert find([stand_in()]) == ([None], [])

@@ -79,7 +79,8 @@ def joined(
         followed = each("turned into the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
     for (row, k, _, weight), found in zip(tried, followed, strict=True):
-        near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
+        mirror = firsts[k].chain.is_mirror_symmetric
+        near = {n: _nearest(found, second[n][k], mirror=mirror) for n in numbers[1] if k in second[n]} if found else {}
         best = min(near, key=lambda n: near[n], default=None)
         if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
             arrivals[row, numbers[1].index(best)] += weight
@@ -87,7 +88,8 @@ def joined(
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
 
-def _nearest(found: Returns, state: Instant) -> float:
-    """Return how far a state, or its mirror image, is from the nearest of some returns."""
+def _nearest(found: Returns, state: Instant, *, mirror: bool) -> float:
+    """Return how far a state, or with `mirror` its mirror image, is from the nearest of some returns."""
     tree = cKDTree(found.returns)
-    return float(min(tree.query(item.vector(), p=np.inf)[0] for item in (state, state.mirrored())))
+    images = (state, state.mirrored()) if mirror else (state,)
+    return float(min(tree.query(item.vector(), p=np.inf)[0] for item in images))

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy
@@ -76,13 +77,32 @@ def lifetimes(
 def _lifetime(
     model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings, tuning: Tuning
 ) -> Lifetime:
-    """Follow trajectories from states on a chaotic set and see which are still on it, or on its mirror image."""
+    """Follow trajectories from states on a chaotic set, and more of them where these do not decide whether it lasts."""
+    generator = np.random.default_rng(settings.seed)
+    follow = partial(_followed, model, attractors, index, settings, tuning, generator)
+    first = follow(tuning.followed)
+    low, high = first.interval
+    if not low <= settings.lifetime < high:
+        return first
+    more = follow(tuning.followed * tuning.undecided)
+    return Lifetime(first.ends + more.ends, first.time + more.time)
+
+
+def _followed(
+    model: Model,
+    attractors: Sequence[Attractor],
+    index: int,
+    settings: SearchSettings,
+    tuning: Tuning,
+    generator: np.random.Generator,
+    count: int,
+) -> Lifetime:
+    """Follow so many trajectories from a chaotic set and see which are still on it, or on its mirror image."""
     attractor = attractors[index]
     time = tuning.exposure * settings.lifetime / tuning.followed
-    generator = np.random.default_rng(settings.seed)
     returns = attractor.motion.returns
     size = tuning.parting_push * settings.resolution * model.scale
-    chosen = generator.integers(len(returns), size=tuning.followed)
+    chosen = generator.integers(len(returns), size=count)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
     position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
     stuck = np.array([start.stuck for start in starts], dtype=np.intc)
@@ -95,5 +115,5 @@ def _lifetime(
     # Who gets elsewhere later was still there. Who gets nowhere that is known has left, at a time that nobody knows.
     within, nowhere = gone != UNDETERMINED, (gone == UNDETERMINED) & (reached[left] == UNDETERMINED)
     spent = np.where(within, when, np.where(nowhere, 0.5 * time, time))
-    survived = time * (tuning.followed - len(left)) + spent.sum()
+    survived = time * (count - len(left)) + spent.sum()
     return Lifetime(int((within | nowhere).sum()), float(survived))

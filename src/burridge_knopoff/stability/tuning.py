@@ -96,6 +96,8 @@ class Tuning:
     #: which it counts as lasting. If none of them leaves it, its lifetime is beyond that with 97.5 % certainty.
     followed: int = 32
     exposure: float = 4.0
+    #: Where these leave open whether the lifetime is below or beyond, so many times more are followed.
+    undecided: int = 10
     #: Push, in resolutions, that parts trajectories which begin at different times of one and the same.
     parting_push: float = 0.1
 
