@@ -161,9 +161,31 @@ def test_weak_chaos_is_told_from_a_torus():
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
     assert steady.exponent[0] == pytest.approx(run.lyapunov_exponent[0], abs=6e-4)
     assert abs(steady.mean_distance - run.mean_distance) < 2e-4
-    torus = model(a=0.05)
-    steady = measure(torus, torus.begin(PAPER_STATES["plus"]), 20_000.0, 3000.0, MOTION)
-    assert steady.kind == MotionKind.QUASIPERIODIC
+
+
+@pytest.mark.parametrize(("law", "a", "closes"), [("linearized", 0.05, False), ("nonlinear", 0.07, True)])
+def test_a_weakly_attracting_orbit_is_told_from_a_torus(law, a, closes):
+    """λ2 is -0.0004 at a = 0.07 (nonlinear), which no window of usual length tells from 0."""
+    chosen = model(law, a)
+    steady = measure(chosen, chosen.begin(PAPER_STATES["plus"]), 3000.0, 12_000.0, MOTION)
+    assert abs(steady.exponent[1]) < MOTION.zero_exponent
+    assert steady.kind == (MotionKind.PERIODIC if closes else MotionKind.QUASIPERIODIC)
+    later = visit(chosen, steady.instant(), 300_000.0, 12_000.0)
+    assert (later.spacing < 1e-9) == closes
+
+
+def test_orbits_that_pushes_soon_fall_back_to_are_no_slow_set():
+    """Linearized law, a = 0.2125: two mirror pairs, of periods 20 and 40, within 0.005 of each other."""
+    chosen = model(a=0.2125)
+    found, _ = find_attractors(chosen, dataclasses.replace(SEARCH, samples=60))
+    pairs = [item for item in found if item.motion.section_period in (20, 40)]
+    assert [item.symmetry for item in pairs] == [ASYMMETRIC] * 4
+    assert not any(item.slow for item in found)
+    for item in pairs:
+        later = visit(chosen, item.motion.instant(), 50_000.0, 3000.0)
+        assert later.closed(1e-9)
+        assert lies_on(later, item.motion, 1e-9, 1e-9)
+        assert not any(lies_on(later, other.motion, 1e-5, 1e-5) for other in pairs if other is not item)
 
 
 @pytest.mark.parametrize(

@@ -111,19 +111,26 @@ def test_chaos_has_to_last(add):
 
 def test_what_attracts_as_a_whole_is_a_slow_set(add):
     smallest, tiny = ("captured", 0, TUNING.smallest_radius), ("captured", 0, TUNING.tiny_radius)
-    (slow,), asked = add([motion()], None, [0.0, 0.02])
+    # Pushes shrink by e within the time for which a slow set is shown.
+    marginal = -1.0 / (TUNING.slow_time * SETTINGS.transient)
+    drifting = motion(exponent=np.array([0.0, 0.99 * marginal, -0.2]))
+    (slow,), asked = add([drifting], None, [0.0, 0.02])
     assert (slow.slow, slow.symmetry, slow.partner) == (True, SYMMETRIC, 0)
     assert slow.motion.returns.tolist() == ONE.tolist()
     assert asked[1:] == [smallest] * 2
-    # An orbit in the midst of chaos is not all of it, and may attract from nearby alone.
-    pair, asked = add([motion()], None, [0.0, 1e-7], in_chaos=True)
-    assert (len(pair), pair[0].slow, asked[-2:]) == (2, False, [smallest, tiny])
+    # An orbit in the midst of chaos is not all of it, and may attract from nearby alone; as may one that pushes soon
+    # fall back to, but what is no orbit may still lie on a set.
+    quick = motion(exponent=np.array([0.0, 1.01 * marginal, -0.2]))
+    for found, in_chaos in ((drifting, True), (quick, False)):
+        pair, asked = add([found], None, [0.0, 1e-7], in_chaos=in_chaos)
+        assert (len(pair), pair[0].slow, asked[-2:]) == (2, False, [smallest, tiny])
+    assert add([quick], None, [0.0, 0.02], spacing=WIDE)[0][0].slow
     # A closed orbit may attract from one side only; next to synchrony what does not attract is unstable.
-    pair, asked = add([motion()], None, [0.0, 0.0, 1e-7])
+    pair, asked = add([drifting], None, [0.0, 0.0, 1e-7])
     assert (len(pair), asked[-1]) == (2, tiny)
-    assert add([motion()], None, [0.0, 0.0], spacing=WIDE)[0] == []
-    assert add([motion(9.9e-3)], None, [0.0])[0] == []
-    assert len(add([motion(1.01e-2)], None, [0.0, 0.02])[0]) == 1
+    assert add([drifting], None, [0.0, 0.0], spacing=WIDE)[0] == []
+    assert add([replace(drifting, mean_distance=9.9e-3)], None, [0.0])[0] == []
+    assert len(add([replace(drifting, mean_distance=1.01e-2)], None, [0.0, 0.02])[0]) == 1
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import Returns, instant_of, lies_on, measure, visit
+from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
@@ -146,6 +147,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     first = stand_in(kind=kind, exponent=np.array([exponent])).motion
     later = {"kind": longer, "exponent": np.array([0.5]), "section_period": 9, "returns": ROWS, "mean_distance": 5.0}
     asked = tell(steady, "_measure", [first, replace(first, **later) if longer is not None else None])
+    tell(steady, "visit", [None])
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == expected
     assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
@@ -154,3 +156,25 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     # The returns and the mean distance stay those of the usual window.
     assert found.returns is first.returns
     assert found.mean_distance == 0.1
+
+
+@pytest.mark.parametrize("kind", [MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
+@pytest.mark.parametrize(
+    ("threshold", "mean", "closes", "expected"),
+    [
+        (1.0, 0.1, True, MotionKind.PERIODIC),
+        (1.0, 1e-9, True, MotionKind.SYNCHRONIZED),
+        ((1.0, 1.0, 1.1), 1e-9, True, MotionKind.PERIODIC),
+        (1.0, 0.1, False, None),
+        (1.0, 0.1, None, None),
+    ],
+)
+def test_what_closes_when_it_is_followed_on_is_no_torus(tell, kind, threshold, mean, closes, expected):
+    first = stand_in(kind=kind, mean_distance=mean, exponent=np.zeros(3)).motion
+    tell(steady, "_measure", [first])
+    late = None if closes is None else Returns(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
+    asked = tell(steady, "visit", [late])
+    found = measure(model(threshold), None, 50.0, 30.0, MOTION)
+    assert found.kind == (kind if expected is None else expected)
+    assert asked[0][2:4] == (TUNING.lasting * 50.0, 30.0)
+    assert found.returns is first.returns

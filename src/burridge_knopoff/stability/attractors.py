@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -25,6 +24,7 @@ from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, 
 from burridge_knopoff.stability.steady import (
     Returns,
     is_near,
+    judged_distance,
     least_distance,
     lies_on,
     measure,
@@ -217,7 +217,7 @@ class Search:
         mirror = self.model.chain.is_mirror_symmetric
         if motion.kind == MotionKind.CHAOTIC and closed:
             # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
-            mean = motion.mean_distance if mirror else math.inf
+            mean = judged_distance(self.model, motion.mean_distance)
             motion = replace(motion, kind=closed_kind(mean, self.motion_settings))
         elif motion.kind == MotionKind.CHAOTIC:
             # Chaos may be a transient of any length: one trajectory has to last.
@@ -243,10 +243,12 @@ class Search:
         if self._accept(new, tuning.smallest_radius):
             return True
         # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole; but where
-        # that is chaos, it is a motion of its own, in whose midst an orbit may attract from nearby alone.
+        # that is chaos, it is a motion of its own, in whose midst an orbit may attract from nearby alone, and so it is
+        # where pushes die out in less time than shows a slow set.
         if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
             return False
-        if not (closed and self._lies_in_chaos(found)):
+        quick = motion.exponent[1] * tuning.slow_time * settings.transient < -1.0
+        if not (closed and (quick or self._lies_in_chaos(found))):
             symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
             whole = spread(self.model, motion, settings, tuning)
             slow = Attractor(whole, symmetry, index, slow=True, close_returns=tuning.close_returns)

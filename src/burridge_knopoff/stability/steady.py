@@ -21,6 +21,9 @@ from burridge_knopoff.stability.tuning import TUNING, Tuning
 BATCHES = 6
 EXPONENTS = 3
 
+# Kinds that a closed orbit of which one has seen too little may be given.
+_OPEN = (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED)
+
 # A velocity of this modulus is rounding.
 STANDING = 1e-14
 
@@ -154,18 +157,28 @@ def measure(
     transient : in which the perturbations turn into the directions of the exponents
 
     Where only the error of the largest exponent leaves open whether the motion is chaotic, it is measured in a longer
-    window.
+    window. What may be a torus is followed on for as long as chaos has to last: closed orbits that attract so weakly
+    that no exponent shows it have closed by then.
     """
     found = _measure(model, start, transient, window, settings, tuning)
-    if found is None or found.kind not in (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED):
+    if found is None or found.kind not in _OPEN:
         return found
-    if not found.exponent[0] > settings.zero_exponent:
-        return found
-    longer = _measure(model, start, transient, tuning.longer_window * window, settings, tuning)
-    if longer is None:
-        return found
-    # The returns stay those of the usual window: their number decides how attractors are told apart.
-    return replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+    if found.exponent[0] > settings.zero_exponent:
+        longer = _measure(model, start, transient, tuning.longer_window * window, settings, tuning)
+        if longer is None:
+            return found
+        # The returns stay those of the usual window: their number decides how attractors are told apart.
+        found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+    if found.kind in _OPEN:
+        late = visit(model, found.instant(), tuning.lasting * transient, window, tuning)
+        if late is not None and late.closed(settings.at_speed(model.v).period_tolerance):
+            found = replace(found, kind=closed_kind(judged_distance(model, found.mean_distance), settings))
+    return found
+
+
+def judged_distance(model: Model, mean_distance: float) -> float:
+    """Return the ⟨J⟩ that tells synchrony: end blocks that are not each other's mirror images do not synchronize."""
+    return mean_distance if model.chain.is_mirror_symmetric else math.inf
 
 
 def _measure(
@@ -194,10 +207,9 @@ def _measure(
     settings = settings.at_speed(model.v)
     period = section_period(vars(trajectory), settings)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-    # End blocks that are not each other's mirror images do not synchronize.
-    mean = trajectory.mean_distance if model.chain.is_mirror_symmetric else math.inf
+    mean = judged_distance(model, trajectory.mean_distance)
     kind = motion_kind(mean, period, exponent, error, settings)
-    if kind in (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED) and found.closed(settings.period_tolerance):
+    if kind in _OPEN and found.closed(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
     stopped = trajectory.event_block[trajectory.event_kind == 0]
