@@ -74,7 +74,7 @@ def test_series_along_a_motion(law):
         coefficients = [mpmath.mpf(x) for x in speed]
 
         def along(function):
-            return mpmath.taylor(lambda t: function(mpmath.polyval(coefficients[::-1], t)), 0, len(speed) - 1)
+            return mpmath.taylor(lambda t: function(mpmath.polyval(coefficients, t, asc=True)), 0, len(speed) - 1)
 
         for found, expected in ((value, along(phi)), (slope, along(lambda u: mpmath.diff(phi, u)))):
             scale = max(abs(x) for x in expected)
