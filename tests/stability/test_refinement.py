@@ -22,7 +22,7 @@ def values(monkeypatch):
 
         class Scripted(Search):
             def labels(self, starts, check=True):
-                asked.append((self.model.a, sorted(start.position[1] for start in starts), self.tuning.lasting, check))
+                asked.append((self.model.a, sorted(start.position[1] for start in starts), self.tuning.trials, check))
                 self.attractors = attractors(self.model.a)
 
         monkeypatch.setattr(refinement, "Search", Scripted)

@@ -99,14 +99,21 @@ def test_chaos_has_to_last(add):
     closed, open_still = (Returns(OTHER, ONE, spacing, 0.0) for spacing in (CLOSED, WIDE))
     (first, _), asked = add([chaos], open_still, [0.02], spacing=WIDE)
     assert first.motion is chaos
-    assert asked == [("measure", 1, 400), ("visit", 33, 100), ("captured", 0, TUNING.smallest_radius)]
+    assert asked == [("measure", 1, 400), ("visit", SETTINGS.time_limit, 100), ("captured", 0, TUNING.smallest_radius)]
     (first, _), _ = add([chaos, orbit], closed, [0.02], spacing=WIDE)
-    assert first.motion is orbit
+    assert first.motion.exponent is orbit.exponent
     assert add([chaos], None, [], spacing=WIDE)[0] == []
-    # A closed orbit is none, whatever its exponents, and needs not last; what cannot be measured is nothing.
-    pair, _ = add([chaos], None, [0.02])
-    assert [item.motion.kind for item in pair] == [MotionKind.PERIODIC] * 2
+    # What cannot be measured is nothing.
     assert add([None], None, [])[0] == []
+
+
+@pytest.mark.parametrize("kind", [MotionKind.CHAOTIC, MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
+def test_what_repeats_is_a_closed_orbit_whatever_its_exponents(add, kind):
+    pair, asked = add([motion(kind=kind)], None, [0.02])
+    assert [item.motion.kind for item in pair] == [MotionKind.PERIODIC] * 2
+    assert "visit" not in [name for name, *_ in asked]
+    (as_one,), _ = add([motion(9e-7, kind=kind)], None, [0.02])
+    assert as_one.motion.kind == MotionKind.SYNCHRONIZED
 
 
 def test_what_attracts_as_a_whole_is_a_slow_set(add):
@@ -216,4 +223,4 @@ def test_what_surrounds_an_orbit_is_seen_from_a_push(tell, kind, later, in_chaos
     ((_, start, *times, _),) = (arguments[:5] for arguments in measured)
     assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
     assert times == [TUNING.slow_time, 100 * TUNING.filling]
-    assert [arguments[2:4] for arguments in visited] == [(TUNING.lasting, 100)] * (kind == MotionKind.CHAOTIC)
+    assert [arguments[2:4] for arguments in visited] == [(SETTINGS.time_limit, 100)] * (kind == MotionKind.CHAOTIC)

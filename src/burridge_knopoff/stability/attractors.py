@@ -215,15 +215,15 @@ class Search:
         if motion is None:
             return False
         mirror = self.model.chain.is_mirror_symmetric
-        if motion.kind == MotionKind.CHAOTIC and closed:
+        if closed:
             # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
             mean = judged_distance(self.model, motion.mean_distance)
             motion = replace(motion, kind=closed_kind(mean, self.motion_settings))
         elif motion.kind == MotionKind.CHAOTIC:
-            # Chaos may be a transient of any length: one trajectory has to last.
-            lasting = visit(self.model, found.instant(), tuning.lasting * settings.transient, settings.window, tuning)
-            if lasting is None or lasting.closed(self.tolerance):
-                return lasting is not None and self._add(lasting)
+            # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
+            later = visit(self.model, found.instant(), settings.time_limit, settings.window, tuning)
+            if later is None or later.closed(self.tolerance):
+                return later is not None and self._add(later)
         index = len(self.attractors)
         synchronization_threshold = self.motion_settings.synchronization_threshold
         if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
@@ -264,8 +264,8 @@ class Search:
         around = measure(self.model, start, *times, self.motion_settings, tuning)
         if around is None or around.kind != MotionKind.CHAOTIC:
             return False
-        lasting = visit(self.model, start, tuning.lasting * settings.transient, settings.window, tuning)
-        return lasting is not None and not lasting.closed(self.tolerance)
+        later = visit(self.model, start, settings.time_limit, settings.window, tuning)
+        return later is not None and not later.closed(self.tolerance)
 
     def _add_slow_synchrony(self) -> bool:
         """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.

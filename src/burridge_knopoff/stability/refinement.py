@@ -27,7 +27,7 @@ def refined(left: Search, right: Search, refine: Refine) -> list[Search]:
         return []
     # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
     # that few pushes show whether it attracts; and an ensemble shows whether chaos lasts.
-    tuning = replace(left.tuning, lasting=1, patience=left.tuning.patience // 4, trials=1, shrinking=16.0)
+    tuning = replace(left.tuning, patience=left.tuning.patience // 4, trials=1, shrinking=16.0)
     settings = replace(left.settings, pushes=min(left.settings.pushes, tuning.push_group))
     before, after = outlines(left.attractors, tuning), outlines(right.attractors, tuning)
     scale = left.model.scale

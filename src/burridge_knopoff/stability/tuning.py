@@ -26,8 +26,8 @@ class Tuning:
     #: Window, in that of the settings, of a motion that is not a closed orbit: near a resonance half of a torus looks
     #: like a set of its own until it has filled.
     filling: int = 4
-    #: Transients that chaos has to last for, from one state: at the default settings about 100 000 time units, ten
-    #: times as long as a run of the paper.
+    #: Transients for which what looks like a torus is followed, to see whether it closes: at the default settings about
+    #: 100 000 time units, ten times as long as a run of the paper.
     lasting: int = 33
     #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
     #: 0.001 is then beyond its error.
