@@ -59,6 +59,7 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, "synchronization.edge", "chaos.edge", "judge: 'chaos.edge_of_synchrony' is not allowed"),
         (EDGE, ", loose: 0.01", "", "parameters.loose: missing; needed by synchronization.edge_of_synchrony"),
         (EDGE, "loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, upper"),
+        (EDGE, "upper:", "uper:", "parameters.uper: unknown key (did you mean upper?); allowed here: initial, upper"),
         (EDGE, "tolerance: 0.005", "tolerance: -1", "tolerance: -1 is not allowed"),
         (EDGE, "upper: true", "upper: 1", "upper: 1 is not allowed"),
         (EDGE, "initial: minus", "initial: middle", "initial: middle is not allowed: minus | plus"),

@@ -77,7 +77,7 @@ BAD = [
     ({"transient": 0}, ["transient: 0", "> 0"]),
     ({"transient": NAN}, ["transient: nan"]),
     ({"window": 0}, ["window: 0"]),
-    ({"window": None, "windows": 10}, ["windows: unknown key"]),
+    ({"window": None, "windows": 10}, ["windows: unknown key (did you mean window?); allowed here: a, "]),
     ({"batches": 1}, ["batches: 1"]),
     ({"batches": 7.0}, ["batches: 7.0", "whole number"]),
     ({"window": 10**400}, ["window: 1000"]),

@@ -28,7 +28,7 @@ from burridge_knopoff.claims.verdict import (
     untestable,
 )
 from burridge_knopoff.model import ranges
-from burridge_knopoff.model.fields import FOLLOWS, Field, Keys
+from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, unknown_key
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text, Whole, refusal
 from burridge_knopoff.provenance.files import display_path
@@ -152,7 +152,7 @@ def _claim(name: str, item: Mapping[str, Any]) -> Claim:
     place = f"{name}.parameters"
     for key in parameters:
         if key not in expected:
-            raise ValueError(f"{place}.{key}: unknown key; allowed here: {', '.join(expected)}")
+            raise unknown_key(place, key, list(expected))
     for key, kind in expected.items():
         if key not in parameters:
             raise ValueError(f"{place}.{key}: missing; needed by {item['judge']}")

@@ -11,8 +11,9 @@ know of it.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from burridge_knopoff.model.ranges import Range, joined
@@ -41,7 +42,7 @@ class Keys(Range):
             return None
         for name in value:
             if name not in self.fields:
-                raise ValueError(f"{joined(key, name)}: unknown key; allowed here: {', '.join(sorted(self.fields))}")
+                raise unknown_key(key, name, sorted(self.fields))
         values = {}
         for name, field in self.fields.items():
             given = value.get(name, field.default)
@@ -53,6 +54,13 @@ class Keys(Range):
 
     def __str__(self) -> str:
         return f"{{{', '.join(self.fields)}}}"
+
+
+def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
+    """Return the error of a key that is not known: where it stands, what may be meant, what is allowed."""
+    meant = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
+    hint = f" (did you mean {meant[0]}?)" if meant else ""
+    return ValueError(f"{joined(place, name)}: unknown key{hint}; allowed here: {', '.join(allowed)}")
 
 
 _KNOWN: dict[type, Mapping[str, Field]] = {}

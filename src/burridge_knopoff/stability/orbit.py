@@ -1,4 +1,4 @@
-"""Periodic orbits on which the outer blocks of three stick once a period, as fixed points of the return map.
+"""Periodic orbits on which the end blocks of three stick once a period, as fixed points of the return map.
 
 An orbit is represented by its state in the middle of the time in which blocks 1 and 3 both stick, the reference
 instant. Their stops and starts are far from either end of a period, so that the flow over a fixed time is smooth there.
@@ -48,7 +48,7 @@ class OrbitError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of three blocks on which each outer block stops once a period.
+    """A periodic orbit of three blocks on which each end block stops once a period.
 
     reference : the state in the middle, to a tenth of it, of the time in which blocks 1 and 3 both stick
     residual : max norm of the state one period later minus the reference state
@@ -135,7 +135,7 @@ def find_orbit(
 
     directions : in which the state may be changed: SYMMETRIC_DIRECTIONS or ALL_DIRECTIONS
 
-    Raises OrbitError if none is found to within TOLERANCE, or if one outer block stops more than once a period.
+    Raises OrbitError if none is found to within TOLERANCE, or if one end block stops more than once a period.
     """
     for _ in range(ATTEMPTS):
         state, period = solve(model, guess, period, directions)
@@ -203,7 +203,7 @@ def _middle(orbit: Orbit) -> float:
     Raises OrbitError unless both stop exactly once a period.
     """
     if any(len(orbit.times(block, kind)) != 1 for block in (0, 2) for kind in (0, 1)):
-        raise OrbitError(f"a = {orbit.model.a!r}: an outer block stops more than once a period, or not at all")
+        raise OrbitError(f"a = {orbit.model.a!r}: an end block stops more than once a period, or not at all")
     start = max(orbit.times(block, 0)[0] for block in (0, 2)) - orbit.period
     end = min(orbit.times(block, 1)[0] for block in (0, 2))
     middle = 0.5 * (start + end)
