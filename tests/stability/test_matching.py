@@ -22,19 +22,30 @@ def followed(found, memory):
     return tuple([row.tolist() for row in values] for values in numbers)
 
 
-def test_a_set_is_as_near_as_the_nearer_of_two_directions():
+def test_a_set_is_as_near_as_two_directions_tell():
     """An orbit on a torus is near it, although most of the torus is not near the orbit."""
     torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
     one, other = (Outline(item, 1000) for item in (torus, orbit))
-    assert one.distances(other, 1.0) == pytest.approx((0.0, 0.0))
-    assert other.distances(one, 1.0) == pytest.approx((0.0, 0.0))
+    assert one.distances(other, 1.0) == pytest.approx(np.array([[0.0, 0.5]] * 2))
+    assert other.distances(one, 1.0) == pytest.approx(np.array([[0.0, 0.5]] * 2))
     far = Outline(at(0.5, 0.8), 1000)
-    assert far.distances(other, 1.0)[0] == pytest.approx(0.0)
+    assert far.distances(other, 1.0)[0] == pytest.approx([0.0, 0.3])
     # By the share of the returns that lie near: the last one of two does not.
-    assert Outline(at(0.9, 0.8), 1000).distances(other, 0.0)[0] == pytest.approx(0.3)
+    assert Outline(at(0.9, 0.8), 1000).distances(other, 0.0)[0] == pytest.approx([0.3, 0.3])
     # Block 1 of one and block 3 of the other are ahead: mirror images.
     left, right = (Outline(item, 1000) for item in pair(0.0, 0.2))
-    assert left.distances(right, 1.0) == pytest.approx((0.2, 0.0))
+    assert left.distances(right, 1.0) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
+
+
+def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
+    """From each chaotic set to the next it is farther than from an orbit to any of them."""
+    here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
+    before = outlines([at(*here, partner=0), at(0.041, partner=1)])
+    after = outlines([at(0.042, partner=0), at(*there, partner=1)])
+    assert matched(before, after, 1.0) == {0: 1, 1: 0}
+    # Alone each may follow the other.
+    assert matched({0: before[0]}, {0: after[0]}, 1.0) == {0: 0}
+    assert matched({1: before[1]}, {1: after[1]}, 1.0) == {1: 1}
 
 
 def test_returns_are_thinned_out_evenly():

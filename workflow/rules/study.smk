@@ -59,15 +59,15 @@ CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
 OVERRIDES = {} if IMPORTED else workflow.config_settings.config
 
 try:
-    CLAIMS_FILE = ROOT / "config/claims.yaml"
-    read_claims(CLAIMS_FILE, picture_names(PAPER_STATES))
-    CLAIMS = read_yaml(CLAIMS_FILE)
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
     WRITTEN = config if IMPORTED else read_config(CONFIG_FILE)
     GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
     RESULTS = f"results/{STUDY.name}"
+    CLAIMS_FILE = ROOT / "config/claims.yaml"
+    read_claims(CLAIMS_FILE, picture_names({*PAPER_STATES, *STUDY.initial}))
+    CLAIMS = read_yaml(CLAIMS_FILE)
     # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)

@@ -45,20 +45,18 @@ class Outline:
         """The same of the mirror image."""
         return _thinned(self.attractor.motion.mirror_returns, self.points)
 
-    def distances(self, other: Outline, share: float, bound: float = np.inf) -> tuple[float, float]:
-        """Return how far the set, and its mirror image, is from another: the lesser of both directed distances.
+    def distances(self, other: Outline, share: float, bound: float = np.inf) -> np.ndarray:
+        """Return how far the set, and its mirror image, is from another: both directed distances, the lesser first.
 
-        share : of the returns that must lie near the other set
+        Shape (2, 2); share : of the returns that must lie near the other set
         bound : what is farther may be given as infinitely far
-
-        An orbit that lies on a torus, or a window in the midst of chaos, is near it although most of that is not near
-        the orbit: so the lesser one tells what follows what along a.
         """
-        own = min(distance(self.own, other.tree, share, bound), distance(other.own, self.tree, share, bound))
-        if not len(self.mirrored) or not len(other.mirrored):
-            return own, np.inf
-        pairs = (self.mirrored, other.tree), (other.mirrored, self.tree)
-        return own, min(distance(*pair, share, bound) for pair in pairs)
+        found = np.full((2, 2), np.inf)
+        found[0] = distance(self.own, other.tree, share, bound), distance(other.own, self.tree, share, bound)
+        if len(self.mirrored) and len(other.mirrored):
+            pairs = (self.mirrored, other.tree), (other.mirrored, self.tree)
+            found[1] = [distance(*pair, share, bound) for pair in pairs]
+        return np.sort(found, axis=1)
 
 
 def _thinned(returns: np.ndarray, points: int) -> np.ndarray:
@@ -83,19 +81,25 @@ def matched(
     Synchronized sets match each other, the nearest if there are several, and nothing else: what synchrony turns into
     where it loses its stability is another branch. Of all others those are paired that lie within `same_set` (times the
     scale of the model), so that the distances of all pairs are least in sum.
+
+    An orbit that lies on a torus, or a window in the midst of chaos, is near it although most of that is not near the
+    orbit: so the lesser directed distance tells what may follow what along a. Where an orbit and the chaos around it
+    both go on, the greater one as well tells which is which.
     """
     first, second = list(before), list(after)
     largest = tuning.same_set * scale
-    cost = np.full((len(second), len(first)), largest)
+    cost = np.full((len(second), len(first)), 2.0 * largest)
     for row, column in np.ndindex(cost.shape):
         one, other = after[second[row]], before[first[column]]
         synchronized = [item.attractor.symmetry == Symmetry.SYNCHRONIZED for item in (one, other)]
         if synchronized[0] == synchronized[1]:
-            cost[row, column] = min(largest, *one.distances(other, tuning.near_share, largest))
+            lesser, greater = one.distances(other, tuning.near_share, largest).T
+            near = lesser + np.minimum(greater, largest)
+            cost[row, column] = np.where(lesser < largest, near, 2.0 * largest).min()
         if all(synchronized):
-            cost[row, column] -= 2.0 * largest
+            cost[row, column] -= 4.0 * largest
     pairs = zip(*linear_sum_assignment(cost), strict=True)
-    return {second[row]: first[column] for row, column in pairs if cost[row, column] < largest}
+    return {second[row]: first[column] for row, column in pairs if cost[row, column] < 2.0 * largest}
 
 
 def differing(
@@ -161,7 +165,7 @@ def _side(outline: Outline, before: tuple[float, Outline, int] | None, tuning: T
     """Return the side of the first of a mirror pair: that of the nearer one of the pair before it, if there is one."""
     if before is None or before[2] == 0:
         return _orientation(outline.attractor)
-    own, mirrored = outline.distances(before[1], tuning.near_share)
+    own, mirrored = outline.distances(before[1], tuning.near_share)[:, 0]
     return before[2] if own <= mirrored else -before[2]
 
 
