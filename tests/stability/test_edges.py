@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability import following
+from burridge_knopoff.stability import edges, following
 from burridge_knopoff.stability.edge_kind import EdgeKind
 from burridge_knopoff.stability.edges import locate_edges
 from burridge_knopoff.stability.following import Following, follow
@@ -90,6 +90,12 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing(famil
     assert found.high_end.after.orbit.signature in ((1, 1, 0), (0, 1, 1))
     assert np.abs(found.high_end.before.multipliers.whole[0]) < 0.5
     assert np.abs(found.high_end.after.multipliers.whole[0]) > 1.3
+
+
+def test_what_branches_off_joins_only_where_it_is_near(families):
+    """At the root of a multiplier's function an orbit far from any simpler one is at a fold."""
+    (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
+    assert edges._kind(point, (EdgeKind.FOLD, "keeping")) == EdgeKind.FOLD
 
 
 def test_stable_and_unstable_orbits_meet_where_they_graze(six):
