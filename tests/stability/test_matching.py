@@ -18,7 +18,7 @@ def pair(place, ahead, mean=0.1):
 
 def followed(found, memory):
     """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
-    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, memory, 1.0)
+    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, 1.0)
     return tuple([row.tolist() for row in values] for values in numbers)
 
 
@@ -78,7 +78,7 @@ def test_synchrony_is_followed_by_synchrony_alone():
 def test_several_synchronized_attractors_are_several_branches():
     one, other = (at(place, symmetry=SYNCHRONIZED, mean_distance=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
     swapped = [replace(other, partner=0), replace(one, partner=1)]
-    branch, side = branches([0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], 0.1, 1.0)
+    branch, side = branches([0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], range(3), 0.1, 1.0)
     assert [row.tolist() for row in branch] == [[0, 1], [1, 0], [1]]
     assert not np.concatenate(side).any()
 
@@ -103,6 +103,21 @@ def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     assert followed([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
     # Where nothing is nothing is remembered wrongly.
     assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
+
+
+def test_what_does_not_change_keeps_its_number_though_it_is_not_looked_at_in_between():
+    """At 0.2 lies a value put in between: only what changes is followed there, and it lies near what does not."""
+    still, again = (at(place, partner=0, section_period=4) for place in (0.0, 0.002))
+    new = at(0.004, partner=1, section_period=7)
+    alone = replace(new, partner=0)
+    for between, expected in (
+        ([alone], [[1], [2], [1, 2]]),
+        # What a trajectory has left for is known by its features.
+        ([again], [[1], [1], [1, 2]]),
+        ([again, new], [[1], [1, 2], [1, 2]]),
+    ):
+        numbers, _ = branches([0.1, 0.2, 0.3], [[still], between, [again, new]], [0, 2], 0.3, 1.0)
+        assert [row.tolist() for row in numbers] == expected
 
 
 def test_branches_are_numbered_by_their_mean_distance():

@@ -102,12 +102,14 @@ def continue_attractors(
     # At the ends of the grid nothing follows.
     first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
     width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
+    grid = [whole.index(search) for search in searches]
+    values, reach = [search.model.a for search in whole], tuning.remembered * width
     return Continuation(
         [search.model for search in whole],
-        [whole.index(search) for search in searches],
+        grid,
         attractors,
         lived,
-        *branches([search.model.a for search in whole], attractors, tuning.remembered * width, models[0].scale, tuning),
+        *branches(values, attractors, grid, reach, models[0].scale, tuning),
         [*(step.upward for step in steps), last],
         [first, *(step.downward for step in steps)],
         samples,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -102,12 +103,19 @@ def matched(
     return {second[row]: first[column] for row, column in pairs if cost[row, column] < 2.0 * largest}
 
 
+def unchanged(
+    before: Mapping[int, Outline], after: Mapping[int, Outline], scale: float, tuning: Tuning = TUNING
+) -> dict[int, int]:
+    """Return {key in `after`: key in `before`} of the sets that are one, and of one kind, symmetry and period."""
+    found = matched(before, after, scale, tuning)
+    return {new: old for new, old in found.items() if _features(before[old]) == _features(after[new])}
+
+
 def differing(
     before: Mapping[int, Outline], after: Mapping[int, Outline], scale: float, tuning: Tuning = TUNING
 ) -> tuple[dict[int, Outline], dict[int, Outline]]:
     """Return those of both sets that have no counterpart in the other, or one of another kind, symmetry or period."""
-    found = matched(before, after, scale, tuning)
-    same = {new: old for new, old in found.items() if _features(before[old]) == _features(after[new])}
+    same = unchanged(before, after, scale, tuning)
     return (
         {k: item for k, item in before.items() if k not in same.values()},
         {k: item for k, item in after.items() if k not in same},
@@ -120,28 +128,39 @@ def _features(outline: Outline) -> tuple[int, int, int]:
 
 
 def branches(
-    a: Sequence[float], attractors: Sequence[Sequence[Attractor]], reach: float, scale: float, tuning: Tuning = TUNING
+    a: Sequence[float],
+    attractors: Sequence[Sequence[Attractor]],
+    grid: Sequence[int],
+    reach: float,
+    scale: float,
+    tuning: Tuning = TUNING,
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return the branch and the side of each attractor at each a.
 
-    a : ascending; reach : for how far in a an attractor that has vanished is remembered
-    scale : of the model, see `Model.scale`
+    a : ascending; grid : where in it all attractors are known: in between are those only that change from one of these
+        values to the next
+    reach : for how far in a an attractor that has vanished is remembered; scale : of the model, see `Model.scale`
 
     The two of a mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images
     have side 0. Branch 0 is the synchronized attractor, the first one found if there are several; the others are
     numbered from 1 in the order of their first a, and of ⟨J⟩ there.
     """
-    branch_of, side_of = [], []
+    branch_of: list[np.ndarray] = []
+    side_of: list[np.ndarray] = []
     seen: dict[int, tuple[float, Outline, int]] = {}
+    shown = [outlines(here, tuning) for here in attractors]
+    next_in_grid = dict(pairwise(grid))
+    held: dict[int, int] = {}
     following = 1
-    for value, here in zip(a, attractors, strict=True):
-        now = outlines(here, tuning)
-        near = {n: (where, item) for n, (where, item, _) in seen.items() if where >= value - reach}
-        last = max((where for where, _ in near.values()), default=value)
-        found = matched({n: item for n, (where, item) in near.items() if where == last}, now, scale, tuning)
-        lost = {n: item for n, (where, item) in near.items() if where < last}
-        left = {i: item for i, item in now.items() if i not in found}
-        found |= matched({n: item for n, item in lost.items() if n not in found.values()}, left, scale, tuning)
+    for place, (value, here, now) in enumerate(zip(a, attractors, shown, strict=True)):
+        kept = {n: seen[n][1] for n in held.values()}
+        found = dict(held) if place in grid else unchanged(kept, now, scale, tuning)
+        near = {n: item for n, item in seen.items() if item[0] >= value - reach and n not in held.values()}
+        last = max((where for where, *_ in near.values()), default=value)
+        for recent in (True, False):
+            old = {n: item for n, (where, item, _) in near.items() if (where == last) == recent}
+            old = {n: item for n, item in old.items() if n not in found.values()}
+            found |= matched(old, {i: item for i, item in now.items() if i not in found}, scale, tuning)
         branch, side = np.full(len(here), UNDETERMINED), np.zeros(len(here), dtype=int)
         for i in sorted(now, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
             if i in found:
@@ -156,6 +175,11 @@ def branches(
                 side[i] = _side(now[i], seen.get(number), tuning)
                 branch[partner], side[partner] = number, -side[i]
             seen[number] = (value, now[i], int(side[i]))
+        if place in next_in_grid:
+            # What does not change up to the next value of the grid is hardly looked at in between, and leaves its
+            # number to no other set there.
+            same = unchanged(now, shown[next_in_grid[place]], scale, tuning)
+            held = {new: int(branch[old]) for new, old in same.items()}
         branch_of.append(branch)
         side_of.append(side)
     return branch_of, side_of
