@@ -48,7 +48,7 @@ class PeriodicOrbit:
     return_time : after which the state returns: the period, or half of it for an orbit that is its own mirror image
     residual : max norm of the state after a return minus the reference state
     monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
-    events : time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period
+    event_rows : `events` as an array, shape (events, 3): thousands of orbits are kept of a branch
 
     Times are in units of 1/ω, states in those of `Model`.
 
@@ -66,7 +66,12 @@ class PeriodicOrbit:
     return_time: float
     residual: float
     monodromy: np.ndarray
-    events: tuple[tuple[float, int, int], ...]
+    event_rows: np.ndarray
+
+    @property
+    def events(self) -> list[tuple[float, int, int]]:
+        """Time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period."""
+        return [(time, int(block), int(kind)) for time, block, kind in self.event_rows.tolist()]
 
     @property
     def a(self) -> float:
@@ -81,7 +86,8 @@ class PeriodicOrbit:
     @cached_property
     def signature(self) -> tuple[int, ...]:
         """How often each block stops in a period."""
-        return tuple(sum((block, kind) == (i, 0) for _, block, kind in self.events) for i in range(self.model.blocks))
+        stopped = self.event_rows[self.event_rows[:, 2] == 0, 1].astype(int)
+        return tuple(np.bincount(stopped, minlength=self.model.blocks).tolist())
 
     @cached_property
     def mean_distance(self) -> float:
@@ -148,7 +154,7 @@ def solve_return(
         if size <= ENOUGH or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
             if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
                 break
-            return PeriodicOrbit(model, symmetry, here, time, residual, changed, _events(mapping, time))
+            return PeriodicOrbit(model, symmetry, here, time, residual, changed, _event_rows(mapping, time))
         if iteration > FIRST and size > last:
             break
         last = size
@@ -178,12 +184,12 @@ def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> P
     mapping = ReturnMap(model, symmetry)
     end, changed = mapping.with_tangent(state, time)
     residual = float(np.abs(end.vector() - state.vector()).max())
-    return PeriodicOrbit(model, symmetry, state, time, residual, changed, _events(mapping, time))
+    return PeriodicOrbit(model, symmetry, state, time, residual, changed, _event_rows(mapping, time))
 
 
 def safe_offset(orbit: PeriodicOrbit) -> float:
     """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe where it is."""
-    return _safe_offset([event[0] for event in orbit.events], orbit.period)
+    return _safe_offset(orbit.event_rows[:, 0].tolist(), orbit.period)
 
 
 def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
@@ -210,10 +216,10 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
         )
     mapping = ReturnMap(model, symmetry)
     mapping.end(guess, return_time)
-    events = _events(mapping, return_time)
+    events = _event_rows(mapping, return_time)
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
     # The guess may lie at a stop itself, which rounding puts before or after it.
-    times = sorted([*(event[0] for event in events), return_time, period])
+    times = sorted([*events[:, 0].tolist(), return_time, period])
     guess = flow(model, guess, _safe_offset(times, period))[0].instant()
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
@@ -221,12 +227,12 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     return solve_return(model, guess, return_time, symmetry)
 
 
-def _events(mapping: ReturnMap, time: float) -> tuple[tuple[float, int, int], ...]:
-    """Return the events of a whole period, of which a return has just been made."""
+def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:
+    """Return the events of a whole period, of which a return has just been made, shape (events, 3)."""
     events, last = mapping.events(), mapping.model.blocks - 1
     if mapping.symmetry != Symmetry.SYMMETRIC:
-        return events
-    return events + tuple((time + at, last - block, kind) for at, block, kind in events)
+        return np.reshape(events, (-1, 3))
+    return np.reshape([*events, *((time + at, last - block, kind) for at, block, kind in events)], (-1, 3))
 
 
 def _safe_offset(times: list[float], period: float) -> float:
