@@ -16,7 +16,7 @@ from burridge_knopoff.stability.attractor import Attractor, Symmetry, close_retu
 from burridge_knopoff.stability.branch import leading_modulus
 from burridge_knopoff.stability.family import synchronized_orbit
 from burridge_knopoff.stability.labels import UNDETERMINED, label
-from burridge_knopoff.stability.motion import MotionKind, closed_kind
+from burridge_knopoff.stability.motion import MotionKind, closed_kind, judged_distance
 from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
 from burridge_knopoff.stability.sampling import sampled_states
@@ -24,7 +24,6 @@ from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, 
 from burridge_knopoff.stability.steady import (
     Returns,
     is_near,
-    judged_distance,
     least_distance,
     lies_on,
     measure,
@@ -217,7 +216,7 @@ class Search:
         mirror = self.model.chain.is_mirror_symmetric
         if closed:
             # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
-            mean = judged_distance(self.model, motion.mean_distance)
+            mean = judged_distance(motion.mean_distance, mirror)
             motion = replace(motion, kind=closed_kind(mean, self.motion_settings))
         elif motion.kind == MotionKind.CHAOTIC:
             # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.

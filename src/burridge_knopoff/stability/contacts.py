@@ -88,7 +88,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
 
 def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
     """Return the shortest time from an event of a kind to the next one of the block; infinite if there is none."""
-    own = [(time, event) for time, moved, event in orbit.events if moved == block]
+    own = orbit.events_of(block)
     following = [*own[1:], *((time + orbit.period, event) for time, event in own[:1])]
     return min(
         (later - time for (time, event), (later, _) in zip(own, following, strict=True) if event == kind),
@@ -99,7 +99,7 @@ def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
 def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield for each block whether it sticks at each time, and how many of its events are over."""
     for block in range(orbit.model.blocks):
-        own = [(at, kind) for at, moved, kind in orbit.events if moved == block]
+        own = orbit.events_of(block)
         over = np.searchsorted([at for at, _ in own], time)
         first = 1 - own[0][1] if own else 1 - int(orbit.reference.stuck[block])
         yield np.array([first, *(kind for _, kind in own)])[over] == 0, over

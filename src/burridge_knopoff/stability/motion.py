@@ -42,6 +42,9 @@ class MotionKind(IntEnum):
 #: one value of a shows, another beside it need not.
 REGULAR = (MotionKind.PERIODIC, MotionKind.QUASIPERIODIC)
 
+#: Kinds that a closed orbit of which one has seen too little may be given.
+OPEN = (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED)
+
 
 def same_result(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Tell of which kinds of motion two are one result: synchrony, other regular motion, or chaos."""
@@ -130,6 +133,11 @@ def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSett
     return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * error)
 
 
+def judged_distance(mean_distance: float, symmetric: bool) -> float:
+    """Return the ⟨J⟩ that tells synchrony: end blocks that are not each other's mirror images do not synchronize."""
+    return mean_distance if symmetric else math.inf
+
+
 def closed_kind(mean_distance: float, settings: MotionSettings) -> MotionKind:
     """Return the kind of a closed orbit with that ⟨J⟩."""
     return MotionKind.SYNCHRONIZED if mean_distance < settings.synchronization_threshold else MotionKind.PERIODIC
@@ -216,8 +224,7 @@ def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSetti
     kind = MotionKind.UNDETERMINED
     # A number in a file, a word in a trajectory.
     if run["status"] in (Status.COMPLETED, Status.COMPLETED.name.lower()):
-        # End blocks that are not each other's mirror images do not synchronize.
-        mean = float(run["mean_distance"]) if symmetric else math.inf
+        mean = judged_distance(float(run["mean_distance"]), symmetric)
         kind = motion_kind(mean, period, exponent, error, settings)
         upward = run["crossing_velocity"][run["crossing_direction"] > 0]
         if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):

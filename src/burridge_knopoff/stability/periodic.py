@@ -73,6 +73,11 @@ class PeriodicOrbit:
         """Time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period."""
         return [(time, int(block), int(kind)) for time, block, kind in self.event_rows.tolist()]
 
+    def events_of(self, block: int) -> list[tuple[float, int]]:
+        """Return time and kind of the events of one block."""
+        rows = self.event_rows[self.event_rows[:, 1] == block]
+        return [(time, int(kind)) for time, _, kind in rows.tolist()]
+
     @property
     def a(self) -> float:
         """Friction parameter."""
@@ -100,7 +105,7 @@ class PeriodicOrbit:
 
     def start(self, block: int) -> Instant:
         """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
-        times = [time for time, moved, kind in self.events if (moved, kind) == (block, 0)]
+        times = [time for time, kind in self.events_of(block) if kind == 0]
         if not times:
             raise OrbitError(f"block = {block!r}: it never stops on this orbit")
         state = flow(self.model, self.reference, times[0])[0].instant()

@@ -14,15 +14,19 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import MotionKind, closed_kind, motion_kind, section_period
+from burridge_knopoff.stability.motion import (
+    OPEN,
+    MotionKind,
+    closed_kind,
+    judged_distance,
+    motion_kind,
+    section_period,
+)
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 BATCHES = 6
 EXPONENTS = 3
-
-# Kinds that a closed orbit of which one has seen too little may be given.
-_OPEN = (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED)
 
 # A velocity of this modulus is rounding.
 STANDING = 1e-14
@@ -157,11 +161,11 @@ def measure(
     transient : in which the perturbations turn into the directions of the exponents
 
     Where only the error of the largest exponent leaves open whether the motion is chaotic, it is measured in a longer
-    window. What may be a torus is followed on for as long as chaos has to last: closed orbits that attract so weakly
-    that no exponent shows it have closed by then.
+    window. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
+    exponent shows it have closed by then.
     """
     found = _measure(model, start, transient, window, settings, tuning)
-    if found is None or found.kind not in _OPEN:
+    if found is None or found.kind not in OPEN:
         return found
     if found.exponent[0] > settings.zero_exponent:
         longer = _measure(model, start, transient, tuning.longer_window * window, settings, tuning)
@@ -169,16 +173,13 @@ def measure(
             return found
         # The returns stay those of the usual window: their number decides how attractors are told apart.
         found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
-    if found.kind in _OPEN:
+    if found.kind in OPEN:
         late = visit(model, found.instant(), tuning.lasting * transient, window, tuning)
         if late is not None and late.closed(settings.at_speed(model.v).period_tolerance):
-            found = replace(found, kind=closed_kind(judged_distance(model, found.mean_distance), settings))
+            found = replace(
+                found, kind=closed_kind(judged_distance(found.mean_distance, model.chain.is_mirror_symmetric), settings)
+            )
     return found
-
-
-def judged_distance(model: Model, mean_distance: float) -> float:
-    """Return the ⟨J⟩ that tells synchrony: end blocks that are not each other's mirror images do not synchronize."""
-    return mean_distance if model.chain.is_mirror_symmetric else math.inf
 
 
 def _measure(
@@ -207,9 +208,9 @@ def _measure(
     settings = settings.at_speed(model.v)
     period = section_period(vars(trajectory), settings)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-    mean = judged_distance(model, trajectory.mean_distance)
+    mean = judged_distance(trajectory.mean_distance, model.chain.is_mirror_symmetric)
     kind = motion_kind(mean, period, exponent, error, settings)
-    if kind in _OPEN and found.closed(settings.period_tolerance):
+    if kind in OPEN and found.closed(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
     stopped = trajectory.event_block[trajectory.event_kind == 0]

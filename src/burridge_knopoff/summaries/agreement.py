@@ -12,7 +12,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.stability.motion import REGULAR, MotionKind
+from burridge_knopoff.stability.motion import OPEN, REGULAR, MotionKind
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
@@ -129,7 +129,7 @@ def _fill_settled(
         )
         there = known & (np.abs(mean - mine) <= allowed)
         kind, (_, finer) = values["kind"][law, initial], reached(own, *names, "kind")
-        told = there & np.isin(finer, REGULAR) & np.isin(kind, (MotionKind.UNDETERMINED, MotionKind.QUASIPERIODIC))
+        told = there & np.isin(finer, REGULAR) & np.isin(kind, OPEN)
         told |= known & (finer == MotionKind.SYNCHRONIZED) & (mine < attractors.attrs["resolution"])
         kind[...] = np.where(told, finer, kind)
         known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED)
