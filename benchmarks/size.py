@@ -18,7 +18,7 @@ from pathlib import Path
 
 from measure import print_table, verdict
 from process import BIN, ONE_THREAD, SNAKEMAKE, children_cpu
-from stages import MB, rules_of
+from stages import rules_of
 
 MEMORY_LIMIT_MB = 1500.0
 COST_LIMIT = 1.3
@@ -89,7 +89,7 @@ def measure(points: int, folder: Path, cores: int) -> tuple[list[object], dict[s
     check = run([str(BIN / "bk"), "check", "results/size"], folder)
     size = sum(path.stat().st_size for path in folder.joinpath("results/size/points").rglob("*.nc")) / 1e6
     rules: dict[str, tuple[float, float]] = defaultdict(lambda: (0.0, 0.0))
-    rules.update((rule.name, (rule.cpu, rule.memory * MB)) for rule in rules_of(folder / "results/size"))
+    rules.update((rule.name, (rule.cpu, rule.memory)) for rule in rules_of(folder / "results/size"))
     row = [points, f"{plan.wall:.1f}", f"{whole.wall / 60:.1f}", f"{whole.cpu / points:.3f}", f"{whole.memory:.0f}"]
     row += [f"{again.wall:.1f}", f"{check.wall:.1f}", f"{size:.0f}"]
     print(f"{points} points: {whole.wall:.0f} s", file=sys.stderr)

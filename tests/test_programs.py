@@ -1,0 +1,29 @@
+"""The programs beside the package, of benchmarks/ and docs/, can be started: what they import is there."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PEERS = ("heyoka", "parso", "cosmic_ray", "sphinx")
+
+START = """
+import importlib, sys
+from pathlib import Path
+for path in map(Path, sys.argv[1:]):
+    sys.path.insert(0, str(path.parent))
+    try:
+        importlib.import_module(path.stem)
+    except ModuleNotFoundError as error:
+        print(path.stem, error.name)
+"""
+
+
+@pytest.mark.parametrize("folder", ["benchmarks", "docs"])
+def test_every_program_finds_what_it_imports(folder):
+    paths = map(str, sorted((ROOT / folder).glob("*.py")))
+    found = subprocess.run([sys.executable, "-c", START, *paths], capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stderr
+    assert [line for line in found.stdout.splitlines() if not line.endswith(PEERS)] == []
