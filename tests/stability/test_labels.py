@@ -55,4 +55,4 @@ def test_patience_is_spared_where_a_sample_comes_early(tell, came, expected):
     with shared_out(1) as each:
         (search,), _ = fractions.fraction_labels([search], "moving", each)
     assert [item.patience for item in search.attractors] == [expected, 0.0]
-    assert [len(position) for _, _, position, *_ in asked] == [20, 50]
+    assert [(len(position), limit) for _, _, position, _, _, limit in asked] == [(20, 20_000.0), (50, 200_000.0)]

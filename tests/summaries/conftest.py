@@ -16,7 +16,7 @@ def one_law(monkeypatch):
     """
 
     def label(model, found, starts, time_limit):
-        assert time_limit == 123.0
+        assert time_limit == 1230.0
         reached = [1 if len(found) else -1] * len(starts)
         # The states under one convention of start, then those under the other.
         for k in (0, len(starts) // 2):

@@ -21,7 +21,7 @@ def ruled(monkeypatch):
     """States are decided by a rule, at a time of 100 + U_1."""
 
     def label_states(model, attractors, position, velocity, *, start, time_limit, threads):
-        assert (start, time_limit, threads) == ("moving", SEARCH.time_limit, 1)
+        assert (start, time_limit, threads) == ("moving", SEARCH.label_limit, 1)
         assert (position[:, 1] == PAPER_STATES["minus"].position[1]).all()
         assert (velocity == PAPER_STATES["minus"].velocity).all()
         return rule(position), 100.0 + position[:, 0]
@@ -93,7 +93,7 @@ def test_maps_are_put_together_and_told(ruled):
     assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
     assert (found["law"].values.tolist(), found["a"].values.tolist()) == ([1, 0], [0.1, 0.3])
     assert found["decision_time"].values[0, 2].tolist() == [99.5, 100.5, 101.5, 102.5]
-    expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "time_limit": 7.0}
+    expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "label_limit": 7.0}
     assert {key: found.attrs[key] for key in expected} == expected
     assert [found.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
     shares = "undetermined 25.00 %, synchronized 25.00 %, branch 5 (-) 50.00 %"

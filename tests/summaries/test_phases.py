@@ -23,7 +23,7 @@ def ruled(monkeypatch):
         motion = type("Motion", (), {"instant": staticmethod(lambda: None)})
 
     def label_states(model, attractors, position, velocity, *, time_limit):
-        assert time_limit == SEARCH.time_limit
+        assert time_limit == SEARCH.label_limit
         x = (position - model.sliding_offset)[:, 0]
         return np.select([x > 0.04, x < -0.4], [0, -1], 2), np.zeros(len(x))
 

@@ -110,12 +110,11 @@ rule basins:
         mem_mb=400,
         runtime=10,
     params:
-        **keys("start"),
+        **keys("start", "attractors"),
         maps=STUDY.basin_maps,
         model=model_config(),
         basins=BASIN_KEYS["maps"],
         state=BASIN_PARAMS["state"],
-        time_limit=STUDY.config["attractors"]["time_limit"],
         sources=sources("basins"),
     message:
         "maps of basins of attraction"

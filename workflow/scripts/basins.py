@@ -6,7 +6,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.stability.settings import BasinSettings
+from burridge_knopoff.stability.settings import BasinSettings, SearchSettings
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries import basins
 from burridge_knopoff.summaries.results import write_results
@@ -19,5 +19,6 @@ maps = [
     (model_of(params.model, law, a, blocks), tiles[n * plane.tiles : (n + 1) * plane.tiles], pairs[n])
     for n, (law, a) in enumerate(params.maps)
 ]
-dataset = basins.merge(maps, list(params.model["laws"]), plane, params.time_limit, params.start)
+limit = SearchSettings(**params.attractors).label_limit
+dataset = basins.merge(maps, list(params.model["laws"]), plane, limit, params.start)
 write_results(dataset, basins, snakemake.output)

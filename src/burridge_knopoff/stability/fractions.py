@@ -84,7 +84,7 @@ def _labels(search: Search, first: int, start: str) -> np.ndarray:
     part = _drawn(search, start, slice(first, first + PART))
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)
-    labels, _ = label_together(search.model, search.attractors, *part, search.settings.time_limit)
+    labels, _ = label_together(search.model, search.attractors, *part, search.settings.label_limit)
     return labels
 
 

@@ -95,7 +95,10 @@ class SearchSettings:
         float, TIME, "time for which a settled motion is observed; it grows where a motion settles slowly"
     ] = 3000.0
     time_limit: Annotated[
-        float, TIME, "time by which a trajectory has to reach a known attractor; else it is undetermined"
+        float,
+        TIME,
+        "time by which a trajectory of the search has to reach a known attractor; a state that is counted has ten times"
+        " as long, else it is undetermined",
     ] = 20_000.0
     resolution: Annotated[
         float,
@@ -113,6 +116,14 @@ class SearchSettings:
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+    @property
+    def label_limit(self) -> float:
+        """Time by which a state that is counted has to reach a known attractor, or is undetermined: ten `time_limit`.
+
+        Chaos that lives about as long as a trajectory of the search would leave many states undetermined.
+        """
+        return 10.0 * self.time_limit
 
 
 #: The defaults of a study.

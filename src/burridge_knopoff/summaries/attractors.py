@@ -43,7 +43,7 @@ VARIABLES = {
     "basin_fraction": _V(_SLOT, "f8", "fraction of the sampled initial states that reach the attractor"),
     "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
     "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
-    "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by the time limit"),
+    "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit"),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch"),
     "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
@@ -68,7 +68,7 @@ def one_law(
     values = slot_values(found, found.grid, settings.lifetime, "a")
     values.update(_basins(found, settings.fraction_samples))
     values.update(_steps(found))
-    values.update(_reached(found, initial, settings.time_limit))
+    values.update(_reached(found, initial, settings.label_limit))
     values.update(_sweeps(found))
     coordinates = axes([state.name for state in initial], [model.a for model in models], [])
     del coordinates["law"]
@@ -93,6 +93,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
         "position_box": np.array(settings.position),
         "velocity_box": np.array(settings.velocity),
         **{key: value for key, value in asdict(settings).items() if key not in ("position", "velocity")},
+        "label_limit": settings.label_limit,
     }
 
 
@@ -127,7 +128,7 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _reached(found: Continuation, states: Sequence[InitialState], time_limit: float) -> dict[str, np.ndarray]:
+def _reached(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
     values = empty(VARIABLES, shape, "initial")
@@ -138,7 +139,7 @@ def _reached(found: Continuation, states: Sequence[InitialState], time_limit: fl
             allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
             cases = [(j, n) for j in range(len(STARTS)) for n in allowed]
             starts = [other.begin(states[n], STARTS[j]) for j, n in cases]
-            reached, _ = label(other, found.attractors[place], starts, time_limit)
+            reached, _ = label(other, found.attractors[place], starts, label_limit)
             for (j, n), index in zip(cases, reached, strict=True):
                 if index != UNDETERMINED:
                     values["initial_branch"][i, j, n, k] = found.branch[place][index]

@@ -57,7 +57,7 @@ PAIR_VARIABLES = {
 }
 MAP_VARIABLES = {
     **{name: _V(("map", *_PLANE), item.dtype, item.long_name) for name, item in TILE_VARIABLES.items()},
-    "undetermined_count": _V(("map",), "i4", "states that reach no attractor by the time limit"),
+    "undetermined_count": _V(("map",), "i4", "states that reach no attractor by label_limit"),
     **{name: replace(item, dimensions=("map", *item.dimensions)) for name, item in PAIR_VARIABLES.items()},
 }
 COORDINATES = {
@@ -142,7 +142,7 @@ def _labels(
         position,
         velocity,
         start=start,
-        time_limit=settings.time_limit,
+        time_limit=settings.label_limit,
         threads=basins.threads,
     )
 
@@ -157,12 +157,12 @@ def merge(
     maps: Sequence[tuple[Model, Sequence[xarray.Dataset], xarray.Dataset]],
     laws: Sequence[str],
     basins: BasinSettings,
-    time_limit: float,
+    label_limit: float,
     start: str,
 ) -> xarray.Dataset:
     """Put the maps together, each (model, its tiles in order, its pairs).
 
-    laws : names of the laws of the study, in order; basins, time_limit, start : what the maps were made with
+    laws : names of the laws of the study, in order; basins, label_limit, start : what the maps were made with
     """
     wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
@@ -188,7 +188,7 @@ def merge(
         "plane_velocity": np.array(basins.initial.velocity),
         "first_range": np.array(basins.first_position),
         "last_range": np.array(basins.last_position),
-        "time_limit": time_limit,
+        "label_limit": label_limit,
     }
     return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes, module=__name__)
 

@@ -41,7 +41,7 @@ VARIABLES = {
     "synchronized_high": _V(
         _CELL, "f8", "upper end of its 95 % Wilson interval, undetermined states counted as synchronized"
     ),
-    "undetermined_count": _V(_CELL, "i4", "states that reach no attractor by the time limit"),
+    "undetermined_count": _V(_CELL, "i4", "states that reach no attractor by label_limit"),
 }
 #: What is the same under each law.
 COMMON_VARIABLES = {
@@ -78,7 +78,7 @@ def one_law(
         states = oscillating_states(known.model, amplitude.ravel(), difference.ravel(), common.ravel())
         position, velocity, standing = states
         # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
-        labels, _ = label_states(known.model, known.attractors, position, velocity, time_limit=settings.time_limit)
+        labels, _ = label_states(known.model, known.attractors, position, velocity, time_limit=settings.label_limit)
         values = {"common_phase": common, "standing_count": standing.reshape(shape).sum(axis=2)}
         values |= _reached(known, labels.reshape(shape))
         for name, value in values.items():
@@ -93,7 +93,7 @@ def one_law(
         "v": model.v,
         "contact": model.contact,
         "seed": phases.seed,
-        "time_limit": settings.time_limit,
+        "label_limit": settings.label_limit,
         "slipping_amplitude": slipping_amplitude(model),
     }
     variables = {**VARIABLES, **COMMON_VARIABLES}
@@ -109,7 +109,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
     coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
     attributes = {
-        name: parts[0].attrs[name] for name in ("history", "v", "contact", "seed", "time_limit", "slipping_amplitude")
+        name: parts[0].attrs[name] for name in ("history", "v", "contact", "seed", "label_limit", "slipping_amplitude")
     }
     title = "Initial phases of the end blocks"
     return summary(title, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
