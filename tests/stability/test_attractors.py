@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Settings, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -143,12 +144,9 @@ def test_samples_and_intervals():
     assert abs(position.mean()) < 0.1
     shorter, _ = sample_states(4, 20, (-1.5, 1.5), (0.0, 0.2), 7)
     assert (shorter == position[:20]).all()
-    # Wilson's formula by hand, z = 1.959964.
-    fraction, low, high = fraction_interval(9, 10)
-    z = 1.959963984540054
-    centre = (0.9 + z * z / 20) / (1 + z * z / 10)
-    half = z / (1 + z * z / 10) * np.sqrt(0.9 * 0.1 / 10 + z * z / 400)
-    assert (fraction, low, high) == pytest.approx((0.9, centre - half, centre + half))
+    for hits, count in ((9, 10), (0, 7), (5000, 5000), (1, 3), (1841, 5000)):
+        expected = binomtest(hits, count).proportion_ci(0.95, method="wilson")
+        assert fraction_interval(hits, count) == pytest.approx((hits / count, expected.low, expected.high), abs=1e-15)
     assert np.isnan(fraction_interval(0, 0)).all()
 
 

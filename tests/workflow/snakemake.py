@@ -57,7 +57,7 @@ calls, *others = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
 SNAKEMAKE = f"""{SERVE}
 import subprocess
 import snakemake.cli, snakemake.dag, snakemake.report.html_reporter, snakemake.script
-import netCDF4, numpy, scipy.linalg, scipy.optimize, smart_open, xarray
+import nbformat, netCDF4, numpy, scipy.linalg, scipy.optimize, smart_open, xarray
 from snakemake.benchmark import benchmarked
 def execute_script(self, name, edit=False):
     answers, answering = os.pipe()

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import scipy
+import scipy.special
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.together import new_ensemble
@@ -47,9 +47,8 @@ class Lifetime:
     def interval(self) -> tuple[float, float]:
         """95 % confidence interval of the mean lifetime; its upper end is infinite if no trajectory left."""
         tail = 0.5 * (1.0 - CONFIDENCE)
-        low = 2.0 * self.time / float(scipy.stats.chi2.isf(tail, 2 * self.ends + 2))
-        high = 2.0 * self.time / float(scipy.stats.chi2.ppf(tail, 2 * self.ends)) if self.ends else math.inf
-        return low, high
+        low = self.time / float(scipy.special.gammainccinv(self.ends + 1, tail))
+        return low, self.time / float(scipy.special.gammaincinv(self.ends, tail)) if self.ends else math.inf
 
     def lasts(self, least: float) -> bool:
         """Tell whether the mean lifetime is certain to be above that."""

@@ -6,11 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.stability.motion import MotionKind
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class Change(IntEnum):
