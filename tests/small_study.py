@@ -17,7 +17,7 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, PhaseSettings, Refine, SearchSettings
-from burridge_knopoff.study import Study, load_study
+from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
     all_laws,

@@ -13,8 +13,9 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.study import load_study, read_yaml
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries import mean_distance, points
 from burridge_knopoff.summaries.points import Grid
 

@@ -16,8 +16,8 @@ from typing import Any
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from burridge_knopoff.study import ConfigError
 from burridge_knopoff.study.job_log import failure, interrupted
+from burridge_knopoff.study.yaml_file import ConfigError
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost
 from snakemake_logger_plugin_study.past import write_past

@@ -16,7 +16,7 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.study import Study, all_points
+from burridge_knopoff.study.study import Study, all_points
 
 FILE = Path(__file__).with_name("durations.json")
 SHIPPED: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.study import ConfigError, read_config
+from burridge_knopoff.study.yaml_file import ConfigError, read_config
 
 #: What Snakemake takes for the name of a key.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")

@@ -16,7 +16,7 @@ from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger,
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Range, at_values, by_interval, by_value
 from burridge_knopoff.claims.verdict import content_digest as digest_of
 from burridge_knopoff.claims.verdict import with_error as shown
-from burridge_knopoff.study import ConfigError
+from burridge_knopoff.study.yaml_file import ConfigError
 from tests.claims.said import CLAIMS, PICTURES
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.refused import refused

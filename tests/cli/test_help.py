@@ -4,7 +4,6 @@ import re
 import shlex
 import shutil
 import subprocess
-import sys
 from itertools import pairwise
 
 import pytest
@@ -88,19 +87,3 @@ def test_a_shell_completes_commands_options_and_words(capsys):
     asked = "\n".join([script, ASK, *(f"ask {line}" for line in ANSWERS)])
     answered = subprocess.run(["bash"], input=asked, capture_output=True, text=True, check=True)
     assert answered.stdout.splitlines() == list(ANSWERS.values())
-
-
-@pytest.mark.parametrize(
-    ("package", "arguments"),
-    [("shtab", "completion bash"), ("yaml", "check results/paper"), ("matplotlib", "show plus.nc --plot x.png")],
-)
-def test_a_package_that_is_not_installed_is_named_with_its_extra(folder, package, arguments):
-    known = ["numpy", 'shtab; extra == "study"', 'pyyaml; extra == "study"', 'matplotlib>=3; extra == "study"']
-    code = (
-        f"import sys; from importlib import metadata; metadata.requires = lambda _: {known!r}; "
-        f"sys.modules[{package!r}] = None; from burridge_knopoff.cli import main; sys.exit(main({arguments.split()!r}))"
-    )
-    run = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True)
-    words = f"{package} is not installed: pip install 'burridge-knopoff[study]' brings it"
-    assert (run.returncode, run.stdout) == (2, "")
-    assert run.stderr == f"bk {arguments.split()[0]}: {words}\n"

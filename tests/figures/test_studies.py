@@ -32,7 +32,7 @@ def figures_of(small):
         **dict.fromkeys(("distance", "motion"), ({initial: point},)),
     }
     alone = ["bifurcation", "lyapunov", "agreement", "equilibrium", "solvers", "two_blocks"]
-    taken |= {name: (found[name],) for name in [*alone, *["phases"] * study.has_phases]}
+    taken |= {name: (found[name],) for name in [*alone, *["phases"] * ("phases" in study.stages)]}
     for name, arguments in taken.items():
         yield name, import_module(f"burridge_knopoff.figures.{name}").draw(*arguments)
 

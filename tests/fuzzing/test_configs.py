@@ -18,8 +18,9 @@ from hypothesis import strategies as st
 from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import simulated_law
 from burridge_knopoff.model.fields import Keys
-from burridge_knopoff.study import ConfigError, load_study, read_config
 from burridge_knopoff.study.config import CONFIG
+from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from tests.fuzzing import check_refusal, examples
 
 ROOT = Path(__file__).parents[2]

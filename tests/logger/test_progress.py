@@ -13,8 +13,8 @@ from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
-from burridge_knopoff.study import load_study
 from burridge_knopoff.study.job_log import SILENT
+from burridge_knopoff.study.study import load_study
 from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
 from snakemake_logger_plugin_study.durations import SHIPPED, Durations
 from snakemake_logger_plugin_study.past import write_past

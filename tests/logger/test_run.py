@@ -2,7 +2,7 @@
 
 import pytest
 
-from burridge_knopoff.study import load_study
+from burridge_knopoff.study.study import load_study
 from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, units_of, work_of
 from snakemake_logger_plugin_study.past import read_past, read_record, write_past
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run

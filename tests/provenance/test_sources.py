@@ -172,7 +172,7 @@ def test_the_fingerprint_is_of_the_code(tmp_path):
 
 
 #: Names that are for people and for the display: no script that makes a result uses them.
-LOOKED_UP = ("burridge_knopoff/__init__.py", "study/__init__.py", "running/trajectory.py")
+LOOKED_UP = ("burridge_knopoff/__init__.py", "running/trajectory.py")
 LOOKED_UP += ("cli/__init__.py", "show/picture.py", "show/summary.py")
 LOOKED_UP += tuple(f"scripts/{name}.py" for name in PICKED)
 

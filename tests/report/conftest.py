@@ -14,7 +14,7 @@ from burridge_knopoff.claims.ledger import as_json
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.study import Study
+from burridge_knopoff.study.study import Study
 from tests.small_study import SMALL, STUDIES, run_study
 
 CLAIMS = Path(__file__).parent / "claims.json"

@@ -11,7 +11,8 @@ from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.study import load_study, read_config
+from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.yaml_file import read_config
 from tests.flows import carry, check_events, listed, wave
 from tests.scipy_flow import model_events, scipy_events
 

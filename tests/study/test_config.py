@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.provenance.command import difference
-from burridge_knopoff.study import ConfigError, all_points, load_study, read_config
+from burridge_knopoff.study.study import all_points, load_study
+from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from tests.bad_configs import BAD_FILES
 
 NAN = float("nan")

@@ -3,7 +3,7 @@
 import pytest
 
 from burridge_knopoff.figures.description import figure_descriptions
-from burridge_knopoff.study import load_study
+from burridge_knopoff.study.study import load_study
 
 STATES = {"minus": {}, "plus": {}}
 CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
@@ -29,7 +29,7 @@ def test_the_stages_of_a_study(config, missing):
 def test_what_is_left_out_has_no_values_of_a():
     """So that nobody who looks at the section alone takes it for wanted."""
     study = load_study({**CONFIG, "without": ["attractors", "solvers"]}, "some.yaml")
-    assert (study.basin_maps, study.has_phases, study.config["solvers"]["a"]) == ([], False, [])
+    assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
     assert study.left_out == ("attractors", "edges", "basins", "phases", "solvers")
     assert study.stage_summaries == ("two_blocks", "proof")
 

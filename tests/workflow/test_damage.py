@@ -15,7 +15,7 @@ from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.seal import BadFile, identity, seal
-from burridge_knopoff.study import load_study
+from burridge_knopoff.study.study import load_study
 from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
 from tests.workflow.conftest import TINY, copied

@@ -48,11 +48,11 @@ rule basin_tile:
         a=lambda wildcards: STUDY.value(wildcards.a),
         model=lambda wildcards: model_config([wildcards.law]),
         basins=BASIN_KEYS["tile"],
-        sources=sources("basin_tile"),
+        sources=sources("basin_part"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
     script:
-        "../scripts/basin_tile.py"
+        "../scripts/basin_part.py"
 
 
 rule basin_pairs:
@@ -74,11 +74,11 @@ rule basin_pairs:
         a=lambda wildcards: STUDY.value(wildcards.a),
         model=lambda wildcards: model_config([wildcards.law]),
         basins=BASIN_KEYS["pairs"],
-        sources=sources("basin_pairs"),
+        sources=sources("basin_part"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
     script:
-        "../scripts/basin_pairs.py"
+        "../scripts/basin_part.py"
 
 
 rule basins:

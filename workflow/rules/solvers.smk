@@ -1,7 +1,7 @@
 # Solvers: the points of a few values of a once more, by every other solver of each law.
 
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.study import solver_points
+from burridge_knopoff.study.study import solver_points
 
 SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT}"
 SOLVER_POINTS = solver_points(STUDY)

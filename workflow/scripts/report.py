@@ -6,7 +6,7 @@ from pathlib import Path
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.report.page import Sources, write_report
-from burridge_knopoff.study import Study
+from burridge_knopoff.study.study import Study
 
 params = snakemake.params
 paths = [Path(path) for path in (*snakemake.input.summaries, *snakemake.input.figures, *params.optional)]

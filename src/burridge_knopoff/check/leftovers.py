@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from burridge_knopoff.figures.description import figure_descriptions
-from burridge_knopoff.study import Study, all_points, solver_points
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.study import Study, all_points, solver_points
 
 #: What stands in the names of files; of any other name no file is ever held for left over.
 _WILDCARDS = {

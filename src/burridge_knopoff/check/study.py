@@ -12,10 +12,10 @@ from burridge_knopoff.check.leftovers import leftovers, run_files
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.study import ConfigError, Study
 from burridge_knopoff.study.job_log import last_words
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.words import counted
-from burridge_knopoff.study.yaml_file import read_yaml
+from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
 
 KINDS = ("missing", "corrupt", "stale", "failed")

@@ -6,7 +6,6 @@ Only the module of the command that is called is imported: a study starts `bk si
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
 import sys
 from collections.abc import Sequence
@@ -79,8 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
-        missing = isinstance(error, ModuleNotFoundError) and error.name
-        print(f"bk {options.command}: {_how_to_install(missing) if missing else error}", file=sys.stderr)
+        print(f"bk {options.command}: {error}", file=sys.stderr)
         return 2
     except MemoryError:
         print(f"bk {options.command}: not enough memory for what is to be kept or computed", file=sys.stderr)
@@ -93,17 +91,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _module(command: str) -> ModuleType:
     return import_module(f"burridge_knopoff.cli.{command}")
-
-
-def _how_to_install(module: str) -> str:
-    """Return in a line how to install what is not there: by the extra that brings it, if there is one."""
-    import re
-    from importlib import metadata
-
-    package = module.partition(".")[0]
-    with contextlib.suppress(metadata.PackageNotFoundError):
-        for requirement in metadata.requires("burridge-knopoff") or ():
-            found = re.match(rf"(?:py)?{package}\b.*\bextra == .([\w-]+)", requirement, re.IGNORECASE)
-            if found:
-                return f"{package} is not installed: pip install 'burridge-knopoff[{found[1]}]' brings it"
-    return f"{package} is not installed: pip install {package}"

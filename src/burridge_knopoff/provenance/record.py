@@ -13,7 +13,7 @@ from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
 
 if TYPE_CHECKING:
-    from burridge_knopoff.study import Study
+    from burridge_knopoff.study.study import Study
 
 NAME = "study.json"
 

@@ -16,7 +16,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.report.numbers import text
-from burridge_knopoff.study import Study, all_points
+from burridge_knopoff.study.study import Study, all_points
 from burridge_knopoff.study.words import counted
 
 #: Distributions whose versions the report states.

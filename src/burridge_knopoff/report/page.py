@@ -22,7 +22,7 @@ from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.section_points import section_counts
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
-from burridge_knopoff.study import Study
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
 
 FOLDER = Path(__file__).parent

@@ -12,8 +12,8 @@ import xarray
 from burridge_knopoff.report.numbers import exact
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.study import Study
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.study import Study
 
 #: How runs end, in words, in the order of the numbers in files.
 STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED]

@@ -15,7 +15,7 @@ from burridge_knopoff.figures.distance import FLOOR, settled_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
 from burridge_knopoff.show.result import Result, open_result
-from burridge_knopoff.study import Study
+from burridge_knopoff.study.study import Study
 
 FORMATS = (".png", ".pdf", ".svg")
 

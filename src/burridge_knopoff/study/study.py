@@ -102,14 +102,15 @@ class Study:
     @property
     def left_out(self) -> tuple[str, ...]:
         """Stages that the config leaves out, and those that take their results."""
-        return stages.left_out(self.config["without"])
+        without = self.config["without"]
+        return tuple(stage for stage, needed in stages.OPTIONAL.items() if stage in without or needed in without)
 
     @property
     def stages(self) -> tuple[str, ...]:
         """Stages of the study, of those that not every study has."""
         there = {
             "basins": self.basin_maps,
-            "phases": self.has_phases,
+            "phases": self.config["phases"]["a"],
             "two_blocks": self.has_several_laws and not self.single_length_key,
             "proof": self.proved_laws,
         }
@@ -118,17 +119,12 @@ class Study:
     @property
     def stage_summaries(self) -> tuple[str, ...]:
         """Names of the netCDF summaries that these stages make."""
-        return stages.summaries_of(self.stages)
+        return tuple(name for stage in self.stages for name in stages.SUMMARIES.get(stage, (stage,)))
 
     @property
     def basin_maps(self) -> list[tuple[str, float]]:
         """Law and a of every map of basins."""
         return [(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
-
-    @property
-    def has_phases(self) -> bool:
-        """Whether states are drawn by the phases of their end blocks."""
-        return bool(self.config["phases"]["a"])
 
     @property
     def single_length_key(self) -> str:
