@@ -9,11 +9,13 @@ from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Se
 from burridge_knopoff.kernel import events as kernel_events
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.study import load_study
 from burridge_knopoff.study.yaml_file import read_config
 from tests.flows import carry, check_events, listed, wave
+from tests.refused import refused
 from tests.scipy_flow import model_events, scipy_events
 
 UNEQUAL = {
@@ -135,3 +137,12 @@ def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
 
 def test_the_status_is_the_kernels():
     assert {item.name: item.value for item in Status} == {item.name: item.value for item in kernel_events.Status}
+
+
+@pytest.mark.parametrize("arguments", [{"until": 5.0}, {"halting_block": 0}])
+def test_the_solver_of_fixed_steps_takes_no_end_but_the_windows(arguments):
+    """It would go on for ever: without an observer there is no window."""
+    runner = Runner(Model(Chain(3), law_of("linearized", 0.08)), "rk4")
+    runner.begin(runner.model.begin(PAPER_STATES["minus"]))
+    with refused("solver: 'rk4' is not allowed", "series | map"):
+        runner.run(**arguments)

@@ -43,7 +43,7 @@ class Check:
 
     files : what was looked at, in words
     findings : what is wrong with these files
-    others : what no run of the config of the last run mends: what is left over, of an unknown name, or another config
+    others : what running the last config again does not mend: left over, of an unknown name, or of another config
     notes : what else there is to say, in lines
     """
 
@@ -87,7 +87,7 @@ def root_of(results: Path) -> Path:
 
 
 def check_study(results: str | Path) -> Check:
-    """Hold every point and every other netCDF file of a study against its config and the sources of now.
+    """Check every point and every other netCDF file of a study against its config and the current sources.
 
     Raises ValueError, one line, if the folder holds no study.
     """

@@ -1,4 +1,4 @@
-"""`bk check`: is a study what its config and the sources of now would make?"""
+"""`bk check`: is a study what its config and the current sources would make?"""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def seal(path: str | Path, about: str, status: str = "made") -> None:
 
 
 def read_seal(path: str | Path) -> tuple[str, str]:
-    """Return what a file is about, see `identity`, and how its run ended, after holding all its bytes against its seal.
+    """Check all bytes of a file against its seal; return what it is about, see `identity`, and how its run ended.
 
     Raises BadFile if the file is not there, has no seal, or is not what was sealed.
     """

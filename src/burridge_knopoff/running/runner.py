@@ -89,10 +89,14 @@ class Runner:
         """Run on to a time, or to the end of the observer's window, and return how that ended.
 
         halting_block : a block at each of whose stops the run halts; it goes on from there with the next call
+
+        Raises ValueError for either with `rk4`, which knows the observer's window only.
         """
         if isinstance(self.kernel, EventDriven):
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
+        elif until is not None or halting_block >= 0:
+            raise ValueError("solver: 'rk4' is not allowed for a run to a time or a stop: series | map")
         # Each call makes a limited number of steps, so that a long run can be interrupted from the keyboard.
         while (status := self.kernel.run()) == Status.RUNNING:
             pass

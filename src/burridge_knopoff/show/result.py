@@ -51,7 +51,7 @@ class Result:
 
     @property
     def made_by(self) -> str:
-        """What made the file, and whether the sources of now are the same, in a line."""
+        """What made the file, and whether the current sources are the same, in a line."""
         attributes = self.data.attrs
         same = source_fingerprint(attributes["source_module"]) == attributes["source_fingerprint"]
         words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"

@@ -248,7 +248,7 @@ class Watch:
     """
 
     time_limit: Annotated[
-        float, Number(200.0, LONGEST), "time by which a state must have synchronized; it is looked at every 20"
+        float, Number(200.0, LONGEST), "time by which a state must have synchronized; checked every 20"
     ] = 10_000.0
     synchronization_distance: Annotated[
         float,

@@ -89,27 +89,27 @@ AGREEMENT = {
 COMPARED = {
     "a": Field(
         replace(SOME_VALUES, least=1),
-        "values of the grid at which all other solvers that know a law simulate its points once more; without it those "
+        "values of the grid at which all other solvers that know a law simulate its points once more; by default those "
         f"of {', '.join(map(str, PAPER_COMPARED))} that are in the grid, else figures.a",
         FOLLOWS,
     ),
     "step": replace(_SETTINGS["step"], description="step of rk4 there", default=0.0025),
 }
 FIGURES = {
-    "a": Field(A, f"value of the grid that figures of single runs show; without it the nearest to {PAPER_A}", FOLLOWS),
-    "law": Field(Text(), "and their friction law; without it the first of the study", FOLLOWS),
+    "a": Field(A, f"value of the grid that figures of single runs show; by default the nearest to {PAPER_A}", FOLLOWS),
+    "law": Field(Text(), "and their friction law; by default the first of the study", FOLLOWS),
 }
 BASINS = {
     "a": Field(
         Named(Text(), SOME_VALUES),
-        "values of the grid with a map of basins, for each law; without it those that are in the grid of "
+        "values of the grid with a map of basins, for each law; by default those that are in the grid of "
         + "; ".join(f"{law}: {', '.join(map(str, values))}" for law, values in PAPER_BASINS.items()),
         {},
     ),
     "pixels": fields_of(BasinSettings)["pixels"],
     "initial": Field(
         Text(),
-        "initial state that gives all other positions and velocities; without it the first of the study",
+        "initial state that gives all other positions and velocities; by default the first of the study",
         FOLLOWS,
     ),
     **_part(BasinSettings, "pixels"),
@@ -117,7 +117,7 @@ BASINS = {
 PHASES = {
     "a": Field(
         SOME_VALUES,
-        "values of the grid at which states are drawn by the phases of their end blocks; without it, in the paper's "
+        "values of the grid at which states are drawn by the phases of their end blocks; by default, in the paper's "
         f"chain, those of {', '.join(map(str, PAPER_PHASES))} that are in the grid",
         FOLLOWS,
     ),
@@ -133,7 +133,7 @@ CHAINS = {
     "blocks": Field(Several(Whole(2, 64), 1, distinct=True), "numbers of blocks", list(range(2, 11))),
     "a": Field(VALUES, "friction parameters", [0.005, {"from": 0.01, "to": 0.16, "step": 0.01}, 0.18, 0.2, 0.25, 0.3]),
     "laws": Field(
-        Several(Text(), 1, distinct=True), "friction laws, of those of the study; without it the first", FOLLOWS
+        Several(Text(), 1, distinct=True), "friction laws, of those of the study; by default the first", FOLLOWS
     ),
     "samples": _SAMPLE["samples"],
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
