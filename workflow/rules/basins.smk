@@ -41,7 +41,6 @@ rule basin_tile:
     threads: STUDY.config["basins"]["threads"]
     resources:
         cpus_per_task=lambda wildcards, threads: threads,
-        mem_mb=400,
         runtime=240,
     params:
         **BASIN_PARAMS,
@@ -67,7 +66,6 @@ rule basin_pairs:
     threads: STUDY.config["basins"]["threads"]
     resources:
         cpus_per_task=lambda wildcards, threads: threads,
-        mem_mb=400,
         runtime=240,
     params:
         **BASIN_PARAMS,
@@ -106,9 +104,6 @@ rule basins:
         f"{RESULTS}/benchmarks/basins.tsv"
     group:
         group("summaries")
-    resources:
-        mem_mb=400,
-        runtime=10,
     params:
         **keys("start", "attractors"),
         maps=STUDY.basin_maps,

@@ -24,7 +24,6 @@ rule watch_chain:
         blocks="|".join(map(str, CHAIN_BLOCKS)),
     priority: 1
     resources:
-        mem_mb=400,
         runtime=30,
     params:
         model=lambda wildcards: other_length_config(CHAINS["laws"]),
@@ -62,9 +61,6 @@ rule chains_summary:
         f"{RESULTS}/benchmarks/chains_summary.tsv"
     group:
         group("summaries")
-    resources:
-        mem_mb=400,
-        runtime=10,
     params:
         summary="chains",
         sources=sources("merge", "summaries.chains"),

@@ -43,9 +43,6 @@ rule edges:
         f"{RESULTS}/benchmarks/edges.tsv"
     group:
         group("summaries")
-    resources:
-        mem_mb=400,
-        runtime=10,
     params:
         summary="edges",
         sources=sources("merge", "summaries.edges"),

@@ -13,7 +13,6 @@ rule phases_of_law:
     benchmark:
         f"{RESULTS}/benchmarks/phases/{{law}}.tsv"
     resources:
-        mem_mb=400,
         runtime=60,
     params:
         **keys("attractors"),
@@ -40,9 +39,6 @@ rule phases:
         f"{RESULTS}/benchmarks/phases.tsv"
     group:
         group("summaries")
-    resources:
-        mem_mb=400,
-        runtime=10,
     params:
         summary="phases",
         sources=sources("merge", "summaries.phases"),

@@ -16,9 +16,6 @@ rule proof:
         f"{RESULTS}/benchmarks/proof.tsv"
     group:
         group("summaries")
-    resources:
-        mem_mb=400,
-        runtime=10,
     params:
         model=lambda wildcards: proved_config(),
         sources=sources("proof"),

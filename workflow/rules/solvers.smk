@@ -55,9 +55,6 @@ rule solvers:
         f"{RESULTS}/benchmarks/solvers.tsv"
     group:
         group("summaries")
-    resources:
-        mem_mb=400,
-        runtime=10,
     params:
         points={**STUDY.points, "folder": RESULTS, "a": STUDY.compared},
         others={

@@ -13,7 +13,6 @@ rule two_blocks:
     # A long job that waits for nothing: begun early, so that it is not left alone at the end.
     priority: 5
     resources:
-        mem_mb=400,
         runtime=30,
     params:
         **keys("agreement"),

@@ -35,12 +35,9 @@ class EventLog:
         self.keep = keep
         self.earlier_events = Record(2)
         self.events = Record(2 + 2 * blocks)
-        self.count = 0
-        self.unit_start = 0.0
-        self.unit_count = 0
         self.rate_limit = rate_limit
-        self.accumulating = False
         self.tangent = Tangent(blocks, 0, 1)
+        self.restart()
 
     def carry(self, tangent: Tangent) -> None:
         """Let perturbations go through every change as well."""
