@@ -6,31 +6,41 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, MotionKind, Symmetry, find_periodic_orbit, law_of
+from burridge_knopoff import Chain, Model, MotionKind, OrbitError, Symmetry, find_periodic_orbit, law_of
 from burridge_knopoff.stability.family import Family
 from burridge_knopoff.stability.pseudo_arclength import begin_branch
 from burridge_knopoff.stability.stretch import Stretch
 from burridge_knopoff.summaries import edge_entries
 
 
-def test_orbits_of_other_periods_are_followed_apart(monkeypatch):
+@pytest.mark.parametrize("processes", [1, 2, 4])
+@pytest.mark.parametrize(
+    ("failing", "expected", "numbers"),
+    [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.0001, 1.01, 0.99], {1: 0, 2: 1, 3: 2})],
+)
+def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
     """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
     known = Family(Model(Chain(3), law_of("linearized", 0.0))).at(0.05)
     orbit = find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
-    periods = iter([1.0, 1.0001, 1.01, 0.99])
+    periods = [1.0, 1.0001, 1.01, 0.99]
 
-    def next_orbit(*_):
-        return replace(orbit, return_time=next(periods) * orbit.return_time)
+    def closed_motion(model, at):
+        slot = round(float(at.position[0] + model.sliding_offset[0]))
+        return replace(orbit, return_time=periods[slot] * orbit.return_time)
 
     def alone(one, *_):
+        if one.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
+            raise OrbitError("cannot be followed")
         return Stretch(*[[begin_branch(one, True)]] * 2)
 
-    monkeypatch.setattr(edge_entries, "closed_motion", next_orbit)
+    monkeypatch.setattr(edge_entries, "closed_motion", closed_motion)
     monkeypatch.setattr(edge_entries, "stretch", alone)
     slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4}
     one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
-    state = ("value", "attractor", "block"), np.zeros((1, 4, 3))
-    one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=state, velocity=state)
-    found, of_slot = edge_entries.followed(orbit.model, one, [])
-    assert of_slot == {(0, 0): 0, (0, 1): 0, (0, 2): 1, (0, 3): 2}
-    assert [item.upward[0].orbit.period / orbit.period for item in found] == pytest.approx([1.0, 1.01, 0.99])
+    names, position = ("value", "attractor", "block"), np.zeros((1, 4, 3))
+    position[0, :, 0] = range(4)
+    one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
+    one["velocity"] = names, np.zeros((1, 4, 3))
+    found, of_slot = edge_entries.followed(orbit.model, one, [], processes)
+    assert of_slot == {(0, slot): number for slot, number in numbers.items()}
+    assert [item.upward[0].orbit.period / orbit.period for item in found] == pytest.approx(expected)
