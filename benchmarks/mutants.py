@@ -38,15 +38,16 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/burridge_knopoff")
 PYTHON = ROOT / ".venv/bin/python"
 LEFT_OUT = (".git", ".snakemake", "results", "build", "fuzzed", ".venv*", "__pycache__", ".*_cache")
-ROOMS = ("summaries", "stability", "claims", "dataset", "model", "laws", "running", "kernel")
+ROOMS = ("summaries", "stability", "orbits", "claims", "dataset", "model", "laws", "running", "kernel")
 
 #: What else meets a change in a room, quick tests first. Whether builds agree is no question to a changed source.
 TESTS = {
-    "model": ("running", "stability"),
+    "model": ("running", "orbits", "stability"),
+    "orbits": ("stability", "summaries/test_edges.py"),
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
     "running": ("dataset", "kernel/test_exponents.py"),
-    "kernel": ("running", "stability/test_orbit.py"),
+    "kernel": ("running", "orbits/test_orbit.py"),
 }
 DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
 

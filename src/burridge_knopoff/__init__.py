@@ -74,32 +74,33 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import InitialState
     from burridge_knopoff.model.model import Instant, Model
+    from burridge_knopoff.orbits.edge_kind import EdgeKind
+    from burridge_knopoff.orbits.edges import Edge, locate_edges
+    from burridge_knopoff.orbits.family import synchronized_orbit
+    from burridge_knopoff.orbits.floquet import Multipliers, multipliers
+    from burridge_knopoff.orbits.following import Following, follow
+    from burridge_knopoff.orbits.orbit import Orbit, OrbitError, transverse_multiplier
+    from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
+    from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
+    from burridge_knopoff.orbits.symmetry import Symmetry
     from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.trajectory import Trajectory
-    from burridge_knopoff.stability.attractor import Attractor, Symmetry
+    from burridge_knopoff.stability.attractor import Attractor
     from burridge_knopoff.stability.attractors import find_attractors
     from burridge_knopoff.stability.chains import transverse_exponent
     from burridge_knopoff.stability.closed_motion import closed_motion
-    from burridge_knopoff.stability.edge_kind import EdgeKind
-    from burridge_knopoff.stability.edges import Edge, locate_edges
-    from burridge_knopoff.stability.family import synchronized_orbit
-    from burridge_knopoff.stability.floquet import Multipliers, multipliers
-    from burridge_knopoff.stability.following import Following, follow
     from burridge_knopoff.stability.labels import label_states
     from burridge_knopoff.stability.motion import MotionKind
-    from burridge_knopoff.stability.orbit import Orbit, OrbitError, transverse_multiplier
-    from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
-    from burridge_knopoff.stability.pseudo_arclength import BranchOrbit
     from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
     from burridge_knopoff.stability.steady import SteadyMotion
 
 _HOME = {
     "Attractor": "stability.attractor",
-    "BranchOrbit": "stability.pseudo_arclength",
+    "BranchOrbit": "orbits.pseudo_arclength",
     "Chain": "model.chain",
-    "Edge": "stability.edges",
-    "EdgeKind": "stability.edge_kind",
-    "Following": "stability.following",
+    "Edge": "orbits.edges",
+    "EdgeKind": "orbits.edge_kind",
+    "Following": "orbits.following",
     "FormulaLaw": "laws",
     "InitialState": "model.initial",
     "Instant": "model.model",
@@ -107,30 +108,30 @@ _HOME = {
     "Model": "model.model",
     "MotionKind": "stability.motion",
     "MotionSettings": "stability.settings",
-    "Multipliers": "stability.floquet",
-    "Orbit": "stability.orbit",
-    "OrbitError": "stability.orbit",
-    "PeriodicOrbit": "stability.periodic",
+    "Multipliers": "orbits.floquet",
+    "Orbit": "orbits.orbit",
+    "OrbitError": "orbits.orbit",
+    "PeriodicOrbit": "orbits.periodic",
     "SearchSettings": "stability.settings",
     "Settings": "running.settings",
     "SteadyMotion": "stability.steady",
-    "Symmetry": "stability.attractor",
+    "Symmetry": "orbits.symmetry",
     "Trajectory": "running.trajectory",
     "basin_map": "library.basin_map",
     "closed_motion": "stability.closed_motion",
     "find_attractors": "stability.attractors",
-    "find_periodic_orbit": "stability.periodic",
-    "follow": "stability.following",
+    "find_periodic_orbit": "orbits.periodic",
+    "follow": "orbits.following",
     "label_states": "stability.labels",
     "law_of": "laws",
-    "locate_edges": "stability.edges",
-    "multipliers": "stability.floquet",
+    "locate_edges": "orbits.edges",
+    "multipliers": "orbits.floquet",
     "open_study": "library.open_study",
     "simulate": "library.simulate",
     "sweep": "library.sweep",
-    "synchronized_orbit": "stability.family",
+    "synchronized_orbit": "orbits.family",
     "transverse_exponent": "stability.chains",
-    "transverse_multiplier": "stability.orbit",
+    "transverse_multiplier": "orbits.orbit",
 }
 
 

@@ -6,13 +6,13 @@ from itertools import pairwise
 import pytest
 from flint import arb, fmpq
 
+from burridge_knopoff.orbits.orbit import multipliers
+from burridge_knopoff.orbits.transition import critical_a
 from burridge_knopoff.proof import critical
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.critical import prove_branch, prove_critical
 from burridge_knopoff.proof.krawczyk import enclose
 from burridge_knopoff.proof.orbit import arcs_of, equations, prove_orbit
-from burridge_knopoff.stability.orbit import multipliers
-from burridge_knopoff.stability.transition import critical_a
 from tests.proof.conftest import holds
 from tests.proof.exact import exact_orbit
 

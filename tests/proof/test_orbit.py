@@ -9,17 +9,17 @@ from flint import arb
 from scipy.optimize import bisect
 
 from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import multipliers
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
 from burridge_knopoff.proof.bounds import check_positive
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.krawczyk import derivatives, enclose, part, solved
 from burridge_knopoff.proof.orbit import PLACES, arcs_of, equations, followed, prove_orbit
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import multipliers
+from tests.orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit
-from tests.stability.exact import slipping_state
 
 
 def proved_at(family, a):

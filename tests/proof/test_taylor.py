@@ -6,6 +6,9 @@ from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import multipliers
+from burridge_knopoff.orbits.transition import critical_a
 from burridge_knopoff.proof import taylor
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
@@ -14,9 +17,6 @@ from burridge_knopoff.proof.critical import prove_critical
 from burridge_knopoff.proof.krawczyk import derivatives
 from burridge_knopoff.proof.orbit import PLACES, followed, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import multipliers
-from burridge_knopoff.stability.transition import critical_a
 from tests.proof.conftest import SLIPS, changed, holds, state_of
 
 V, A = "0.1", "0.09"

@@ -12,8 +12,8 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability import chains
 from burridge_knopoff.stability.chains import INTERVAL, Fate, Outcome, Sample, Watch, symmetrized, watch_state
+from tests.orbits.exact import SHIFT
 from tests.reference import reference_events, reference_run
-from tests.stability.exact import SHIFT
 
 APART = Outcome.NOT_SYNCHRONIZED
 V = 0.1

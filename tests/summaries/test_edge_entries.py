@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import Chain, Model, MotionKind, OrbitError, Symmetry, find_periodic_orbit, law_of
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.pseudo_arclength import begin_branch
-from burridge_knopoff.stability.stretch import Stretch
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.pseudo_arclength import begin_branch
+from burridge_knopoff.orbits.stretch import Stretch
 from burridge_knopoff.summaries import edge_entries
 
 

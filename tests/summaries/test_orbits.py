@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
-from burridge_knopoff.stability.branch import branch_orbit, leading_modulus, mean_distance, sweep
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import multipliers, transverse_multiplier
-from burridge_knopoff.stability.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
+from burridge_knopoff.orbits.branching import branch_orbit, leading_modulus, mean_distance, sweep
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import multipliers, transverse_multiplier
+from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import orbits
 from burridge_knopoff.summaries.orbits import COMPARISON, Bifurcation, BifurcationSide, effective_a, summarize

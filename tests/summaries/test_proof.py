@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import multipliers
+from burridge_knopoff.orbits.transition import critical_a
 from burridge_knopoff.proof.balls import ProofError
 from burridge_knopoff.proof.scope import is_covered
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import multipliers
-from burridge_knopoff.stability.transition import critical_a
 from burridge_knopoff.summaries import proof
 from burridge_knopoff.summaries.results import write_results
 

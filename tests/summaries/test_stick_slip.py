@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
-from burridge_knopoff.stability.family import Family
+from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,

@@ -14,7 +14,7 @@ from burridge_knopoff.check.study import recorded_study
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.family import Family
+from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.study.study import Study
 
 GRID = [0.05, 0.08, 0.2, 0.22]

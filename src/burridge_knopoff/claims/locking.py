@@ -8,7 +8,7 @@ import numpy as np
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import Measured, NotTestableError, Verdict, by_share, worst
-from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.branch_changes import Change

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from burridge_knopoff.model.initial import InitialState
     from burridge_knopoff.model.model import Model
-    from burridge_knopoff.stability.periodic import PeriodicOrbit
+    from burridge_knopoff.orbits.periodic import PeriodicOrbit
 
 DESCRIPTION = """Compute the synchronized orbit, stable or not; or, from an initial state, the periodic orbit that its
 motion comes to, of any chain. An orbit is stable where all multipliers but that of the flow are below 1 in modulus."""
@@ -59,9 +59,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _synchronized(model: Model) -> PeriodicOrbit:
-    from burridge_knopoff.stability.attractor import Symmetry
-    from burridge_knopoff.stability.family import synchronized_orbit
-    from burridge_knopoff.stability.periodic import orbit_of
+    from burridge_knopoff.orbits.family import synchronized_orbit
+    from burridge_knopoff.orbits.periodic import orbit_of
+    from burridge_knopoff.orbits.symmetry import Symmetry
 
     found = synchronized_orbit(model)
     return orbit_of(model, found.reference, found.period, Symmetry.SYNCHRONIZED)
@@ -75,8 +75,8 @@ def _reached(model: Model, state: InitialState, start: str, settling: float) -> 
 
 def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Return an orbit in lines, at most so many of its events among them."""
+    from burridge_knopoff.orbits.floquet import multipliers
     from burridge_knopoff.show.words import table
-    from burridge_knopoff.stability.floquet import multipliers
     from burridge_knopoff.study.words import counted
 
     found = multipliers(orbit)

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
 from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, styled
-from burridge_knopoff.stability.edge_kind import EdgeKind
+from burridge_knopoff.orbits.edge_kind import EdgeKind
 
 TITLE = "Edges of the attractors"
 CATEGORY = "Attractors"

@@ -13,6 +13,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
+from burridge_knopoff.orbits.orbit import Orbit
 from burridge_knopoff.proof.arcs import Arc
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around
 from burridge_knopoff.proof.krawczyk import (
@@ -26,7 +27,6 @@ from burridge_knopoff.proof.krawczyk import (
     widest,
 )
 from burridge_knopoff.proof.orbit import ProvedOrbit, arcs_of, equations
-from burridge_knopoff.stability.orbit import Orbit
 
 # A range of a is halved into pieces of this width at most, and so often at most.
 WIDEST = fmpq(1, 400)

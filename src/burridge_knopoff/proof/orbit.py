@@ -16,12 +16,12 @@ from typing import Any
 
 from flint import arb
 
+from burridge_knopoff.orbits.orbit import Orbit, flow
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.bounds import Function, bounds, check_positive
 from burridge_knopoff.proof.flows import flow_of
 from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
-from burridge_knopoff.stability.orbit import Orbit, flow
 
 #: Unknowns of an orbit before the durations of its arcs: the two positions.
 PLACES = 2

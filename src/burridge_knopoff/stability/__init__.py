@@ -1,1 +1,1 @@
-"""Why chains synchronize: orbits and their multipliers, attractors, their basins, longer chains."""
+"""What a chain comes to: attractors, how states are labelled by them, basins, longer chains."""

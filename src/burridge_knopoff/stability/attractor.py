@@ -3,30 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.steady import Returns, SteadyMotion, instant_of, orbit_length, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
-
-
-class Symmetry(IntEnum):
-    """Mirror symmetry of an attractor, numbered as in netCDF files.
-
-    Mirror blocks move as one (synchronized), the set is its own mirror image (symmetric), or neither (asymmetric), as
-    in every chain that is not its own mirror image.
-
-    >>> from burridge_knopoff import Symmetry
-    >>> [item.name for item in Symmetry]
-    ['SYNCHRONIZED', 'SYMMETRIC', 'ASYMMETRIC']
-    """
-
-    SYNCHRONIZED = 0
-    SYMMETRIC = 1
-    ASYMMETRIC = 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,12 +12,13 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.attractor import Attractor, Symmetry, close_returns, pushed, spread
-from burridge_knopoff.stability.branch import leading_modulus
-from burridge_knopoff.stability.family import synchronized_orbit
+from burridge_knopoff.orbits.branching import leading_modulus
+from burridge_knopoff.orbits.family import synchronized_orbit
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.stability.attractor import Attractor, close_returns, pushed, spread
 from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.motion import MotionKind, closed_kind, judged_distance
-from burridge_knopoff.stability.orbit import OrbitError
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.orbits.return_map import mirror
+from burridge_knopoff.orbits.simpler import simplest
+from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
-from burridge_knopoff.stability.return_map import mirror
-from burridge_knopoff.stability.simpler import simplest
 from burridge_knopoff.stability.steady import instant_of
 
 #: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.

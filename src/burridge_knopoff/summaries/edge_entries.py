@@ -11,16 +11,16 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.edges import Edge
+from burridge_knopoff.orbits.following import Following
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
+from burridge_knopoff.orbits.stretch import Stretch, stretch
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.closed_motion import closed_motion
-from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.edges import Edge
-from burridge_knopoff.stability.following import Following
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import PeriodicOrbit
 from burridge_knopoff.stability.steady import instant_of
-from burridge_knopoff.stability.stretch import Stretch, stretch
 from burridge_knopoff.summaries.branch_changes import BranchChange, Change, slots_of_branches
 
 #: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.

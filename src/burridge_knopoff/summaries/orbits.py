@@ -13,10 +13,10 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import OrbitError, multipliers, transverse_multiplier
-from burridge_knopoff.stability.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
+from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import OrbitError, multipliers, transverse_multiplier
+from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")

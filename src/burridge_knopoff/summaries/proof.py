@@ -16,12 +16,12 @@ from flint import arb, fmpq
 from burridge_knopoff.dataset.summary import AXES, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.transition import critical_a
 from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, digits, limits, width
 from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
 from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.transition import critical_a
 
 #: Number of blocks of the chain.
 CHAIN_BLOCKS = 3

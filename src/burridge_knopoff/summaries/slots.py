@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.stability.attractor import Symmetry
+from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.steady import EXPONENTS

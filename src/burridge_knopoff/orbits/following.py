@@ -6,14 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import gcd
 
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.corner import come_to_corner, turn_corner
-from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.floquet import critical_values
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import PeriodicOrbit
-from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, begin_branch, step_along
-from burridge_knopoff.stability.simpler import simplest
+from burridge_knopoff.orbits.corner import come_to_corner, turn_corner
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.floquet import critical_values
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
+from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch, step_along
+from burridge_knopoff.orbits.simpler import simplest
+from burridge_knopoff.orbits.symmetry import Symmetry
 
 # Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period, and within which one that
 # is about to become one comes back to itself in a mirror, or after half its period.

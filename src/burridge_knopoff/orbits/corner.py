@@ -18,9 +18,9 @@ from dataclasses import replace
 import numpy as np
 
 from burridge_knopoff.model.model import Instant
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import orbit_of
-from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along, tangent_of
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import orbit_of
+from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
 # A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
 REACHED = 1e-10

@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from burridge_knopoff.stability.edges import Edge, locate_edges
-from burridge_knopoff.stability.following import FOLLOWING, Following, follow
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import PeriodicOrbit
-from burridge_knopoff.stability.pseudo_arclength import BranchOrbit
+from burridge_knopoff.orbits.edges import Edge, locate_edges
+from burridge_knopoff.orbits.following import FOLLOWING, Following, follow
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
+from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
 
 # Orbits closer than this along a branch are not kept apart.
 CLOSE = 1e-5

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import InitialState, OrbitError, simulate, transverse_multiplier
+from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import flow, multipliers
+from burridge_knopoff.orbits.transition import critical_a, finite_difference_multiplier, grazing_a, symmetric_flip_a
 from burridge_knopoff.stability import branch, transition
-from burridge_knopoff.stability.branch import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import flow, multipliers
-from burridge_knopoff.stability.transition import critical_a, finite_difference_multiplier, grazing_a, symmetric_flip_a
 from burridge_knopoff.study.paper import PAPER_LAWS
-from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
+from tests.orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 
 @pytest.fixture(scope="module")

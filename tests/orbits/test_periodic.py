@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
+from burridge_knopoff.orbits.branching import branch_orbit
+from burridge_knopoff.orbits.floquet import multipliers
+from burridge_knopoff.orbits.orbit import multipliers as synchronized_multipliers
+from burridge_knopoff.orbits.periodic import find_periodic_orbit
+from burridge_knopoff.orbits.return_map import ReturnMap, directions
+from burridge_knopoff.orbits.simpler import simplest
+from burridge_knopoff.orbits.transition import critical_a
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.branch import branch_orbit
-from burridge_knopoff.stability.floquet import multipliers
-from burridge_knopoff.stability.orbit import multipliers as synchronized_multipliers
-from burridge_knopoff.stability.periodic import find_periodic_orbit
-from burridge_knopoff.stability.return_map import ReturnMap, directions
-from burridge_knopoff.stability.simpler import simplest
-from burridge_knopoff.stability.transition import critical_a
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 PAPER, UNEVEN = Chain(3), Chain(3, coupling=(1.0, 2.0))

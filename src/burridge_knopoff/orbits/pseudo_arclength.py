@@ -14,11 +14,11 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.contacts import Contacts, contacts
-from burridge_knopoff.stability.floquet import Multipliers, multipliers
-from burridge_knopoff.stability.orbit import OrbitError, flow, rate
-from burridge_knopoff.stability.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
-from burridge_knopoff.stability.return_map import ReturnMap, directions
+from burridge_knopoff.orbits.contacts import Contacts, contacts
+from burridge_knopoff.orbits.floquet import Multipliers, multipliers
+from burridge_knopoff.orbits.orbit import OrbitError, flow, rate
+from burridge_knopoff.orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
+from burridge_knopoff.orbits.return_map import ReturnMap, directions
 
 # A length along a branch is mostly one in a: positions, in units of 0.1 v, and times count less.
 STATE_WEIGHT = 0.01

@@ -13,9 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.orbit import OrbitError, after, rate
+from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.orbit import OrbitError, after, rate
 
 # Step in a for the derivative of a return, which is good to about as much: enough for Newton's method and for tangents.
 STEP = 1e-7

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from burridge_knopoff.model.model import Instant
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import Orbit, OrbitError, after, multipliers, transverse_multiplier
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import Orbit, OrbitError, after, multipliers, transverse_multiplier
 
 #: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
 SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))

@@ -12,9 +12,9 @@ import numpy as np
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow
 
 # A run from rest has settled after this time at the friction parameters that orbits are continued from.
 SETTLING = 4000.0

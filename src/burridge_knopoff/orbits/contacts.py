@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.orbit import after
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.runner import Runner, new_observer
-from burridge_knopoff.stability.orbit import after
-from burridge_knopoff.stability.periodic import PeriodicOrbit
 
 # Time between the states among which least speeds and greatest forces are looked for; the Hermite cubic through two of
 # them finds the instant to 1e-5, a step along the acceleration there all the rest.

@@ -18,11 +18,11 @@ from itertools import combinations
 
 import numpy as np
 
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.orbit import rate
-from burridge_knopoff.stability.periodic import PeriodicOrbit
-from burridge_knopoff.stability.return_map import directions
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.orbit import rate
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
+from burridge_knopoff.orbits.return_map import directions
+from burridge_knopoff.orbits.symmetry import Symmetry
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,13 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.edge_kind import EdgeKind
-from burridge_knopoff.stability.floquet import critical_values
-from burridge_knopoff.stability.following import follow
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.pseudo_arclength import BranchOrbit, step_along
-from burridge_knopoff.stability.simpler import simplest
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.floquet import critical_values
+from burridge_knopoff.orbits.following import follow
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along
+from burridge_knopoff.orbits.simpler import simplest
+from burridge_knopoff.orbits.symmetry import Symmetry
 
 # Lengths along a branch to which roots are found, and by which they are held from both sides, in turn.
 TOLERANCE = 1e-14

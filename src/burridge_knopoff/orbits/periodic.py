@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.orbit import OrbitError, flow, rate
+from burridge_knopoff.orbits.return_map import ReturnMap, directions, mirror
+from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.orbit import OrbitError, flow, rate
-from burridge_knopoff.stability.return_map import ReturnMap, directions, mirror
 
 #: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
 #: long as it gains, down to where rounding begins to count.

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from burridge_knopoff.stability.attractor import Symmetry
-from burridge_knopoff.stability.orbit import OrbitError
-from burridge_knopoff.stability.periodic import PeriodicOrbit, find_periodic_orbit
-from burridge_knopoff.stability.return_map import ReturnMap
+from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.orbits.return_map import ReturnMap
+from burridge_knopoff.orbits.symmetry import Symmetry
 
 # Parts of a period after which an orbit may already have closed.
 PARTS = (2, 3, 5)

@@ -1,6 +1,6 @@
 """A synchronized orbit handed to the 40-digit reference at an instant at which every block slips."""
 
-from burridge_knopoff.stability.orbit import flow
+from burridge_knopoff.orbits.orbit import flow
 from tests.reference import reference_run
 
 # Added to doubles of order 1 without rounding; the 40 digits of the runs see it well.

@@ -22,10 +22,8 @@ import scipy
 from scipy.optimize import root_scalar
 
 from burridge_knopoff.model.model import Instant
-from burridge_knopoff.running.runner import Runner, new_observer
-from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.family import Family
-from burridge_knopoff.stability.orbit import (
+from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.orbit import (
     ALL_DIRECTIONS,
     SYMMETRIC_DIRECTIONS,
     Orbit,
@@ -34,7 +32,9 @@ from burridge_knopoff.stability.orbit import (
     find_orbit,
     solve,
 )
-from burridge_knopoff.stability.transition import TOLERANCE, apart
+from burridge_knopoff.orbits.transition import TOLERANCE, apart
+from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.status import Status
 
 # Rounding of positions, which g carries divided by the asymmetry.
 ROUNDING = 1e-16

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, OrbitError, Settings, law_of, simulate
-from burridge_knopoff.stability.family import Family, synchronized_orbit
-from burridge_knopoff.stability.orbit import find_orbit, flow, multipliers, transverse_multiplier
-from burridge_knopoff.stability.transition import finite_difference_multiplier
-from tests.stability.exact import after_a_period, exact_transverse_multiplier, slipping_state
+from burridge_knopoff.orbits.family import Family, synchronized_orbit
+from burridge_knopoff.orbits.orbit import find_orbit, flow, multipliers, transverse_multiplier
+from burridge_knopoff.orbits.transition import finite_difference_multiplier
+from tests.orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 
 def turns(run):
