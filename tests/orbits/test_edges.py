@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
+from burridge_knopoff.orbits import edges, following
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import locate_edges
 from burridge_knopoff.orbits.following import Following, follow
@@ -11,7 +12,6 @@ from burridge_knopoff.orbits.periodic import find_periodic_orbit
 from burridge_knopoff.orbits.stretch import stretch
 from burridge_knopoff.orbits.transition import critical_a, grazing_a, symmetric_flip_a
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability import edges, following
 
 MINUS = (-0.989, -0.993, -0.991)
 STEPS = Following(largest_step=2e-3)

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import InitialState, OrbitError, simulate, transverse_multiplier
+from burridge_knopoff.orbits import branching, transition
 from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.orbit import flow, multipliers
 from burridge_knopoff.orbits.transition import critical_a, finite_difference_multiplier, grazing_a, symmetric_flip_a
-from burridge_knopoff.stability import branch, transition
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
@@ -130,7 +130,7 @@ def test_an_asymmetry_beyond_the_branch_is_refused(families, critical):
 def test_a_root_that_is_none_is_refused(families, critical, monkeypatch, share):
     """Beside a_c there is no orbit of this asymmetry, whatever the secant method ends with."""
     a = critical["linearized"]
-    monkeypatch.setattr(branch, "root_scalar", lambda *_, **__: SimpleNamespace(root=share * a))
+    monkeypatch.setattr(branching, "root_scalar", lambda *_, **__: SimpleNamespace(root=share * a))
     with pytest.raises(OrbitError, match=r"asymmetry = 0\.001: no orbit found near a = 0\.0869"):
         branch_orbit(families["linearized"], a, 1e-3)
 
