@@ -62,6 +62,15 @@ def test_mirror_images_are_one_branch_in_a_mirror_symmetric_chain_only(threshold
     assert joined([models[0]], [models[1]], {1: {0: start}}, there, SETTINGS) == expected
 
 
+@pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
+def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monkeypatch):
+    models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
+    one, other = (part[1].motion.instant() for part in found)
+    near = other.vector()[None] + 1.5 * TUNING.same_set
+    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: Returns(near, near, 0.0, 0.0))
+    assert joined([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
+
+
 @pytest.fixture
 def follow(tell):
     """Return what `follow_law` finds where the set at each step is told by its place; None where nothing settles."""
