@@ -55,7 +55,7 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
     ("text", "old", "new", "expected"),
     [
         (EDGE, "edge_of_synchrony", "edge_of_chaos", "judge: 'synchronization.edge_of_chaos' is not allowed: one of"),
-        (EDGE, "edge_of_synchrony", "spans", "judge: 'synchronization.spans' is not allowed: one of"),
+        (EDGE, "edge_of_synchrony", "worst", "judge: 'synchronization.worst' is not allowed: one of"),
         (EDGE, "synchronization.edge", "chaos.edge", "judge: 'chaos.edge_of_synchrony' is not allowed"),
         (EDGE, ", loose: 0.01", "", "parameters.loose: missing; needed by synchronization.edge_of_synchrony"),
         (EDGE, "loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, upper"),

@@ -105,6 +105,14 @@ def test_a_guess_far_from_any_orbit_is_refused(families):
         find_orbit(orbit.model, orbit.reference, 0.4 * orbit.period)
 
 
+def test_an_orbit_that_does_not_close_is_refused(families):
+    """Symmetric directions cannot undo an asymmetry, and at this a no period does."""
+    orbit = families["linearized"].at(0.12)
+    asymmetric = replace(orbit.reference, position=orbit.reference.position + np.array([1e-6, 0.0, -1e-6]))
+    with pytest.raises(OrbitError, match=r"a = 0\.12: "):
+        find_orbit(orbit.model, asymmetric, orbit.period)
+
+
 @pytest.mark.parametrize("a", [0.0, -0.1])
 def test_friction_parameters_without_an_orbit(families, a):
     with pytest.raises(OrbitError, match="0 < a"):
