@@ -47,7 +47,7 @@ TESTS = {
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
     "running": ("dataset", "kernel/test_exponents.py"),
-    "kernel": ("running", "orbits/test_orbit.py"),
+    "kernel": ("laws", "running", "orbits/test_orbit.py"),
 }
 DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
 
