@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from flint import arb
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
 from burridge_knopoff.orbits.family import Family
@@ -16,6 +18,7 @@ from burridge_knopoff.proof.balls import ProofError
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.summaries import proof
 from burridge_knopoff.summaries.results import write_results
+from tests.refused import refused
 
 PAPER, NONLINEAR = (Model(Chain(3), law_of(law, 0.0)) for law in ("linearized", "nonlinear"))
 TOLD = 1e-13
@@ -151,3 +154,24 @@ def test_a_family_that_loses_its_certificate_is_no_proof(monkeypatch):
     monkeypatch.setattr(proof, "NARROW", 1e-60)
     with pytest.raises(ProofError, match=r"a_c: an interval of width .* is not allowed: below 1e-60"):
         proof.summarize([PAPER])
+
+
+@pytest.mark.parametrize("loose", range(3))
+@pytest.mark.parametrize("contact", ["one_sided", "symmetric"])
+def test_under_a_symmetric_contact_every_stuck_block_has_to_hold_a_pull_back(contact, loose):
+    """Whether the given orbit, the critical one or one of the branch between them is the one that might let go."""
+    tightness = [1.0] * 3
+    tightness[loose] = 3.0
+    one, other, third = (
+        SimpleNamespace(
+            a=0.08, tightest=lambda value=value: arb(value), symmetric_multiplier=arb(0.5), multiplier=arb(0.5)
+        )
+        for value in tightness
+    )
+    critical = SimpleNamespace(orbit=other, a=arb(0.0869))
+    told = replace(PAPER, v=1.0, contact=contact), one, critical, [SimpleNamespace(orbit=third)]
+    if contact == "one_sided":
+        proof._check(*told)
+    else:
+        with refused("a = 0.08, v = 1.0: stuck blocks are not known to hold", error=ProofError):
+            proof._check(*told)
