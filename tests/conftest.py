@@ -26,7 +26,12 @@ settings.load_profile("study")
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the tests that take longest, so that no worker is left alone with one of them."""
-    longest = ("tests/workflow/test_faults.py", "tests/test_extending.py", "tests/workflow/")
+    longest = (
+        "tests/workflow/test_slurm.py",
+        "tests/workflow/test_faults.py",
+        "tests/test_extending.py",
+        "tests/workflow/",
+    )
     items.sort(key=lambda item: next((n for n, name in enumerate(longest) if item.nodeid.startswith(name)), 9))
 
 
