@@ -55,7 +55,7 @@ def main():
     for results in sys.argv[1:]:
         record = recorded(results)
         jobs, seconds = planned(record)
-        if any(job.threads > 1 for job in jobs.values()):
+        if any(job.threads > 1 and LONG.fullmatch(job.kind) for job in jobs.values()):
             sys.exit(f"{results}: its long jobs have shared their work already: run it with -c2 or less")
         parts = {number: parts_of(results, job) for number, job in jobs.items()}
         alone = sum(seconds.values())

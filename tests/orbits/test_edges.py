@@ -83,13 +83,13 @@ def test_symmetric_motion_doubles_its_period(families):
 
 def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing(families):
     found = stretch(settled(0.1), (0.01, 0.13), 4, STEPS)
-    assert found.low_end.kind == EdgeKind.PITCHFORK
-    assert found.low_end.a == pytest.approx(critical_a(families["linearized"]), abs=1e-10)
-    assert found.high_end.kind == EdgeKind.GRAZING
+    assert found.downward.end.kind == EdgeKind.PITCHFORK
+    assert found.downward.end.a == pytest.approx(critical_a(families["linearized"]), abs=1e-10)
+    assert found.upward.end.kind == EdgeKind.GRAZING
     # The stick of one end block vanishes, and with it the stability: a multiplier jumps over the unit circle.
-    assert found.high_end.after.orbit.signature in ((1, 1, 0), (0, 1, 1))
-    assert np.abs(found.high_end.before.multipliers.whole[0]) < 0.5
-    assert np.abs(found.high_end.after.multipliers.whole[0]) > 1.3
+    assert found.upward.end.after.orbit.signature in ((1, 1, 0), (0, 1, 1))
+    assert np.abs(found.upward.end.before.multipliers.whole[0]) < 0.5
+    assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
 
 
 def test_what_branches_off_joins_only_where_it_is_near(families):
@@ -99,17 +99,17 @@ def test_what_branches_off_joins_only_where_it_is_near(families):
 
 
 def test_stable_and_unstable_orbits_meet_where_they_graze(six):
-    for edge in (six.low_end, six.high_end):
+    for edge in (six.downward.end, six.upward.end):
         assert edge.kind == EdgeKind.GRAZING
         assert edge.turns
         assert edge.a_error < 1e-10
         assert sorted(edge.after.orbit.signature) == [2, 6, 6]
         assert edge.after.multipliers.unstable == 1
-    assert six.stable[0].orbit.a == pytest.approx(six.low_end.a, abs=1e-9)
+    assert six.stable[0].orbit.a == pytest.approx(six.downward.end.a, abs=1e-9)
 
 
 def test_runs_leave_an_orbit_beyond_its_edge(six):
-    for edge, outward in ((six.low_end, -1e-6), (six.high_end, 1e-6)):
+    for edge, outward in ((six.downward.end, -1e-6), (six.upward.end, 1e-6)):
         orbit = edge.before.orbit
         assert ends_on(orbit, edge.a - outward) == orbit.signature
         assert ends_on(orbit, edge.a + outward) != orbit.signature
@@ -126,7 +126,7 @@ def seven():
 
 
 def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
-    edge = seven.high_end
+    edge = seven.upward.end
     assert edge.kind == EdgeKind.FOLD
     assert edge.turns
     assert edge.at.multipliers.whole[0] == pytest.approx(1.0, abs=1e-5)
@@ -141,7 +141,7 @@ def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
 
 def test_an_edge_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
     again = stretch(seven.stable[-1].orbit, (0.13, 0.16), 4, Following(largest_step=3e-4))
-    for one, other in ((seven.low_end, again.low_end), (seven.high_end, again.high_end)):
+    for one, other in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
         assert one.a == pytest.approx(other.a, abs=1e-10)
         assert (one.kind, one.turns) == (other.kind, other.turns)
 
@@ -150,9 +150,9 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
     doubled = settled(0.135)
     assert sorted(doubled.signature) == [12, 26, 26]
     found = stretch(doubled, (0.13, 0.15), 4, Following(largest_step=1e-4))
-    assert found.high_end.kind == EdgeKind.FLIP
-    flip = stretch(found.upward[-1].joined, (0.13, 0.15), 4, STEPS).low_end
-    assert flip.a == pytest.approx(found.high_end.a, abs=1e-10)
+    assert found.upward.end.kind == EdgeKind.FLIP
+    flip = stretch(found.upward.orbits[-1].joined, (0.13, 0.15), 4, STEPS).downward.end
+    assert flip.a == pytest.approx(found.upward.end.a, abs=1e-10)
     assert flip.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
     # The square of what the doubled orbit misses after half its period falls to 0 there.
     near = [point.orbit for point in found.stable if 0.0 < flip.a - point.orbit.a < 6e-4]
@@ -166,7 +166,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
 def test_a_torus_branches_off_where_perturbations_stop_decaying():
     orbit = settled(0.12, (-0.787, -0.661, -0.869), velocity=(0.0, 0.101, 0.189))
     assert (orbit.symmetry, orbit.signature) == (Symmetry.SYMMETRIC, (1, 0, 1))
-    edge = stretch(orbit, (0.1, 0.16), 4, STEPS).high_end
+    edge = stretch(orbit, (0.1, 0.16), 4, STEPS).upward.end
     assert edge.kind == EdgeKind.NEIMARK_SACKER
     assert abs(edge.at.multipliers.whole[0]) == pytest.approx(1.0, abs=1e-9)
     assert abs(edge.at.multipliers.whole[0].imag) > 0.1

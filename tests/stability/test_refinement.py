@@ -3,6 +3,7 @@
 import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, law_of
+from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability import refinement
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.refinement import refined
@@ -27,7 +28,9 @@ def values(monkeypatch):
 
         monkeypatch.setattr(refinement, "Search", Scripted)
         ends = [Search(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
-        return [search.model.a for search in refined(*ends, Refine(resolution))], asked
+        with shared_out(1) as each:
+            (inner,) = refined(ends, Refine(resolution), each)
+        return [search.model.a for search in inner], asked
 
     return put_in
 

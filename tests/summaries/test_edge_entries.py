@@ -9,11 +9,11 @@ import xarray as xr
 from burridge_knopoff import Chain, Model, MotionKind, OrbitError, Symmetry, find_periodic_orbit, law_of
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.pseudo_arclength import begin_branch
-from burridge_knopoff.orbits.stretch import Stretch
+from burridge_knopoff.orbits.stretch import Half
 from burridge_knopoff.summaries import edge_entries
 
 
-@pytest.mark.parametrize("processes", [1, 2, 4])
+@pytest.mark.parametrize("processes", [1, 4, 8])
 @pytest.mark.parametrize(
     ("failing", "expected", "numbers"),
     [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.0001, 1.01, 0.99], {1: 0, 2: 1, 3: 2})],
@@ -31,10 +31,10 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     def alone(one, *_):
         if one.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
             raise OrbitError("cannot be followed")
-        return Stretch(*[[begin_branch(one, True)]] * 2)
+        return Half([begin_branch(one, True)])
 
     monkeypatch.setattr(edge_entries, "closed_motion", closed_motion)
-    monkeypatch.setattr(edge_entries, "stretch", alone)
+    monkeypatch.setattr(edge_entries, "half", alone)
     slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4}
     one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
     names, position = ("value", "attractor", "block"), np.zeros((1, 4, 3))
@@ -43,4 +43,4 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     one["velocity"] = names, np.zeros((1, 4, 3))
     found, of_slot = edge_entries.followed(orbit.model, one, [], processes)
     assert of_slot == {(0, slot): number for slot, number in numbers.items()}
-    assert [item.upward[0].orbit.period / orbit.period for item in found] == pytest.approx(expected)
+    assert [item.upward.orbits[0].orbit.period / orbit.period for item in found] == pytest.approx(expected)

@@ -22,6 +22,8 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     group:
         group("figures")
+    # The last job of all: the other cores have nothing else to do.
+    threads: 8
     resources:
         mem_mb=1000,
         runtime=10,

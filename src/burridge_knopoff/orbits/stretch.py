@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,48 +19,58 @@ CLOSE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
+class Half:
+    """Orbits of one branch from a stable one on, with a growing at first, or falling.
+
+    orbits : in the order in which they were followed
+    """
+
+    orbits: Sequence[BranchOrbit]
+
+    @cached_property
+    def edges(self) -> list[Edge]:
+        """Edges that the stable orbits pass, and the one at which they end, if it is met."""
+        found = []
+        for edge in locate_edges(self.orbits):
+            found.append(edge)
+            if edge.loses_stability:
+                break
+        return found
+
+    @property
+    def end(self) -> Edge | None:
+        """The edge at which the stable orbits end; None if none is met."""
+        return self.edges[-1] if self.edges and self.edges[-1].loses_stability else None
+
+    @property
+    def shown(self) -> list[BranchOrbit]:
+        """All orbits but those on the way to a corner."""
+        return [point for point in self.orbits if point.corner or not 0.0 < point.length < CLOSE]
+
+
+@dataclass(frozen=True, eq=False)
 class Stretch:
     """Orbits of one branch around a stable one.
 
     downward, upward : orbits followed from it with a falling, and growing, at first
     """
 
-    downward: Sequence[BranchOrbit]
-    upward: Sequence[BranchOrbit]
-
-    @cached_property
-    def low_edges(self) -> list[Edge]:
-        """Edges met going down: those that the stable orbits pass, and the one at which they end, if it is met."""
-        return _until_lost(locate_edges(self.downward))
-
-    @cached_property
-    def high_edges(self) -> list[Edge]:
-        """Edges met going up."""
-        return _until_lost(locate_edges(self.upward))
-
-    @property
-    def low_end(self) -> Edge | None:
-        """The edge at which the stable orbits end, going down; None if none is met."""
-        return _end(self.low_edges)
-
-    @property
-    def high_end(self) -> Edge | None:
-        """The edge at which the stable orbits end, going up; None if none is met."""
-        return _end(self.high_edges)
+    downward: Half
+    upward: Half
 
     @cached_property
     def stable(self) -> list[BranchOrbit]:
         """The stable orbits, a ascending."""
-        found = [
-            point for points in (self.downward[:0:-1], self.upward) for point in points if _is_between(self, point)
-        ]
+        low = self.downward.end.a if self.downward.end else -np.inf
+        high = self.upward.end.a if self.upward.end else np.inf
+        both = (*self.downward.orbits[:0:-1], *self.upward.orbits)
+        found = [point for point in both if point.multipliers.unstable == 0 and low <= point.orbit.a <= high]
         return sorted(found, key=lambda point: point.orbit.a)
 
     @property
     def shown(self) -> list[BranchOrbit]:
         """All orbits from one end to the other, but for those on the way to a corner."""
-        both = (*self.downward[:0:-1], *self.upward)
-        return [point for point in both if point.corner or not 0.0 < point.length < CLOSE]
+        return [*self.downward.shown[:0:-1], *self.upward.shown]
 
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
         """Tell whether an orbit is one of the stable ones: by its a, its stops, and its period within a share of it."""
@@ -68,8 +78,8 @@ class Stretch:
         if not stable:
             return False
         a = np.array([point.orbit.a for point in stable])
-        low = self.low_end.a if self.low_end else a[0]
-        high = self.high_end.a if self.high_end else a[-1]
+        low = self.downward.end.a if self.downward.end else a[0]
+        high = self.upward.end.a if self.upward.end else a[-1]
         if not low <= orbit.a <= high:
             return False
         above = int(np.clip(np.searchsorted(a, orbit.a), 1, len(a) - 1)) if len(a) > 1 else 0
@@ -83,14 +93,24 @@ class Stretch:
 def stretch(
     orbit: PeriodicOrbit, a_range: tuple[float, float], beyond: int, settings: Following = FOLLOWING
 ) -> Stretch:
-    """Follow a stable orbit both ways until so many orbits beyond an edge are unstable, or a leaves a range.
+    """Return both halves of the stretch around a stable orbit; arguments and errors as in `half`."""
+    return Stretch(*(half(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
+
+
+def half(
+    orbit: PeriodicOrbit,
+    upward: bool,
+    a_range: tuple[float, float],
+    beyond: int,
+    settings: Following = FOLLOWING,
+) -> Half:
+    """Follow a stable orbit one way until so many orbits beyond an edge are unstable, or a leaves a range.
 
     Raises OrbitError if it cannot be followed at all.
     """
     if a_range[0] > orbit.a or a_range[1] < orbit.a:
         raise OrbitError(f"a = {orbit.a!r}: not within the range {a_range[0]!r} to {a_range[1]!r}")
-    both = [follow(orbit, a_range, settings, upward=upward, enough=_enough(beyond)) for upward in (False, True)]
-    return Stretch(*both)
+    return Half(follow(orbit, a_range, settings, upward=upward, enough=_enough(beyond)))
 
 
 def _enough(beyond: int) -> Callable[[list[BranchOrbit]], bool]:
@@ -104,23 +124,3 @@ def _enough(beyond: int) -> Callable[[list[BranchOrbit]], bool]:
         return first > 0 and len(points) - first >= beyond
 
     return enough
-
-
-def _until_lost(edges: Iterator[Edge]) -> list[Edge]:
-    """Return the edges up to the first at which stability is lost."""
-    found = []
-    for edge in edges:
-        found.append(edge)
-        if edge.loses_stability:
-            break
-    return found
-
-
-def _end(edges: list[Edge]) -> Edge | None:
-    return edges[-1] if edges and edges[-1].loses_stability else None
-
-
-def _is_between(whole: Stretch, point: BranchOrbit) -> bool:
-    low = whole.low_end.a if whole.low_end else -np.inf
-    high = whole.high_end.a if whole.high_end else np.inf
-    return point.multipliers.unstable == 0 and low <= point.orbit.a <= high

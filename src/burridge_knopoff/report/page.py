@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -52,23 +54,26 @@ class Sources:
     benchmarks: Path = field(default=Path("benchmarks"))
 
 
-def write_report(study: Study, sources: Sources, configfile: str, path: str | Path) -> None:
+def write_report(study: Study, sources: Sources, configfile: str, path: str | Path, threads: int = 1) -> None:
     """Write the report of a study as one HTML file.
 
     configfile : path of its config as the commands in the report name it, empty for the default study
+    threads : that compress its pictures
     Raises ValueError, one line that names the file, if a source is missing or cannot be read.
     """
-    write_text(path, render(study, sources, configfile))
+    write_text(path, render(study, sources, configfile, threads))
 
 
-def render(study: Study, sources: Sources, configfile: str = "") -> str:
+def render(study: Study, sources: Sources, configfile: str = "", threads: int = 1) -> str:
     """Return the report as HTML; see `write_report`."""
     for name in NEEDED:
         if name not in sources.summaries:
             raise ValueError(f"{name}.nc: not among the summaries of the report; it needs {', '.join(NEEDED)}")
     verdicts = read_verdicts(sources.claims)
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
-    pictures = {name: read_picture(path, list(summaries)) for name, path in sources.figures.items()}
+    with ThreadPoolExecutor(threads) as pool:
+        shown = pool.map(partial(read_picture, summaries=list(summaries)), sources.figures.values())
+        pictures = dict(zip(sources.figures, shown, strict=True))
     commands = Commands(study, configfile)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),

@@ -57,15 +57,6 @@ class Continuation:
     samples: list[np.ndarray]
 
 
-@dataclass(frozen=True, eq=False)
-class _Step:
-    """What lies between one model of the grid and the next: attractors put in, and where those of each lead."""
-
-    inner: list[Search]
-    upward: np.ndarray
-    downward: np.ndarray
-
-
 def continue_attractors(
     models: Sequence[Model],
     settings: SearchSettings = SEARCH,
@@ -93,10 +84,11 @@ def continue_attractors(
         _hand_on(searches)
         searches, samples = fraction_labels(searches, start, each)
         # The sets of attractors are complete now: what follows only reads them.
-        steps = each("refined", partial(_step, refine=refine), searches[:-1], searches[1:])
+        upward = each("carried upward", _carried, searches[:-1], searches[1:])
+        downward = each("carried downward", _carried, searches[1:], searches[:-1])
         whole = [searches[0]]
-        for step, search in zip(steps, searches[1:], strict=True):
-            whole += [*step.inner, search]
+        for inner, search in zip(refined(searches, refine, each), searches[1:], strict=True):
+            whole += [*inner, search]
         lived = each("lifetimes", _lifetimes, whole)
     attractors = [search.attractors for search in whole]
     # At the ends of the grid nothing follows.
@@ -110,8 +102,8 @@ def continue_attractors(
         attractors,
         lived,
         *branches(values, attractors, grid, reach, models[0].scale, tuning),
-        [*(step.upward for step in steps), last],
-        [first, *(step.downward for step in steps)],
+        [*upward, last],
+        [first, *downward],
         samples,
     )
 
@@ -136,13 +128,9 @@ def _hand_on(searches: Sequence[Search]) -> None:
             shown[place] = outlines(taker.attractors, taker.tuning)
 
 
-def _step(left: Search, right: Search, refine: Refine) -> _Step:
-    """Find what lies between two neighbours."""
-    return _Step(
-        refined(left, right, refine),
-        right.known_labels(right.seeds(left.attractors)),
-        left.known_labels(left.seeds(right.attractors)),
-    )
+def _carried(giver: Search, taker: Search) -> np.ndarray:
+    """Return the index of the attractor at a neighbouring a that each attractor leads to."""
+    return taker.known_labels(taker.seeds(giver.attractors))
 
 
 def _lifetimes(search: Search) -> list[Lifetime | None]:

@@ -16,7 +16,7 @@ from burridge_knopoff.stability.radius import midst
 from burridge_knopoff.stability.sampling import sample_states
 
 #: States that one process labels at a time; no label depends on it.
-PART = 500
+PART = 250
 
 
 def fraction_labels(

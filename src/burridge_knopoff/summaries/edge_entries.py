@@ -16,7 +16,7 @@ from burridge_knopoff.orbits.edges import Edge
 from burridge_knopoff.orbits.following import Following
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
-from burridge_knopoff.orbits.stretch import Stretch, stretch
+from burridge_knopoff.orbits.stretch import Half, Stretch, half
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.motion import MotionKind
@@ -96,24 +96,24 @@ def followed(
         while left:
             # Those next in order that have not been followed: what one of them shows of the others is seen afterwards.
             following: list[tuple[tuple[int, int], PeriodicOrbit]] = []
-            while left and len(following) < processes:
+            while left and len(following) < max(1, processes // 2):
                 place, orbit = left.pop(0)
                 if isinstance(orbit, OrbitError):
                     print(f"{model.law.name}: {orbit}")
                 elif not held(place, orbit):
                     following.append((place, orbit))
             known = len(found)
-            stretches = each(
-                "followed", partial(_stretch, largest=float(np.nanmax(a_values))), [orbit for _, orbit in following]
-            )
-            for (place, orbit), one_stretch in zip(following, stretches, strict=True):
+            twice, upward = [orbit for _, orbit in following for _ in range(2)], [False, True] * len(following)
+            halves = each("followed", partial(_half, largest=float(np.nanmax(a_values))), twice, upward)
+            for (place, orbit), *both in zip(following, halves[::2], halves[1::2], strict=True):
+                failed = [item for item in both if isinstance(item, OrbitError)]
                 if held(place, orbit, known):
                     continue
-                if isinstance(one_stretch, OrbitError):
-                    print(f"{model.law.name}: {one_stretch}")
+                if failed:
+                    print(f"{model.law.name}: {failed[0]}")
                     continue
                 of_slot[place] = len(found)
-                found.append(one_stretch)
+                found.append(Stretch(*both))
     return found, of_slot
 
 
@@ -125,12 +125,12 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
         return error
 
 
-def _stretch(orbit: PeriodicOrbit, largest: float) -> Stretch | OrbitError:
-    """Follow an orbit, and find the edges that it meets, or return why it cannot be followed."""
+def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitError:
+    """Follow an orbit one way, and find the edges that it meets, or return why it cannot be followed."""
     try:
-        found = stretch(orbit, (LEAST_A, largest), BEYOND, FOLLOWING)
-        # Found here, these go with the stretch to the process that asks for them.
-        _ = found.low_edges, found.high_edges, found.stable
+        found = half(orbit, upward, (LEAST_A, largest), BEYOND, FOLLOWING)
+        # Found here, these go with the orbits to the process that asks for them.
+        _ = found.edges, [point.multipliers for point in found.orbits]
         _ = [point.orbit.mean_distance for point in found.shown]
     except OrbitError as error:
         return error
@@ -161,8 +161,8 @@ def entries(
         if numbers[0] is not None and numbers[0] == numbers[1]:
             # One orbit on both sides; only its section points were counted differently.
             continue
-        for number, name in zip(numbers, ("high_end", "low_end"), strict=True):
-            edge = getattr(stretches[number], name) if number is not None else None
+        for number, name in zip(numbers, ("upward", "downward"), strict=True):
+            edge = getattr(stretches[number], name).end if number is not None else None
             if edge is None or any(abs(edge.a - other.a) <= LEAST_ERROR for other in ends):
                 continue
             # An orbit that goes on for more than a step of the grid beyond a change did not bring it about.
@@ -177,7 +177,7 @@ def entries(
         found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
     for number, one_stretch in enumerate(stretches):
         n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
-        for edge in one_stretch.low_edges + one_stretch.high_edges:
+        for edge in one_stretch.downward.edges + one_stretch.upward.edges:
             if not edge.loses_stability and not edge.turns:
                 k = int(np.clip(np.searchsorted(a[grid], edge.a) - 1, 0, len(grid) - 2))
                 low, high = int(grid[k]), int(grid[k + 1])
