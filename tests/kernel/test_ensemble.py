@@ -55,6 +55,16 @@ def test_events_of_random_states(law, blocks, contact, a):
     assert check_against_scalar(model, new_ensemble(model), 40, 12.0) > 100
 
 
+def test_a_block_that_is_pulled_back_from_its_threshold_starts_and_stops_once():
+    """What rounding leaves of its force beyond the threshold must not start it again and again."""
+    model = Model(Chain(3), law_of("nonlinear", 0.1), contact="symmetric")
+    position = np.array([[0.2, (0.2 + 0.3 - 1.0) / 4.0, 0.3]] * 40) - model.sliding_offset
+    position[:, 1] -= 2.0**-54 * np.arange(2, 42)
+    # Its neighbours slip backward, so that its force falls.
+    start = position, np.array([[-0.3, 0.0, -0.25]] * 40), np.array([[False, True, False]] * 40)
+    assert check_against_scalar(model, new_ensemble(model), 40, 0.5, start) == 2 * 40
+
+
 @pytest.mark.parametrize("v", [0.003, 0.5])
 def test_slow_and_fast_drivers(v):
     model = Model(Chain(3), law_of("nonlinear", 0.1), v)

@@ -37,7 +37,7 @@ class Half:
                 break
         return found
 
-    @property
+    @cached_property
     def end(self) -> Edge | None:
         """The edge at which the stable orbits end; None if none is met."""
         return self.edges[-1] if self.edges and self.edges[-1].loses_stability else None
@@ -74,20 +74,25 @@ class Stretch:
 
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
         """Tell whether an orbit is one of the stable ones: by its a, its stops, and its period within a share of it."""
-        stable = self.stable
-        if not stable:
+        a, period = self._known
+        if not len(a):
             return False
-        a = np.array([point.orbit.a for point in stable])
         low = self.downward.end.a if self.downward.end else a[0]
         high = self.upward.end.a if self.upward.end else a[-1]
         if not low <= orbit.a <= high:
             return False
         above = int(np.clip(np.searchsorted(a, orbit.a), 1, len(a) - 1)) if len(a) > 1 else 0
-        near = [stable[k].orbit.signature for k in {max(above - 1, 0), above}]
+        near = [self.stable[k].orbit.signature for k in {max(above - 1, 0), above}]
         if not {orbit.signature, orbit.signature[::-1]} & set(near):
             return False
-        period = float(np.interp(orbit.a, a, [point.orbit.period for point in stable]))
-        return abs(orbit.period - period) <= tolerance * period
+        expected = float(np.interp(orbit.a, a, period))
+        return abs(orbit.period - expected) <= tolerance * expected
+
+    @cached_property
+    def _known(self) -> tuple[np.ndarray, np.ndarray]:
+        """The friction parameters and periods of the stable orbits."""
+        orbits = [point.orbit for point in self.stable]
+        return np.array([orbit.a for orbit in orbits]), np.array([orbit.period for orbit in orbits])
 
 
 def stretch(

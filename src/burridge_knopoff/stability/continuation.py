@@ -10,11 +10,12 @@ Chaos 33 (2023) 073151: the search at each parameter begins from the attractors 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -81,8 +82,7 @@ def continue_attractors(
     with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion, tuning) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        _hand_on(searches)
-        searches, samples = fraction_labels(searches, start, each)
+        searches, samples = fraction_labels(_hand_on(searches, each), start, each)
         # The sets of attractors are complete now: what follows only reads them.
         upward = each("carried upward", _carried, searches[:-1], searches[1:])
         downward = each("carried downward", _carried, searches[1:], searches[:-1])
@@ -114,18 +114,30 @@ def _searched(search: Search, starts: Sequence[InitialState], start: str) -> Sea
     return search
 
 
-def _hand_on(searches: Sequence[Search]) -> None:
+def _hand_on(searches: Sequence[Search], each: Callable[..., list[Any]]) -> list[Search]:
     """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are."""
-    shown = [outlines(search.attractors, search.tuning) for search in searches]
-    places = range(len(searches))
-    for giver, place in (*pairwise(reversed(places)), *pairwise(places)):
-        taker = searches[place]
-        lacking, _ = differing(shown[giver], shown[place], taker.model.scale, taker.tuning)
-        if lacking:
-            # Whatever states have led to nothing: what attracts next to it is worth looking for.
-            taker.vain = 0
-            taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
-            shown[place] = outlines(taker.attractors, taker.tuning)
+    searches = list(searches)
+    for way in ("down", "up"):
+        before = searches[::-1]
+        handed = each(f"handed {way}", _handed_on, before[:-1], before[1:])
+        searches = [before[0]]
+        for giver, taker, given in zip(before[:-1], before[1:], handed, strict=True):
+            # What has just come to the giver goes on as well.
+            gained = len(searches[-1].attractors) > len(giver.attractors)
+            searches.append(_handed_on(searches[-1], taker) if gained else given)
+    return searches
+
+
+def _handed_on(giver: Search, taker: Search) -> Search:
+    """Return a search that has followed what a neighbour knows."""
+    known, shown = (outlines(search.attractors, taker.tuning) for search in (giver, taker))
+    lacking, _ = differing(known, shown, taker.model.scale, taker.tuning)
+    if not lacking:
+        return taker
+    # Whatever states have led to nothing: what attracts next to it is worth looking for.
+    taker = replace(taker, attractors=list(taker.attractors), vain=0)
+    taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
+    return taker
 
 
 def _carried(giver: Search, taker: Search) -> np.ndarray:

@@ -12,7 +12,9 @@ from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.matching import Outline, differing, matched, outlines
 from burridge_knopoff.stability.settings import Refine
-from burridge_knopoff.stability.tuning import Tuning
+
+#: Numbers of the attractors on both sides of a gap that differ.
+Differing = tuple[list[int], list[int]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +39,6 @@ class Gap:
         return bool(self.before or self.after) and not near
 
 
-# A model, and attractors there by a number.
-_End = tuple[Model, Mapping[int, Outline]]
-
-
 def refined(searches: Sequence[Search], refine: Refine, each: Callable[..., list[Any]]) -> list[list[Search]]:
     """Return searches at values of a between each two neighbours of the grid, ascending; none where nothing changes.
 
@@ -52,53 +50,65 @@ def refined(searches: Sequence[Search], refine: Refine, each: Callable[..., list
     perturbations of sliding grow at a rate ∝ a, so that nothing would settle there.
     """
     found: list[list[Search]] = [[] for _ in searches[1:]]
-    gaps = list(enumerate(each("compared with the next", _between, searches[:-1], searches[1:])))
+    differ = each("compared with the next", _between, searches[:-1], searches[1:])
+    gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
     for step in count(1):
-        gaps = [(k, gap) for k, gap in gaps if gap is not None and gap.is_open(refine)]
+        gaps = [(k, gap) for k, gap in gaps if gap.is_open(refine)]
         if not gaps:
             break
         halved = each(f"refined, step {step}", _halved, [gap for _, gap in gaps])
-        for (k, _), (middle, *_) in zip(gaps, halved, strict=True):
+        halves = []
+        for (k, gap), (middle, low, high) in zip(gaps, halved, strict=True):
             found[k].append(middle)
-        gaps = [(k, half) for (k, _), (_, *halves) in zip(gaps, halved, strict=True) for half in halves]
+            here = middle.attractors
+            lower = _chosen(gap.before, low[0]), _chosen(here, low[1])
+            upper = _chosen(here, high[0]), _chosen(gap.after, high[1])
+            halves.append((k, replace(gap, last=middle.model, before=lower[0], after=lower[1])))
+            halves.append((k, replace(gap, first=middle.model, before=upper[0], after=upper[1])))
+        gaps = halves
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 
 
-def _between(left: Search, right: Search) -> Gap | None:
-    """Return the gap between two neighbours of the grid, None if there is nothing to look for."""
+def _between(left: Search, right: Search) -> Differing:
+    """Return which attractors of two neighbours of the grid differ."""
     if not left.attractors or not right.attractors:
-        return None
+        return [], []
+    before, after = (outlines(side.attractors, side.tuning) for side in (left, right))
+    return _differing(before, after, left)
+
+
+def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int]) -> Gap:
+    """Return the gap between two neighbours of the grid, from what differs."""
     # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
     # that few pushes show whether it attracts; and an ensemble shows whether chaos lasts.
     tuning = replace(left.tuning, patience=left.tuning.patience // 4, trials=1, shrinking=16.0)
     settings = replace(left.settings, pushes=min(left.settings.pushes, tuning.push_group))
     search = Search(left.model, settings, left.motion_settings, tuning)
-    before, after = (outlines(side.attractors, tuning) for side in (left, right))
-    changed, _ = differing(before, after, left.model.scale, tuning)
-    still = [item.attractor for k, item in before.items() if k not in changed]
-    return _gap(search, (left.model, before), (right.model, after), still)
+    still = [k for k in outlines(left.attractors) if k not in before]
+    ends = _chosen(left.attractors, before), _chosen(right.attractors, after)
+    return Gap(search, left.model, right.model, *ends, _chosen(left.attractors, still))
 
 
-def _halved(gap: Gap) -> tuple[Search, Gap, Gap]:
-    """Follow what may differ at a value in the middle; return what is there, and the gaps on both sides of it."""
-    search, tuning = gap.search, gap.search.tuning
-    middle = replace(search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
+def _halved(gap: Gap) -> tuple[Search, Differing, Differing]:
+    """Follow what may differ at a value in the middle; return what is there, and what differs below and above it."""
+    tuning = gap.search.tuning
+    middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
     middle.labels(middle.seeds([*gap.before, *gap.after]), check=False)
+    known, before, after = (
+        {k: Outline(item, tuning.compared_returns) for k, item in enumerate(attractors)}
+        for attractors in ([*gap.still, *gap.before], gap.before, gap.after)
+    )
     # What a seed has left for may be an attractor that does not change.
     here = outlines(middle.attractors, tuning)
-    origin = matched(_numbered([*gap.still, *gap.before], tuning), here, middle.model.scale, tuning)
+    origin = matched(known, here, middle.model.scale, tuning)
     here = {k: item for k, item in here.items() if origin.get(k, len(gap.still)) >= len(gap.still)}
-    ends = ((gap.first, _numbered(gap.before, tuning)), (middle.model, here), (gap.last, _numbered(gap.after, tuning)))
-    low, high = (_gap(search, *pair, gap.still) for pair in pairwise(ends))
-    return middle, low, high
+    return middle, _differing(before, here, middle), _differing(here, after, middle)
 
 
-def _gap(search: Search, first: _End, last: _End, still: Sequence[Attractor]) -> Gap:
-    """Return the gap between two models, each with attractors of which those are kept that differ."""
-    sides = differing(first[1], last[1], first[0].scale, search.tuning)
-    before, after = ([item.attractor for item in side.values()] for side in sides)
-    return Gap(search, first[0], last[0], before, after, still)
+def _differing(before: Mapping[int, Outline], after: Mapping[int, Outline], search: Search) -> Differing:
+    one, other = differing(before, after, search.model.scale, search.tuning)
+    return list(one), list(other)
 
 
-def _numbered(attractors: Sequence[Attractor], tuning: Tuning) -> dict[int, Outline]:
-    return {k: Outline(item, tuning.compared_returns) for k, item in enumerate(attractors)}
+def _chosen(attractors: Sequence[Attractor], numbers: Sequence[int]) -> list[Attractor]:
+    return [attractors[k] for k in numbers]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
+from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.sampling import fraction_interval
@@ -57,18 +60,20 @@ def one_law(
     settings: SearchSettings,
     motion: MotionSettings,
     start: str,
+    processes: int = 1,
 ) -> xarray.Dataset:
     """Return the attractors of one law at the values of the grid.
 
     found : by the settings of the search, `settings`, and of the kinds of motion, `motion`
     initial : states whose own attractor is found under each convention
     start : convention for the drawn states
+    processes : that follow the given states at once; no result depends on them
     """
     models = [found.models[k] for k in found.grid]
     values = slot_values(found, found.grid, settings.lifetime, "a")
     values.update(_basins(found, settings.fraction_samples))
     values.update(_steps(found))
-    values.update(_reached(found, initial, settings.label_limit))
+    values.update(_reached(found, initial, settings.label_limit, processes))
     values.update(_sweeps(found))
     coordinates = axes([state.name for state in initial], [model.a for model in models], [])
     del coordinates["law"]
@@ -128,23 +133,37 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _reached(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
+def _reached(
+    found: Continuation, states: Sequence[InitialState], label_limit: float, processes: int
+) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
     values = empty(VARIABLES, shape, "initial")
+    models, attractors = ([one[place] for place in found.grid] for one in (found.models, found.attractors))
+    with shared_out(processes) as each:
+        of_states = partial(_labels_of_states, states=states, label_limit=label_limit)
+        reached = each("initial states", of_states, models, attractors)
     for k, place in enumerate(found.grid):
-        model = found.models[place]
-        for i, contact in enumerate(CONTACTS):
-            other = replace(model, contact=contact)
-            allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
-            cases = [(j, n) for j in range(len(STARTS)) for n in allowed]
-            starts = [other.begin(states[n], STARTS[j]) for j, n in cases]
-            reached, _ = label(other, found.attractors[place], starts, label_limit)
-            for (j, n), index in zip(cases, reached, strict=True):
-                if index != UNDETERMINED:
-                    values["initial_branch"][i, j, n, k] = found.branch[place][index]
-                    values["initial_side"][i, j, n, k] = found.side[place][index]
+        for where in np.argwhere(reached[k] != UNDETERMINED):
+            at, index = (*where, k), reached[k][tuple(where)]
+            values["initial_branch"][at] = found.branch[place][index]
+            values["initial_side"][at] = found.side[place][index]
     return values
+
+
+def _labels_of_states(
+    model: Model, attractors: Sequence[Attractor], states: Sequence[InitialState], label_limit: float
+) -> np.ndarray:
+    """Return the index of the attractor that each state reaches, −1 for none, shape (contact, start, initial)."""
+    labels = np.full((len(CONTACTS), len(STARTS), len(states)), UNDETERMINED)
+    for i, contact in enumerate(CONTACTS):
+        other = replace(model, contact=contact)
+        allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
+        cases = [(j, n) for j in range(len(STARTS)) for n in allowed]
+        reached, _ = label(other, attractors, [other.begin(states[n], STARTS[j]) for j, n in cases], label_limit)
+        for (j, n), index in zip(cases, reached, strict=True):
+            labels[i, j, n] = index
+    return labels
 
 
 def _sweeps(found: Continuation) -> dict[str, np.ndarray]:

@@ -130,7 +130,7 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitErr
     try:
         found = half(orbit, upward, (LEAST_A, largest), BEYOND, FOLLOWING)
         # Found here, these go with the orbits to the process that asks for them.
-        _ = found.edges, [point.multipliers for point in found.orbits]
+        _ = [edge.stick_time for edge in found.edges], [point.multipliers for point in found.orbits]
         _ = [point.orbit.mean_distance for point in found.shown]
     except OrbitError as error:
         return error
