@@ -26,6 +26,8 @@ def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     assert orbit.asymmetry == 0.0
     assert [len(orbit.times(block, kind)) for block in (0, 2) for kind in (0, 1)] == [1, 1, 1, 1]
     assert multipliers(orbit)[1] == pytest.approx(1.0, abs=1e-12)
+    # Those of the end blocks' velocities, which are 0 while these stick.
+    assert multipliers(orbit)[4:].tolist() == [0.0, 0.0]
     if law == "linearized":
         time, omega = orbit.lateral_slip_time, np.sqrt(2.0 - 0.25 * a * a)
         closed = np.exp(0.5 * a * time) * (np.cos(omega * time) - 0.5 * a / omega * np.sin(omega * time))

@@ -46,6 +46,7 @@ def test_branches_are_joined_whatever_their_numbers(models, found):
         ({**others, 4: {0: second[1].mirrored()}}, {0: 0, 1: 2, 4: 1}),
         # What is not there at that a, or somewhere else, is not joined.
         ({0: others[0], 4: {0: second[1].mirrored()}}, {0: 0, 4: 1}),
+        ({0: others[0], 1: others[1]}, {0: 0, 1: 2}),
         ({0: others[0]}, {0: 0}),
     ):
         assert joined([models[0]], [models[1]], states, there, SETTINGS) == expected
