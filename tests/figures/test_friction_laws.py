@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from burridge_knopoff.figures.friction_laws import draw, law_text
+from burridge_knopoff.figures.friction_laws import draw
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -35,4 +35,4 @@ def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
     assert entries[:2] == ["linearized: Φ = 1 − aU′", "drop: Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.02"]
     assert entries[2].startswith("own: Φ = 1 - c*tanh(a*u/c)")
     assert entries[2].count("\n") == 2
-    assert law_text(law_of("own", 0.1, {"formula": "1 - c*u", "c": 0.1})).count("c = 0.1") == 1
+    assert law_of("own", 0.1, {"formula": "1 - c*u", "c": 0.1}).words.count("c = 0.1") == 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
-from matplotlib.colors import to_rgb
 
 OTHER_COLOR = "#999999"
 
@@ -24,8 +23,8 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
 
 
 def side_color(color: str, side: int) -> tuple[float, float, float]:
-    """Return the colour of one side of a branch: lighter for the side −1."""
-    red, green, blue = to_rgb(color)
+    """Return the colour of one side of a branch, #rrggbb, as parts from 0 to 1: lighter for the side −1."""
+    red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
     if side >= 0:
         return red, green, blue
     return tuple(0.45 * part + 0.55 for part in (red, green, blue))  # type: ignore[return-value]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any
@@ -70,22 +69,8 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     return figure
 
 
-def law_text(law: Law) -> str:
-    """Return how a law reads, with its numbers: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
-    # A law by formula names its numbers itself.
-    numbers = {} if f", {next(iter(law.numbers), '')} = " in law.text else law.numbers
-    return ", ".join([law.text, *(f"{_letter(key)} = {value:g}" for key, value in numbers.items())])
-
-
-def _letter(name: str) -> str:
-    try:
-        return unicodedata.lookup(f"GREEK SMALL LETTER {name}")
-    except KeyError:
-        return name
-
-
 def _entry(law: Law) -> str:
-    return "\n".join(wrap(f"{law.name}: {law_text(law)}", LETTERS, max_lines=LINES, placeholder=" …"))
+    return "\n".join(wrap(f"{law.name}: {law.words}", LETTERS, max_lines=LINES, placeholder=" …"))
 
 
 def _styles(panel: Axes, names: Sequence[str], others: Sequence[Line2D] = ()) -> None:

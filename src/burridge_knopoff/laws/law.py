@@ -7,6 +7,7 @@ where friction is least. A law of one's own is a class with a formula, or a form
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Mapping
 from functools import cached_property
 from typing import ClassVar, Self
@@ -96,6 +97,13 @@ class Law:
         return f"<law {self.name}: {self.formula}, a={self.a!r}{numbers}>"
 
     @property
+    def words(self) -> str:
+        """How the law reads, with its numbers: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
+        # A law by formula names its numbers itself.
+        numbers = {} if f", {next(iter(self.numbers), '')} = " in self.text else self.numbers
+        return ", ".join([self.text, *(f"{_letter(key)} = {value:g}" for key, value in numbers.items())])
+
+    @property
     def _key(self) -> tuple[object, ...]:
         return self.name, self.formula, self.a, tuple(self.numbers.items())
 
@@ -175,3 +183,10 @@ class FormulaLaw(Law):
         """The formula with its numbers."""
         numbers = "".join(f", {key} = {value:g}" for key, value in self.numbers.items())
         return f"Φ = {self.formula}, u = U′{numbers}"
+
+
+def _letter(name: str) -> str:
+    try:
+        return unicodedata.lookup(f"GREEK SMALL LETTER {name}")
+    except KeyError:
+        return name

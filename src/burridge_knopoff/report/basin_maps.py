@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray
-from matplotlib.colors import to_hex
 
 from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
 from burridge_knopoff.report.numbers import rounded
@@ -51,7 +50,7 @@ def _map(one: xarray.Dataset, laws: list[str], colors: dict[int, str], names: di
         members = (branch == b) & (side == s)
         label[members] = number
         name = "undetermined" if b < 0 else names[b] + {1: " (+)", -1: " (−)", 0: ""}[s]
-        shade = UNDETERMINED_COLOR if b < 0 else to_hex(side_color(colors[b], s))
+        shade = UNDETERMINED_COLOR if b < 0 else _hex(side_color(colors[b], s))
         classes.append({"name": name, "color": shade, "percent": rounded(100.0 * members.mean())})
     time = np.nan_to_num(np.clip(np.round(one["decision_time"].values), 1, LARGEST_TIME), nan=0.0)
     return {
@@ -63,3 +62,7 @@ def _map(one: xarray.Dataset, laws: list[str], colors: dict[int, str], names: di
         "label": base64.b64encode(label.tobytes()).decode(),
         "time": base64.b64encode(time.astype("<u2").tobytes()).decode(),
     }
+
+
+def _hex(color: tuple[float, float, float]) -> str:
+    return "#" + "".join(f"{round(255 * part):02x}" for part in color)

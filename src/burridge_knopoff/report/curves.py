@@ -9,10 +9,10 @@ import xarray
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
 from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.orbits.loss import OrbitStatus
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.summaries.orbits import OrbitStatus
 
 
 def kinds() -> list[dict[str, Any]]:

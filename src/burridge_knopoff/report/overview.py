@@ -10,7 +10,6 @@ from typing import Any
 import xarray
 import yaml
 
-from burridge_knopoff.figures.friction_laws import law_text
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
@@ -74,7 +73,7 @@ def _strengths(value: Any) -> str:
 
 def laws_text(models: Mapping[str, Model]) -> str:
     """Return names and formulas of friction laws."""
-    return "; ".join(f"{name}, {law_text(model.law)}" for name, model in models.items())
+    return "; ".join(f"{name}, {model.law.words}" for name, model in models.items())
 
 
 def _grid(items: list[Any]) -> str:

@@ -9,9 +9,9 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.figures.branches import branch_names
+from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.report.numbers import text, with_error
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.summaries.orbits import Bifurcation, BifurcationSide, OrbitStatus
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:

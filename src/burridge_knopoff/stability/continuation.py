@@ -1,8 +1,8 @@
 """The attractors of one law along a: found at each a from states, handed on to the values beside it, and refined.
 
 Between neighbouring values of a at which the attractors differ, values are put in until the change lies between two
-that are near enough to each other. What is done at one a, or between two, is shared out among processes; only what has just
-been handed on to one a goes on from value to value.
+that are near enough to each other. What is done at one a, or between two, is shared out among processes; only what
+has just been handed on goes on from value to value.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151: the search at each parameter begins from the attractors at the one before.

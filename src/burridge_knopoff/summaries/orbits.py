@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.orbits.orbit import OrbitError, multipliers, transverse_multiplier
 from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -22,36 +22,6 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
 PARTS = ("real", "imaginary")
 DIRECTIONS = ("upward", "downward")
-
-
-class OrbitStatus(IntEnum):
-    """Whether there is a synchronized orbit, numbered as in netCDF files.
-
-    Where friction does not depend on speed, as under most laws at a = 0, nothing feeds or damps the motion: no periodic
-    orbit is isolated (neutral).
-    """
-
-    FOUND = 0
-    NEUTRAL = 1
-    NOT_FOUND = 2
-    NOT_THREE_BLOCKS = 3
-
-
-class Bifurcation(IntEnum):
-    """How the synchronized orbit is lost, numbered as in netCDF files."""
-
-    UNDETERMINED = -1
-    PITCHFORK = 1
-    FLIP = 2
-
-
-class BifurcationSide(IntEnum):
-    """On which side of a_c the orbits that branch off lie, numbered as in netCDF files."""
-
-    UNDETERMINED = -1
-    SUBCRITICAL = 0
-    SUPERCRITICAL = 1
-
 
 #: Asymmetries x_1 − x_3 of the orbits that branch off, in units of v, and up to which the amplitude law is fitted.
 ASYMMETRIES = tuple(float(f"{10 ** (k / 5 - 3):.3e}") for k in range(13))
