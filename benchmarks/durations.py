@@ -29,7 +29,8 @@ def fitted(work, values, least):
         fixed = mean if mean < 100.0 * least else 20.0 * least
         return fixed, (mean - fixed) / work[0] if work[0] else 0.0
     (fixed, rate), _ = nnls(np.column_stack([np.ones_like(work), work]) / values[:, None], np.ones_like(values))
-    return fixed, rate
+    # Where the larger job takes more for each unit, it is the one whose seconds count.
+    return (fixed, rate) if fixed else (0.0, values.sum() / work.sum())
 
 
 def main():

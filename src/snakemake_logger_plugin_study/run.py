@@ -11,7 +11,7 @@ from snakemake_logger_plugin_study.durations import Durations
 
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 #: Of a job that has run longer than was thought: what it still takes, as a share of what it has taken.
-OVERDUE = 0.2
+OVERDUE = 0.05
 #: Seconds for which a forecast holds.
 FRESH = 2.0
 

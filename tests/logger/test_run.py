@@ -65,7 +65,7 @@ def test_a_running_job_counts_with_what_is_left_of_it():
     # One that takes longer than was thought makes the other longer too, and never ends in no time.
     begun[1].begin = 96.0
     assert run(*begun, cores=2).forecast(100.0) > 20.0
-    assert run(begun[0]).forecast(100.0) >= 0.2 * 100.0
+    assert run(begun[0]).forecast(100.0) >= 0.05 * 100.0
 
 
 def test_earlier_runs_count_more_than_the_machine():
@@ -133,12 +133,12 @@ def test_what_the_tree_ships():
     assert calibrate() > 0.0
 
 
-@pytest.mark.parametrize(("kept", "share"), [(None, 1.0), (0, 1.0), (2, 0.55), (4, 0.1), (9, 0.1)])
+@pytest.mark.parametrize(("kept", "share"), [(None, 1.0), (0, 1.0), (2, 0.65), (4, 0.3), (9, 0.3)])
 def test_what_a_search_has_kept_is_not_done_again(tmp_path, kept, share):
     study = load_study({"study": "s", "a": [0.02, 0.04, 0.06, 0.08, 0.1], "initial": {"plus": {}}}, "s")
-    (tmp_path / "refined").mkdir()
+    (tmp_path / "compared with the next").mkdir()
     for number in range(kept or 0):
-        (tmp_path / "refined" / str(number)).write_text("")
+        (tmp_path / "compared with the next" / str(number)).write_text("")
     of_law = units_of(study), "attractors_of_law", {"law": "nonlinear"}
     kind, work = work_of(*of_law, None if kept is None else str(tmp_path))
     assert (kind, work) == ("attractors_of_law nonlinear", pytest.approx(share * work_of(*of_law)[1]))
