@@ -199,12 +199,15 @@ def test_zero_exponents_of_regular_motion(law, initial, a, zeros):
     assert (error < 2e-3).all()
 
 
-def test_growth_like_a_power_of_time_is_within_the_error():
+@pytest.mark.parametrize("alignment", [10.0, 1000.0])
+def test_growth_like_a_power_of_time_is_within_the_error(alignment):
     """Linear growth gains ln(1 + T/A) through a window T after an alignment A; batches alone see an exponent there."""
-    run = simulate("linearized", 0.06, "plus", events="none")
-    window, alignment = 7000.0, 1000.0
-    assert (run.lyapunov_error > 0.99 * np.log(1.0 + window / alignment) / window).all()
-    batch = np.diff(np.log(alignment + np.linspace(0.0, window, 8))) / 1000.0
+    run = simulate("linearized", 0.06, "plus", events="none", lyapunov_alignment=alignment)
+    window = 7000.0
+    statistical = run.batch_lyapunov_exponent.std(axis=0, ddof=1) / np.sqrt(7)
+    expected = np.hypot(statistical, np.log(1.0 + window / (1.0 + alignment)) / window)
+    assert run.lyapunov_error == pytest.approx(expected, rel=2e-3)
+    batch = np.diff(np.log(1000.0 + np.linspace(0.0, window, 8))) / 1000.0
     assert batch.mean() > 3.0 * batch.std(ddof=1) / np.sqrt(7)
 
 

@@ -95,6 +95,15 @@ def test_the_last_samples_are_there_whatever_rounds(window, batches, sampling):
     assert np.isfinite(run.position).all()
 
 
+def test_least_friction_in_the_window_is_not_that_of_the_transient():
+    """A block that is thrown slows down before the window begins; the least friction is that at the greatest speed."""
+    state = InitialState("thrown", (0.0, 0.0, 0.0), (3.0, 0.1, 0.1))
+    run = simulate("nonlinear", 0.2, state, transient=50.0, window=50.0, trajectory=50.0, trajectory_sampling=1e-3)
+    assert run.least_friction == pytest.approx(1.0 / 1.6)
+    assert run.window_least_friction == pytest.approx(1.0 / (1.0 + 0.2 * run.velocity.max()), abs=1e-6)
+    assert run.window_least_friction > run.least_friction + 0.05
+
+
 def test_no_sticks_means_no_events():
     run = simulate("linearized", 0.0, InitialState("uniform", (-5 / 6, -2 / 3, -5 / 6), (0.1,) * 3), window=100.0)
     assert run.event_count == 0
