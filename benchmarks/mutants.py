@@ -46,7 +46,8 @@ TESTS = {
     "orbits": ("stability", "summaries/test_edges.py"),
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
-    "running": ("dataset", "kernel/test_exponents.py"),
+    "stability": ("study/test_keys.py",),
+    "running": ("dataset", "kernel/test_exponents.py", "study/test_keys.py"),
     "kernel": ("laws", "running", "orbits/test_orbit.py"),
 }
 DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
