@@ -48,7 +48,7 @@ TESTS = {
     "dataset": ("library/test_open_study.py",),
     "stability": ("study/test_keys.py",),
     "running": ("dataset", "kernel/test_exponents.py", "study/test_keys.py"),
-    "kernel": ("laws", "running", "orbits/test_orbit.py"),
+    "kernel": ("stability/test_ensemble.py", "laws", "running", "orbits/test_orbit.py"),
 }
 DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
-from burridge_knopoff.kernel.clouds import Clouds
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
@@ -157,31 +156,6 @@ def test_blocks_that_stop_together_are_proved_together(model):
         events = ensemble.run(*some, [200.0])["event_count"].sum()
         rounds.append(ensemble.rounds / events)
     assert rounds[1] < rounds[0]
-
-
-def test_a_label_is_certain_at_the_return_that_completes_a_streak(model):
-    """Told of the returns of each trajectory alone: stops of the first block, so many in a row near one cloud."""
-    start, end, wanted = states(model, 20), 120.0, [3, 6]
-    returns = []
-    for position, velocity, stuck in zip(*start, strict=True):
-        runner = Runner(model, keep_events=True)
-        runner.begin(Instant(position, np.where(stuck, 0.0, velocity), stuck))
-        runner.run(end)
-        block, kind, *state = runner.log.events.values().T
-        stops = (block == 1) & (kind == 0)
-        returns.append((runner.log.events.times()[stops], np.array(state).T[stops]))
-    # Pieces of two of the trajectories.
-    clouds, radii = [returns[0][1][-12:], returns[1][1][-12:]], [0.03, 0.1]
-    labels, times = new_ensemble(model).label(*start, Clouds(clouds, 2 * model.blocks, radii), wanted, end)
-    for k, (time, state) in enumerate(returns):
-        expected = []
-        for number, (cloud, radius) in enumerate(zip(clouds, radii, strict=True)):
-            near = np.abs(state[:, None] - cloud).max(axis=2).min(axis=1) <= radius
-            streaks = np.convolve(near, np.ones(wanted[number]), "valid") == wanted[number]
-            expected += [(time[n + wanted[number] - 1], number) for n in np.flatnonzero(streaks)[:1]]
-        at, label = min(expected, default=(end, -1))
-        assert (labels[k], times[k]) == (label, pytest.approx(at, abs=1e-9))
-    assert set(labels.tolist()) == {-1, 0, 1}
 
 
 def test_thresholds_behind():
