@@ -72,7 +72,7 @@ SHORT_OR_SMALL = [
 
 
 @pytest.mark.parametrize(("amplitude", "end"), SHORT_OR_SMALL)
-@pytest.mark.parametrize("blocks", [2, 3, 6])
+@pytest.mark.parametrize("blocks", [2, 3, 6, 10])
 def test_nonlinear_pieces_against_scipy(blocks, amplitude, end):
     """However small the motion: the perturbations obey equations whose terms are of order 1.
 
