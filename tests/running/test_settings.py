@@ -2,7 +2,7 @@
 
 import pytest
 
-from burridge_knopoff import Chain, InitialState, simulate
+from burridge_knopoff import Chain, InitialState, Settings, simulate
 from burridge_knopoff.laws import LAWS
 
 
@@ -37,3 +37,19 @@ def test_bad_input_is_refused_in_one_line(options, words):
         simulate(**options)
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "options"),
+    [
+        ("trajectory_sampling", {"trajectory": 1e5, "trajectory_sampling": 0.02, "events": "none"}),
+        ("events", {"window": 1e6, "events": "all"}),
+        ("event_window", {"window": 1e6, "event_window": 1e6}),
+    ],
+)
+def test_a_run_that_would_keep_too_much_is_refused_by_what_decides_it(key, options):
+    """2N + 1 numbers for each sample of a trajectory, 2N + 3 for each event with states: as many as a few GB hold."""
+    asked = Settings(**{"transient": 0.0, "window": 1e5, **options})
+    asked.check_blocks(3)
+    with pytest.raises(ValueError, match=f"^{key}: .* the run would keep"):
+        asked.check_blocks(60)
