@@ -178,6 +178,14 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "motion_after", PERIODIC)),
     ("periodic_is_synchronized", FAILS, alter("agreement", "kind", PERIODIC, initial="plus")),
     ("periodic_is_synchronized", LOOSELY, alter("agreement", "kind", PERIODIC, **ONE_OF_MINUS)),
+    # A state without periodic runs is left out, and no other.
+    (
+        "periodic_is_synchronized",
+        FAILS,
+        both(
+            alter("agreement", "kind", CHAOTIC, initial="minus"), alter("agreement", "kind", PERIODIC, initial="plus")
+        ),
+    ),
     ("minus_one_section_point", FAILS, alter("lyapunov", "section_period", 2)),
     ("minus_one_section_point", LOOSELY, both(UNREPEATED, alter("agreement", "kind", QUASIPERIODIC, a=ONE_OF_MANY))),
     # Closed motion whose section points do not repeat yet has not settled.
