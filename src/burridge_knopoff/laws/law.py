@@ -99,9 +99,7 @@ class Law:
     @property
     def words(self) -> str:
         """How the law reads, with its numbers: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
-        # A law by formula names its numbers itself.
-        numbers = {} if f", {next(iter(self.numbers), '')} = " in self.text else self.numbers
-        return ", ".join([self.text, *(f"{_letter(key)} = {value:g}" for key, value in numbers.items())])
+        return ", ".join([self.text, *(f"{_letter(key)} = {value:g}" for key, value in self.numbers.items())])
 
     @property
     def _key(self) -> tuple[object, ...]:
@@ -183,6 +181,11 @@ class FormulaLaw(Law):
         """The formula with its numbers."""
         numbers = "".join(f", {key} = {value:g}" for key, value in self.numbers.items())
         return f"Φ = {self.formula}, u = U′{numbers}"
+
+    @property
+    def words(self) -> str:
+        """The same: the formula names its numbers itself."""
+        return self.text
 
 
 def _letter(name: str) -> str:
