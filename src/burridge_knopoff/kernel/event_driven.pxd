@@ -7,6 +7,8 @@ from burridge_knopoff.kernel.search cimport EventSearch
 from burridge_knopoff.kernel.series cimport Series
 from burridge_knopoff.kernel.state cimport State
 from burridge_knopoff.kernel.tangent cimport Tangent
+from burridge_knopoff.kernel.tangent_modes cimport TangentModes
+from burridge_knopoff.kernel.tangent_series cimport TangentSeries
 
 cdef double LONGEST_FOLLOW
 
@@ -17,6 +19,8 @@ cdef class EventDriven:
     cdef public bint observing
     cdef readonly Exponents exponents
     cdef readonly Tangent tangent
+    cdef TangentSeries tangent_series
+    cdef TangentModes tangent_modes
     cdef double since_tangent
     cdef public Py_ssize_t halting_block
     cdef public double end

@@ -27,6 +27,8 @@ from cython.cimports.burridge_knopoff.kernel.search import EventSearch
 from cython.cimports.burridge_knopoff.kernel.series import Series
 from cython.cimports.burridge_knopoff.kernel.state import YOUNG, State
 from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
+from cython.cimports.burridge_knopoff.kernel.tangent_modes import TangentModes
+from cython.cimports.burridge_knopoff.kernel.tangent_series import TangentSeries
 
 # Longest time over which perturbations are followed at once: without events, too, they have to be kept apart.
 LONGEST_FOLLOW = 4.0
@@ -44,6 +46,8 @@ class EventDriven:
     observing: cython.bint
     exponents: Exponents
     tangent: Tangent
+    tangent_series: TangentSeries
+    tangent_modes: TangentModes
     since_tangent: cython.double
     halting_block: cython.Py_ssize_t
     end: cython.double
@@ -67,10 +71,12 @@ class EventDriven:
         self.observing = True
         self.exponents = exponents
         self.tangent = exponents.tangent
+        self.tangent_series = TangentSeries(self.tangent)
+        self.tangent_modes = TangentModes(self.tangent)
         self.since_tangent = 0.0
         self.halting_block = -1
         self.end = observer.end
-        log.carry(exponents.tangent)
+        log.carry(self.tangent)
         self.series = Series(state.springs.columns)
         self.piece = Piece(state.blocks, ORDER)
         self.search = EventSearch(state.blocks)
@@ -178,18 +184,18 @@ class EventDriven:
             # However long a slow driver takes, nothing changes.
             return
         if not self.closed_form:
-            parts = self.tangent.load_rates(self.state, self.piece, length)
+            parts = self.tangent_series.load(self.state, self.piece, length)
             t = length / parts
             for k in range(1, parts + 1):
-                self.tangent.follow_series(self.state.springs, t)
+                self.tangent_series.follow(self.state.springs, t)
                 if k < parts:
-                    self.tangent.move_rates()
+                    self.tangent_series.move_on()
                     self.exponents.follow(self.state, self.clock + k * t, False)
             return
         self.since_tangent += length
         while self.since_tangent >= LONGEST_FOLLOW or (due and self.since_tangent > 0.0):
             t = min(self.since_tangent, LONGEST_FOLLOW)
-            self.tangent.follow_modes(self.state, self.modes, t)
+            self.tangent_modes.follow(self.state, self.modes, t)
             self.since_tangent -= t
             if self.since_tangent > 0.0:
                 self.exponents.follow(self.state, self.clock + (length - self.since_tangent), False)

@@ -36,7 +36,7 @@ class EventLog:
         self.earlier_events = Record(2)
         self.events = Record(2 + 2 * blocks)
         self.rate_limit = rate_limit
-        self.tangent = Tangent(blocks, 0, 1)
+        self.tangent = Tangent(blocks, 0)
         self.restart()
 
     def carry(self, tangent: Tangent) -> None:

@@ -48,10 +48,8 @@ class Exponents:
     growth: cython.double[:, ::1]
     duration: cython.double[::1]
 
-    def __init__(
-        self, blocks: int, vectors: int, order: int, start_time: float, edge: Sequence[float] | np.ndarray
-    ) -> None:
-        self.tangent = Tangent(blocks, vectors, order)
+    def __init__(self, blocks: int, vectors: int, start_time: float, edge: Sequence[float] | np.ndarray) -> None:
+        self.tangent = Tangent(blocks, vectors)
         self.start_time = start_time if vectors > 0 else NEVER
         self.edge = np.array(edge, dtype=float)
         self.running = False

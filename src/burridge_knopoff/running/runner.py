@@ -64,7 +64,7 @@ class Runner:
         self.observer = observer if observer is not None else new_observer(model, [NEVER, NEVER], order=order)
         if exponents is None:
             count = 0 if perturbations is None else perturbations.shape[1]
-            exponents = Exponents(blocks, count, order, NEVER, [NEVER, NEVER])
+            exponents = Exponents(blocks, count, NEVER, [NEVER, NEVER])
         self.exponents = exponents
         self.kernel: EventDriven | TimeStepping
         if solver == "rk4":

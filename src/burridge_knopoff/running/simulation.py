@@ -39,13 +39,8 @@ def _prepare(model: Model, settings: Settings) -> Runner:
     count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
     trajectory_time = duration - settings.trajectory_sampling * np.arange(count, -1, -1)
     order = RK4_ORDER if settings.solver == "rk4" else SERIES_ORDER
-    exponents = Exponents(
-        model.blocks,
-        settings.lyapunov_exponents,
-        order,
-        max(0.0, settings.transient - settings.lyapunov_alignment),
-        edge,
-    )
+    aligned = max(0.0, settings.transient - settings.lyapunov_alignment)
+    exponents = Exponents(model.blocks, settings.lyapunov_exponents, aligned, edge)
     return Runner(
         model,
         settings.solver,
