@@ -14,6 +14,7 @@ from burridge_knopoff.figures.style import (
     cells,
     color,
     label_panels,
+    legend_below,
     legend_entries,
     new_figure,
     page_width,
@@ -65,17 +66,10 @@ def draw(agreement: xarray.Dataset) -> Figure:
         titles += [f"{initial}: {name}" for name in names for initial in states]
     for panel in rows[-1, -1]:
         panel.set_xlabel("$a$")
-    handles, labels = legend_entries(panels)
+    handles, _ = legend_entries(panels)
     if (agreement["agrees"] == 0).any():
-        handles, labels = [*handles, Patch(facecolor="0.9", edgecolor="0.6")], [*labels, "the laws disagree"]
-    panels[0].legend(
-        handles,
-        labels,
-        loc="lower right",
-        frameon=True,
-        framealpha=1.0,
-        edgecolor="none",
-    )
+        handles.append(Patch(facecolor="0.9", edgecolor="0.6", label="the laws disagree"))
+    legend_below(figure, handles)
     label_panels(panels, titles)
     return figure
 

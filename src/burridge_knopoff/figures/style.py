@@ -138,7 +138,8 @@ def _wrapped(title: str, letters: int) -> str:
 def cells(values: np.ndarray) -> np.ndarray:
     """Return the edges between ascending values, shape (n + 1,): each value's cell is what lies nearest to it."""
     if len(values) == 1:
-        return np.array([values[0] - 0.5, values[0] + 0.5])
+        half = 0.1 * abs(values[0]) or 0.5
+        return np.array([values[0] - half, values[0] + half])
     middle = 0.5 * (values[1:] + values[:-1])
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 

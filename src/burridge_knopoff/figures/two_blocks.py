@@ -7,7 +7,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, marker, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, cells, color, marker, new_figure, styled
 
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"
@@ -29,10 +29,10 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
 def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     """Draw the same into a panel of a figure."""
     a = two_blocks["a"].values
-    half = 0.5 * (np.diff(a).min() if len(a) > 1 else 0.0)
-    disagree = a[(two_blocks["agrees"] == 0).any(("other_law", "state")).values]
-    for value in disagree:
-        panel.axvspan(value - half, value + half, color="0.9", linewidth=0, zorder=0)
+    edges = cells(a)
+    disagree = np.flatnonzero((two_blocks["agrees"] == 0).any(("other_law", "state")).values)
+    for k in disagree:
+        panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
         for number, state in enumerate(mean):
