@@ -4,7 +4,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import legend_below, legend_entries, styled
+from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, legend_entries, styled
 
 
 @pytest.mark.parametrize(("width", "rows"), [(20.0, 1), (4.0, 3), (0.5, 6)])
@@ -37,3 +37,28 @@ def test_a_legend_names_what_some_panel_shows_a_point_of_once():
     handles, labels = legend_entries(panels)
     assert labels == ["both", "bars", "second"]
     assert [handle.get_label() for handle in handles] == labels
+
+
+def test_a_scale_begins_at_zero_and_hides_no_point_of_its_row():
+    panels = Figure().subplots(1, 2, sharey=True)
+    panels[0].plot([0.0, 1.0], [0.49, 0.53])
+    panels[1].plot([0.0, 1.0], [0.1, 0.8])
+    begin_at_zero(panels[0])
+    low, high = panels[1].get_ylim()
+    assert -0.05 < low < 0.0
+    assert 0.8 < high < 0.9
+
+
+def test_rounding_sets_no_scale():
+    panel = Figure().subplots()
+    panel.plot([0.0, 1.0], [0.0, 1e-14])
+    begin_at_zero(panel)
+    assert panel.get_ylim()[1] > 0.01
+
+
+def test_only_several_panels_have_letters():
+    panels = Figure().subplots(1, 2)
+    label_panels(panels, ["one", "two"])
+    assert [panel.get_title(loc="left") for panel in panels] == ["(a) one", "(b) two"]
+    label_panels(panels[:1], ["one"])
+    assert panels[0].get_title(loc="left") == "one"

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import xarray
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from burridge_knopoff.dataset.variables import DIRECTION
-from burridge_knopoff.figures.style import color, label_panels, legend_entries, new_figure, page_width, styled
+from burridge_knopoff.figures.style import (
+    color,
+    label_panels,
+    legend_below,
+    legend_entries,
+    new_figure,
+    page_width,
+    styled,
+)
 from burridge_knopoff.summaries.bifurcation import section_points
 
 TITLE = "Bifurcation diagrams"
@@ -18,6 +30,9 @@ Section points W' at W = 0 against a, for each law and initial state; upward cro
 below. W is the sum of the positions relative to uniform sliding.
 """
 
+FEW = 30
+
+_DIRECTIONS = (1, -1)
 _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"].split(), strict=True))
 
 
@@ -29,14 +44,15 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
     titles = []
     for number, panel in enumerate(panels):
         law, state = laws[number // len(initial)], initial[number % len(initial)]
-        for index, direction in enumerate((1, -1)):
+        for index, direction in enumerate(_DIRECTIONS):
             a, velocity = section_points(bifurcation, law, state, direction)
             # A cloud of 10^5 points is a picture, not 10^5 shapes: kept as pixels inside the PDF.
             panel.plot(
                 a,
                 velocity,
                 ".",
-                markersize=1.2,
+                # A point of few values of a is to be seen, a cloud of many to be told apart.
+                markersize=1.2 if len(np.unique(a)) > FEW else 2.4,
                 markeredgewidth=0,
                 color=color(index),
                 rasterized=True,
@@ -47,6 +63,15 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
         if number % len(initial) == 0:
             panel.set_ylabel("$W'$ at $W=0$")
         titles.append(f"{state}, {law} law")
-    panels[0].legend(*legend_entries(panels), title="crossing", markerscale=8, loc="center")
+    _, shown = legend_entries(panels)
+    look: Any = {"linestyle": "none", "marker": "o", "markersize": 4}
+    legend_below(
+        figure,
+        [
+            Line2D([], [], color=color(index), label=f"{_LABELS[direction]} crossings", **look)
+            for index, direction in enumerate(_DIRECTIONS)
+            if _LABELS[direction] in shown
+        ],
+    )
     label_panels(panels, titles)
     return figure

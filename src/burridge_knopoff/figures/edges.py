@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
-from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, styled
+from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, new_figure, page_width, styled
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 
 TITLE = "Edges of the attractors"
@@ -58,7 +58,7 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
         _edges(panel, edges, number)
         panel.set_xlabel("$a$")
         if place < len(laws):
-            panel.set_ylim(-0.008, None)
+            begin_at_zero(panel)
         else:
             _stops(panel, edges, number)
             panel.set_xlim(*ROAD[0])

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
-from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, styled
+from burridge_knopoff.figures.style import begin_at_zero, cells, label_panels, legend_below, page_width, styled
 
 TITLE = "⟨J⟩ against a"
 CATEGORY = "Synchronization"
@@ -53,7 +53,7 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None
         _runs(panels[0, column], mean_distance.sel(law=law))
         panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
-    panels[0, 0].set_ylim(bottom=-0.01)
+    begin_at_zero(panels[0, 0])
     panels[0, 0].set_xlim(*cells(mean_distance["a"].values)[[0, -1]])
     _legend(figure, mean_distance, colors, {} if attractors is None else branch_names(attractors))
     label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)][: panels.size])

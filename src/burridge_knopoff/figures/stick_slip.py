@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.motion import SHADES
-from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, legend_below, new_figure, styled
 
 TITLE = "Stick-slip cycles"
 CATEGORY = "Runs"
@@ -63,10 +63,9 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     labels = ("time between stops", f"ratio to block {middle}", "correlation", "share of the window")
     for row, label in enumerate(labels):
         panels[row * len(states)].set_ylabel(label)
-    panels[0].set_ylim(bottom=0.0)
-    panels[len(states)].set_ylim(bottom=0.0)
+    for row in (0, 1, 3):
+        begin_at_zero(panels[row * len(states)])
     panels[2 * len(states)].set_ylim(-1.1, 1.1)
-    panels[3 * len(states)].set_ylim(bottom=-0.01)
     legend_below(figure, _legend(shown))
     titles = (
         "cycle time",

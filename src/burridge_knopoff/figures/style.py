@@ -89,14 +89,23 @@ def page_width(columns: int) -> float:
     return PAGE * max(1.0, columns / 2)
 
 
+def begin_at_zero(panel: Axes) -> None:
+    """Let the scale of a row of panels reach from just below 0 to just above its largest value."""
+    tops = [each.dataLim.y1 for each in panel.get_shared_y_axes().get_siblings(panel)]
+    # Where all is 0, rounding sets the scale of nothing.
+    top = max([0.01, *filter(np.isfinite, tops)])
+    panel.set_ylim(-0.03 * top, 1.05 * top)
+
+
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
-    """Write (a), (b), … and what each panel shows above it, in as many lines as it takes."""
-    for number, (panel, title) in enumerate(zip(axes, titles, strict=True)):
-        letter = chr(ord("a") + number % 26) * (number // 26 + 1)
+    """Write (a), (b), … and what each panel shows above it, in as many lines as it takes; no letter above one panel."""
+    panels = list(axes)
+    for number, (panel, title) in enumerate(zip(panels, titles, strict=True)):
+        letter = "(" + chr(ord("a") + number % 26) * (number // 26 + 1) + ") " if len(panels) > 1 else ""
         place, figure = panel.get_subplotspec(), panel.get_figure(root=True)
         columns = place.get_gridspec().ncols if place is not None else 1
         width = figure.get_figwidth() / columns if figure is not None else PAGE
-        panel.set_title(_wrapped(f"({letter}) {title}", round(LETTERS * width)), loc="left")
+        panel.set_title(_wrapped(f"{letter}{title}", round(LETTERS * width)), loc="left")
 
 
 def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
