@@ -40,7 +40,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "bytes": (f"study: !!binary aGVsbG8=\n{GRID}{STATES}", ["study: b'hello'"]),
     "date": (f"{GOOD}v: 2020-01-01\n", ["v: datetime.date(2020, 1, 1)", "a number"]),
     "no_date": (f"{GOOD}v: 2020-99-99\n", ["not YAML", "month"]),
-    "template": (f"__use_yte__: true\n{GOOD}", ["__use_yte__: unknown key", "without templates"]),
+    "template": (f"__use_yte__: true\n{GOOD}", ["__use_yte__: unknown key"]),
     "merged": (f"base: &b {{minus: {{}}}}\nstudy: x\n{GRID}initial: {{<<: *b}}\n", ["base: unknown key"]),
     # Keys.
     "twice": (f"{GOOD}a: [0.2]\n", ["a: stands twice (line 4)", "once is allowed"]),

@@ -56,9 +56,7 @@ def checked_cores(arguments: Sequence[str]) -> int:
     if len(options.configfile) > 1:
         raise ConfigError(several_files(options.configfile))
     for path in options.configfile:
-        if "__use_yte__" in read_config(Path(path)):
-            reason = "unknown key; a study is plain YAML, without templates"
-            raise ConfigError(f"{display_path(path)}: __use_yte__: {reason}")
+        read_config(path)
     for entry in options.config:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):

@@ -39,7 +39,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def html(poor):
-    return render(poor.study, poor.sources, "poor.yaml")
+    return render(poor.study, poor.sources, ["--configfile", "poor.yaml"])
 
 
 @pytest.fixture(scope="module")
@@ -94,13 +94,13 @@ def test_the_html_is_sound(page):
 
 
 def test_the_same_inputs_give_the_same_page(poor, html):
-    assert render(poor.study, poor.sources, "poor.yaml") == html
-    assert render(poor.study, poor.sources, "poor.yaml", threads=3) == html
+    assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"]) == html
+    assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"], threads=3) == html
 
 
 def test_a_missing_summary_stops_before_anything_is_written(poor, tmp_path):
     for name in NEEDED:
         summaries = {key: path for key, path in poor.sources.summaries.items() if key != name}
         with pytest.raises(ValueError, match=f"{name}.nc: not among the summaries"):
-            write_report(poor.study, replace(poor.sources, summaries=summaries), "", tmp_path / "report.html")
+            write_report(poor.study, replace(poor.sources, summaries=summaries), (), tmp_path / "report.html")
     assert list(tmp_path.iterdir()) == []

@@ -215,7 +215,7 @@ FOUR_LAWS = {
 def test_laws_in_the_order_of_the_config():
     study = load(laws=FOUR_LAWS, a=[0.02, 0.05, 0.08, 3], basins={"a": {"cl": []}}, figures={"law": "cl"})
     assert study.laws == ("nonlinear", "linearized", "cl", "soft")
-    assert [point[0] for point in all_points(study)[::8]] == list(study.laws)
+    assert [point["law"] for point in all_points(study)[::8]] == list(study.laws)
     assert study.config["solver"] == dict.fromkeys(study.laws, "series")
     # Other laws than the paper's have maps where its first one has.
     maps = {"nonlinear": [0.08], "linearized": [0.05, 0.08], "cl": [], "soft": [0.05, 0.08]}

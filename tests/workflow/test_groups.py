@@ -3,6 +3,7 @@
 import json
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 from tests.workflow.conftest import Study
 
@@ -15,15 +16,15 @@ exit 1
 """
 
 
-def groups(study, size, seed):
-    """Return the groups of points that a run would submit, each as the set of its files."""
+def groups(study, group, seed, rule):
+    """Return the groups that a run until some rule would submit, each as the set of its files."""
     note = study.folder / "note.sh"
     note.write_text(NOTE)
     note.chmod(0o755)
     cluster = ("--executor", "cluster-generic", "--cluster-generic-submit-cmd", str(note), "--jobs", "20")
     # It waits so long before it sees that the submissions have failed.
     cluster += ("--seconds-between-status-checks", "1")
-    command = study.command("--until", "points", *cluster, "--group-components", f"points={size}")
+    command = study.command("--until", rule, *cluster, "--group-components", group)
     environment = {**study.environment(), "PYTHONHASHSEED": str(seed)}
     run = subprocess.run(command, cwd=study.folder, env=environment, capture_output=True, text=True)
     assert run.returncode == 1, run.stderr
@@ -36,8 +37,16 @@ def test_groups_of_points_are_the_same_in_every_run(tmp_path):
     studies = [Study(tmp_path / str(number)) for number in range(3)]
     # Most of the time they wait.
     with ThreadPoolExecutor() as pool:
-        one, other, single = pool.map(groups, studies, (6, 6, 1), (1, 2, 1))
+        one, other, single = pool.map(
+            partial(groups, rule="points"), studies, ("points=6", "points=6", "points=1"), (1, 2, 1)
+        )
     assert sorted(map(len, one)) == [4, 6, 6]
     assert len(frozenset.union(*one)) == 16
     assert set(one) == set(other)
     assert sorted(map(len, single)) == [1] * 16
+
+
+def test_points_of_other_solvers_are_grouped_too(tmp_path):
+    found = groups(Study(tmp_path), "solver_points=4", 1, rule="simulate_solver")
+    assert sorted(map(len, found)) == [2, 4]
+    assert len(frozenset.union(*found)) == 6

@@ -78,7 +78,7 @@ class Run:
         self.log = study.folder / "log.txt"
         command = study.command(
             *("--workflow-profile", str(PROFILE), "--seconds-between-status-checks", "1", "--latency-wait", "5"),
-            *("--group-components", "points=8", "solver_points=6", *arguments),
+            *("--group-components", "points=8", "solver_points=6", "summaries=1", "figures=1", *arguments),
             cores=1,
         )
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
@@ -213,7 +213,7 @@ def test_submit_finds_what_another_snakemake_submitted(cluster, tmp_path):
     )
 
     def call(program: str, argument: object, study: str = "tiny") -> str:
-        command = ["env", f"BK_RESULTS=results/{study}", PROFILE / program, str(argument)]
+        command = ["env", f"BK_STUDY=results/{study} 0123", PROFILE / program, str(argument)]
         return subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout.strip()
 
     def wait_for(job: str, status: str) -> None:

@@ -26,7 +26,7 @@ def slurm(monkeypatch, tmp_path):
     """
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(PROFILE))
-    monkeypatch.setenv("BK_RESULTS", "results/tiny")
+    monkeypatch.setenv("BK_STUDY", "results/tiny 0123")
     modules = {name: importlib.import_module(name) for name in PROGRAMS}
     (tmp_path / "script.sh").write_text(SCRIPT)
     monkeypatch.setattr(modules["jobs"], "PAUSE", 0.0)

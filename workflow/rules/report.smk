@@ -31,7 +31,7 @@ rule report:
         # The report shows the whole config.
         config=STUDY.config,
         grid=dict(STUDY.grid),
-        configfile=CONFIG_ARGUMENT,
+        arguments=CONFIG_ARGUMENTS,
         optional=OPTIONAL_RESULTS,
         benchmarks=f"{RESULTS}/benchmarks",
         sources=sources("report"),

@@ -1,15 +1,11 @@
 # Points: one simulation for each friction law, initial state and a.
 
 POINTS = all_points(STUDY)
-POINT_NUMBERS = {point: number for number, point in enumerate(POINTS)}
 
 
 rule points:
     input:
-        [
-            f"{RESULTS}/points/{POINT}".format(law=law, initial=initial, a=a)
-            for law, initial, a in POINTS
-        ],
+        [f"{RESULTS}/points/{POINT}".format(**point) for point in POINTS],
 
 
 rule simulate:
@@ -20,7 +16,7 @@ rule simulate:
     benchmark:
         f"{RESULTS}/benchmarks/simulate/{{law}}/{{initial}}/a{{a}}.tsv"
     group:
-        lambda wildcards: fixed_group("points", POINT_NUMBERS.get(tuple(wildcards)))
+        fixed_group("points", POINTS)
     resources:
         mem_mb=150,
         runtime=10,

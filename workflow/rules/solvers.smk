@@ -5,7 +5,6 @@ from burridge_knopoff.study.study import solver_points
 
 SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT}"
 SOLVER_POINTS = solver_points(STUDY)
-SOLVER_POINT_NUMBERS = {point: number for number, point in enumerate(SOLVER_POINTS)}
 
 
 rule simulate_solver:
@@ -18,9 +17,7 @@ rule simulate_solver:
     wildcard_constraints:
         solver="|".join(SOLVERS),
     group:
-        lambda wildcards: fixed_group(
-            "solver_points", SOLVER_POINT_NUMBERS.get(tuple(wildcards))
-        )
+        fixed_group("solver_points", SOLVER_POINTS)
     resources:
         mem_mb=150,
         runtime=60,
@@ -38,15 +35,11 @@ rule simulate_solver:
 rule solvers:
     input:
         points=[
-            f"{RESULTS}/points/{POINT}".format(law=law, initial=initial, a=a)
-            for law in STUDY.laws
-            for initial in STUDY.initial
-            for a in STUDY.compared
+            f"{RESULTS}/points/{POINT}".format(**point)
+            for point in POINTS
+            if point["a"] in STUDY.compared
         ],
-        others=[
-            SOLVER_POINT.format(law=law, solver=solver, initial=initial, a=a)
-            for law, solver, initial, a in SOLVER_POINTS
-        ],
+        others=[SOLVER_POINT.format(**point) for point in SOLVER_POINTS],
     output:
         f"{SUMMARY}/solvers.nc",
     log:

@@ -72,22 +72,17 @@ except (ValueError, OSError) as error:
 
 SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
 
-# How the study is named to `snakemake`: its config file, empty for the default one, and all arguments.
-CONFIG_ARGUMENT = os.path.relpath(CONFIG_FILE)
-if IMPORTED or Path(CONFIG_FILE).resolve() == (ROOT / "config/paper.yaml").resolve():
-    CONFIG_ARGUMENT = ""
-ARGUMENTS = []
-if ROOT.resolve() != Path.cwd():
-    ARGUMENTS += ["-s", os.path.relpath(workflow.main_snakefile)]
-if CONFIG_ARGUMENT:
-    ARGUMENTS += ["--configfile", CONFIG_ARGUMENT]
+# How the study is named to `snakemake`, by its config alone and from another folder.
+CONFIG_ARGUMENTS = []
+if not IMPORTED and Path(CONFIG_FILE).resolve() != (ROOT / "config/paper.yaml").resolve():
+    CONFIG_ARGUMENTS += ["--configfile", os.path.relpath(CONFIG_FILE)]
 if OVERRIDES:
-    ARGUMENTS += ["--config", *(f"{key}={value}" for key, value in OVERRIDES.items())]
+    CONFIG_ARGUMENTS += ["--config", *(f"{key}={value}" for key, value in OVERRIDES.items())]
+ARGUMENTS = [*CONFIG_ARGUMENTS]
+if ROOT.resolve() != Path.cwd():
+    ARGUMENTS[:0] = ["-s", os.path.relpath(workflow.main_snakefile)]
 
 PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
-
-# Programs that submit jobs tell the studies of a folder apart by it.
-os.environ.update(BK_RESULTS=RESULTS)
 
 
 # Jobs find the `bk` of this environment, activated or not.
@@ -105,6 +100,13 @@ wildcard_constraints:
 def prepare_results():
     """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
     check_cluster()
+    # Programs that submit jobs tell by it what their jobs would make, and from what.
+    decides = [
+        STUDY.config,
+        CLAIMS,
+        [rule.params.get("sources") for rule in workflow.rules],
+    ]
+    os.environ["BK_STUDY"] = f"{RESULTS} {identity(json.dumps(decides))}"
     try:
         check_folder(RESULTS, inside=True)
         write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
@@ -140,23 +142,33 @@ def keys(*names):
 
 def group(name):
     """Return the name of a group of jobs if the profile has it among `group-components`, else None."""
-    return name if name in workflow.group_settings.group_components else None
+    return lambda wildcards: (
+        name if name in workflow.group_settings.group_components else None
+    )
 
 
-def fixed_group(name, number):
-    """Return the group of a job, given its number among those of its rule; None unless `group-components` has a size.
+def fixed_group(name, points):
+    """Return what gives the jobs of a rule their groups, by wildcards; none unless `group-components` has a size.
 
     Snakemake would put jobs together at random. These groups are always the same, so that a run finds those of an
     earlier one that was killed.
     """
-    size = workflow.group_settings.group_components.get(name, 1)
-    if size == 1 or number is None:
-        return None
-    group = f"{name}{number // size}"
-    # Snakemake unites jobs that need nothing of each other up to the size of the parent group. Nothing documented says
-    # which jobs: a group named by wildcards cannot cut the grid into pieces. tests/workflow/test_groups.py holds it.
-    workflow.parent_groupids[group] = name
-    return group
+    numbers = {frozenset(point.items()): number for number, point in enumerate(points)}
+
+    def group_of(wildcards):
+        # Known only when jobs are planned.
+        size = workflow.group_settings.group_components.get(name, 1)
+        number = numbers.get(frozenset(wildcards.items()))
+        if size == 1 or number is None:
+            return None
+        group = f"{name}{number // size}"
+        # Snakemake unites jobs that need nothing of each other up to the size of the parent group. Nothing documented
+        # says which jobs: a group named by wildcards cannot cut the grid into pieces. tests/workflow/test_groups.py
+        # holds it.
+        workflow.parent_groupids[group] = name
+        return group
+
+    return group_of
 
 
 def model_config(laws=STUDY.laws):

@@ -48,11 +48,9 @@ def leftovers(results: Path, study: Study) -> list[Path]:
 def run_files(study: Study) -> list[Named]:
     """Return the point files of all runs: the wildcards of each are the arguments of `Study.command`."""
     place = POINT.removesuffix(".nc")
-    points = [dict(zip(("law", "initial", "a"), point, strict=True)) for point in all_points(study)]
-    others = [dict(zip(("law", "solver", "initial", "a"), point, strict=True)) for point in solver_points(study)]
     return [
-        (f"points/{place}", f"simulate/{place}", points),
-        (f"solvers/{{solver}}/{place}", f"simulate_solver/{{solver}}/{place}", others),
+        (f"points/{place}", f"simulate/{place}", all_points(study)),
+        (f"solvers/{{solver}}/{place}", f"simulate_solver/{{solver}}/{place}", solver_points(study)),
     ]
 
 

@@ -96,7 +96,7 @@ class Family:
             try:
                 self.known[there] = find_orbit(self.model_at(there), near.reference, near.period)
             except OrbitError:
-                step = 0.5 * min(reach, abs(there - here))
+                step = 0.5 * abs(there - here)
                 if step < LEAST_STEP * min(1.0, here / LARGEST_STEP):
                     raise
                 continue

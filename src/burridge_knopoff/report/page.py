@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -54,17 +54,17 @@ class Sources:
     benchmarks: Path = field(default=Path("benchmarks"))
 
 
-def write_report(study: Study, sources: Sources, configfile: str, path: str | Path, threads: int = 1) -> None:
+def write_report(study: Study, sources: Sources, arguments: Sequence[str], path: str | Path, threads: int = 1) -> None:
     """Write the report of a study as one HTML file.
 
-    configfile : path of its config as the commands in the report name it, empty for the default study
+    arguments : that name the study to `snakemake` in the commands of the report, none for the default one
     threads : that compress its pictures
     Raises ValueError, one line that names the file, if a source is missing or cannot be read.
     """
-    write_text(path, render(study, sources, configfile, threads))
+    write_text(path, render(study, sources, arguments, threads))
 
 
-def render(study: Study, sources: Sources, configfile: str = "", threads: int = 1) -> str:
+def render(study: Study, sources: Sources, arguments: Sequence[str] = (), threads: int = 1) -> str:
     """Return the report as HTML; see `write_report`."""
     for name in NEEDED:
         if name not in sources.summaries:
@@ -74,7 +74,7 @@ def render(study: Study, sources: Sources, configfile: str = "", threads: int = 
     with ThreadPoolExecutor(threads) as pool:
         shown = pool.map(partial(read_picture, summaries=list(summaries)), sources.figures.values())
         pictures = dict(zip(sources.figures, shown, strict=True))
-    commands = Commands(study, configfile)
+    commands = Commands(study, arguments)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,

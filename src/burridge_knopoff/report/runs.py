@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,23 +24,23 @@ STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status
 class Commands:
     """What a person types in the folder of the checkout to make one run again.
 
-    configfile : path of the study's config, empty for the default study
+    arguments : that name the study to `snakemake`, none for the default one
     """
 
     study: Study
-    configfile: str = ""
+    arguments: Sequence[str] = ()
 
     def point(self, law: str, initial: str, a: str) -> str:
         """Return the path of a point file below the results of the study."""
         return f"points/{POINT.format(law=law, initial=initial, a=a)}"
 
     def snakemake(self, law: str, initial: str, a: str) -> str:
-        """Return the command that makes the point file again; the target stands before --configfile."""
+        """Return the command that makes the point file again; the target stands before --config."""
         return self.of_study("-c1", "--force", f"results/{self.study.name}/{self.point(law, initial, a)}")
 
     def of_study(self, *words: str) -> str:
         """Return the command of Snakemake with these words, for the config of the study."""
-        return shlex.join(["snakemake", *words, *(["--configfile", self.configfile] if self.configfile else [])])
+        return shlex.join(["snakemake", *words, *self.arguments])
 
     def simulate(self, law: str, initial: str, a: str) -> str:
         """Return the command of the same run by hand; it writes a copy of the point file into the current folder."""
@@ -75,7 +76,7 @@ def embedded_runs(
         "exponent_errors": _nested(error),
         "agrees": agreement["agrees"].values.tolist(),
         "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in study.laws],
-        "configfile": shlex.join(["--configfile", commands.configfile]) if commands.configfile else "",
+        "arguments": shlex.join(commands.arguments),
         "results": f"results/{study.name}",
         "statuses": STATUSES,
         "kinds": {str(int(kind)): kind.words for kind in MotionKind},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
@@ -221,7 +222,8 @@ def load_study(config: Mapping[str, Any], file: str) -> Study:
 
 
 def _study(config: Mapping[str, Any]) -> Study:
-    filled = _lists(CONFIG.form(config, ""))
+    # In the types of YAML, lists for tuples.
+    filled = json.loads(json.dumps(CONFIG.form(config, "")))
     # Of the ranges in it only the record of the study tells.
     filled["a"] = config["a"]
     grid = grid_of(filled["a"], filled["a_digits"])
@@ -248,19 +250,14 @@ def _settings_of(kind: type[_T], config: Mapping[str, Any]) -> _T:
     return kind(**{name: config[name] for name in fields_of(kind) if name in config})
 
 
-def _lists(value: Any) -> Any:
-    """Return values as YAML has them, lists for tuples."""
-    if isinstance(value, dict):
-        return {key: _lists(item) for key, item in value.items()}
-    return [_lists(item) for item in value] if isinstance(value, tuple) else value
+def all_points(study: Study) -> list[dict[str, str]]:
+    """Return the wildcards of every point job, arguments of `Study.command`, in the order of the summaries."""
+    return [
+        {"law": law, "initial": initial, "a": a} for law in study.laws for initial in study.initial for a in study.grid
+    ]
 
 
-def all_points(study: Study) -> list[tuple[str, str, str]]:
-    """Return (law, initial, a) of every point job, in the order of the summaries."""
-    return [(law, initial, a) for law in study.laws for initial in study.initial for a in study.grid]
-
-
-def solver_points(study: Study) -> list[tuple[str, str, str, str]]:
-    """Return (law, solver, initial, a) of every point that another solver makes once more."""
-    others = [(law, solver) for law in study.laws for solver in study.other_solvers(law)] if study.compared else []
-    return [(*other, initial, a) for other in others for initial in study.initial for a in study.compared]
+def solver_points(study: Study) -> list[dict[str, str]]:
+    """Return the same of every point that another solver makes once more."""
+    points = [point for point in all_points(study) if point["a"] in study.compared]
+    return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]

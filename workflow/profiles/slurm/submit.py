@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Submits a job script of Snakemake to Slurm and prints `<Slurm's number>:<name>`; makes nothing twice.
 
-    BK_RESULTS=results/STUDY submit.py JOBSCRIPT
+    BK_STUDY="results/STUDY DIGEST" submit.py JOBSCRIPT
 
 A job of an earlier run that makes the same files from the same study, and runs or has ended well without a Snakemake
 to take note, is returned instead. One that would make some of the files from something else is cancelled, and the new
@@ -10,7 +10,6 @@ job begins when it has ended.
 Exit code 1, with one line on stderr, if Slurm refuses the job or does not answer.
 """
 
-import hashlib
 import json
 import os
 import re
@@ -21,13 +20,6 @@ from pathlib import Path
 
 from jobs import FOLDER, OUTPUT, RECORD, ask, attempts, exit_code, live_jobs, one_line
 
-#: Parts of the call in a job script that decide a result; "" is what comes before any option.
-STUDY_OPTIONS = ("", "--snakefile", "--configfiles", "--config")
-#: Options that name the files a job reads.
-WAIT_OPTIONS = ("--wait-for-files", "--wait-for-files-file")
-#: In the checkout of the Snakefile: what decides a result, given the config.
-SOURCES = ("config/claims.yaml", "src", "workflow")
-DEFAULT_CONFIG = "config/paper.yaml"
 #: What sbatch says when the controller does not answer or has no room now.
 NO_ANSWER = re.compile(
     "contact|timed out|connect|communication|zero bytes|temporarily|try again|submit limit", re.IGNORECASE
@@ -52,8 +44,8 @@ def main():
     properties = json.loads(re.search("^# properties = (.*)$", script, re.MULTILINE).group(1))
     options = read_options(script)
     # Two studies may run in one folder; their jobs have the same names.
-    targets = sorted(f"{os.environ['BK_RESULTS']} {target}" for target in options["--target-jobs"])
-    study = study_digest(options)
+    results, study = os.environ["BK_STUDY"].split()
+    targets = sorted(f"{results} {target}" for target in options["--target-jobs"])
     try:
         live = live_jobs()
         same, others = earlier_jobs(targets, study, newest_input(options), live)
@@ -85,21 +77,6 @@ def read_options(script):
         else:
             values.append(word)
     return options
-
-
-def study_digest(options):
-    """Return a digest of all that decides a result: sources, config, and the call of Snakemake."""
-    digest = hashlib.sha256()
-    digest.update(json.dumps([options.get(name) for name in STUDY_OPTIONS]).encode())
-    root = Path(options["--snakefile"][0]).parents[1]
-    files = [Path(path) for path in options.get("--configfiles", [root / DEFAULT_CONFIG])]
-    for name in SOURCES:
-        path = root / name
-        files += [path] if path.is_file() else sorted(path.rglob("*"))
-    for path in files:
-        if path.is_file() and "__pycache__" not in path.parts and "profiles" not in path.parts:
-            digest.update(str(path).encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
-    return digest.hexdigest()
 
 
 def newest_input(options):

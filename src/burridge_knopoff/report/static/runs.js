@@ -12,7 +12,7 @@ const commandsOf = ({ law, initial, a }) => {
   const [before, after] = runs.simulate[law][initial];
   return {
     path,
-    snakemake: ["snakemake -c1 --force", `${runs.results}/${path}`, runs.configfile].filter(Boolean).join(" "),
+    snakemake: ["snakemake -c1 --force", `${runs.results}/${path}`, runs.arguments].filter(Boolean).join(" "),
     simulate: `${before} --a ${runs.texts[a]} ${after}${runs.names[a]}.nc`,
   };
 };
