@@ -10,10 +10,12 @@ from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Se
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.attractors import Search, find_attractors
 from burridge_knopoff.stability.labels import label
+from burridge_knopoff.stability.lifetime import lifetimes
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states, sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import lies_on, measure, visit
+from burridge_knopoff.stability.tuning import TUNING
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, pushes=8)
@@ -112,6 +114,19 @@ def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
         run = simulate("nonlinear", 0.2075, initial, transient=20000.0, window=4000.0, lyapunov_exponents=0)
         assert run.mean_distance == pytest.approx(means[index], abs=max(1e-3, 4 * run.mean_distance_error))
     assert labels[-2] != labels[-1]
+
+
+def test_chaos_of_many_dimensions_is_known_for_what_it_is():
+    """Its returns are so far apart that hardly a state is near one of them; it lasts for 1.8 million units."""
+    chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
+    found = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
+    labels = found.labels(found.starts((), "moving"))
+    (chaos,) = found.attractors
+    assert chaos.motion.kind == MotionKind.CHAOTIC
+    assert chaos.radius == chaos.motion.spacing > TUNING.largest_radius
+    assert (labels == 0).all()
+    (lived,) = lifetimes(found.model, found.attractors, found.settings)
+    assert lived.ends == 0
 
 
 @pytest.mark.parametrize("v", [0.001, 5.0])

@@ -56,12 +56,11 @@ def find(monkeypatch, tell):
     def found(attractors, *rounds):
         runs = []
 
-        class Ensemble:
-            def run(self, position, velocity, stuck, times):
-                runs.append((len(position), times))
-                return {"position": position[:, None], "velocity": velocity[:, None]}
+        def moved(model, starts, time):
+            runs.append((len(starts), time))
+            return starts
 
-        monkeypatch.setattr(lifetime, "new_ensemble", lambda model: Ensemble())
+        monkeypatch.setattr(lifetime, "moved", moved)
         labels = []
         for reached, ends in rounds:
             labels += [(np.array(reached), np.zeros(len(reached))), (np.where(np.isnan(ends), -1, 0), np.array(ends))]
@@ -86,14 +85,14 @@ def test_trajectories_that_have_left_are_counted_with_their_times(find):
     found, asked = find([chaos(), stand_in(partner=1)], ([0] * 19 + [1] * 6 + [-1] * 7, [20.0] * 6 + [math.nan] * 7))
     assert found == [Lifetime(13, 19 * TIME + 6 * 20.0 + 7 * 0.5 * TIME), None]
     assert not found[0].lasts(SETTINGS.lifetime)
-    assert asked == [(32, [TIME]), (32, 50.0, 2), (13, TIME, 1)]
+    assert asked == [(32, TIME), (32, 50.0, 2), (13, TIME, 1)]
 
 
 def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
     found, asked = find([chaos(), stand_in(partner=1)], ([0] * 31 + [1], [20.0]), ALL_STAY)
     assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
     assert found[0].lasts(SETTINGS.lifetime)
-    assert asked[:2] == [(32, [TIME]), (MANY, [TIME])]
+    assert asked[:2] == [(32, TIME), (MANY, TIME)]
 
 
 def test_who_leaves_after_the_time_of_watching_has_not_left(find):
@@ -105,7 +104,7 @@ def test_who_leaves_after_the_time_of_watching_has_not_left(find):
 def test_a_change_to_the_mirror_image_is_no_end(find):
     found, asked = find([chaos(1), chaos(0)], ([0, 1] * 16, []))
     assert found == [Lifetime(0, 32 * TIME)] * 2
-    assert asked == [(32, [TIME]), (32, 50.0, 2), (0, TIME, 0)]
+    assert asked == [(32, TIME), (32, 50.0, 2), (0, TIME, 0)]
 
 
 def test_motion_that_is_not_chaotic_has_no_lifetime(find):

@@ -44,7 +44,8 @@ def test_radii_are_bounded_by_the_way_to_others():
     assert {item.patience for item in near} == {0.0}
     # Chaos with an orbit in its midst keeps its radius, and asks for patience; the orbit keeps its radius too.
     chaos, orbit = bounded(MODEL, [at(0.0, radius=1.0, **CHAOS), at(0.05, radius=1.0, close_returns=20)], 1e-6)
-    assert (chaos.radius, chaos.close_returns, chaos.patience) == (0.04, 8, 10_000.0)
+    # Its returns are so far apart that its radius is that.
+    assert (chaos.radius, chaos.close_returns, chaos.patience) == (0.1, 8, 10_000.0)
     assert (orbit.radius, orbit.close_returns, orbit.patience) == (0.04, 20, 0.0)
 
 
@@ -62,6 +63,7 @@ def capture(monkeypatch):
 
         monkeypatch.setattr(radius, "label", told)
         monkeypatch.setattr(radius, "pushed", lambda start, size, generator: (start, size))
+        monkeypatch.setattr(radius, "moved", lambda model, starts, time: [*starts, time])
         size = captured(MODEL, found, index, least, 1e-6, SETTINGS)
         assert len(asked) == len(reached)
         return size, asked
@@ -86,7 +88,8 @@ def test_what_comes_to_an_orbit_in_the_midst_has_come_back(capture):
     found = [at(0.0, radius=0.04, patience=2000.0, **CHAOS), at(0.05, radius=0.04)]
     size, asked = capture(found, 0, [[0, 1], [1], [0]])
     assert size == 0.04
-    assert asked[0] == (4, [0.04, 0.04], 0.0)
+    # Its returns are too far apart to show that it comes closer: it is looked at later.
+    assert asked[0] == (5, [0.04, 0.04], 0.0)
     assert capture(found, 1, [[0]], least=0.015)[0] == 0.0
 
 
@@ -99,6 +102,15 @@ def test_a_push_changes_positions_and_velocities_of_slipping_blocks():
     assert found.stuck.tolist() == [True, False, False]
     backward = [pushed(start, 0.1, np.random.default_rng(seed)).velocity[2] for seed in range(20)]
     assert min(backward) == 0.0 < max(backward)
+
+
+def test_a_push_turns_no_block_round():
+    """Under a symmetric contact blocks slip backward as well."""
+    start = Instant(np.zeros(2), np.array([-0.05, 0.05]), np.zeros(2, dtype=bool))
+    found = np.array([pushed(start, 0.1, np.random.default_rng(seed)).velocity for seed in range(40)])
+    assert found[:, 0].max() == 0.0 > found[:, 0].min() > -0.15
+    assert found[:, 1].min() == 0.0 < found[:, 1].max() < 0.15
+    assert len(np.unique(found[:, 0])) > 20
 
 
 @pytest.mark.parametrize(

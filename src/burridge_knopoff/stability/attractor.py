@@ -52,10 +52,15 @@ def close_returns(found: Returns, tolerance: float, tuning: Tuning = TUNING) -> 
 
 
 def pushed(start: Instant, size: float, generator: np.random.Generator) -> Instant:
-    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random."""
+    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random.
+
+    A block does not turn round by it.
+    """
     blocks = len(start.position)
     change = generator.uniform(-size, size, 2 * blocks)
-    velocity = np.where(start.stuck, 0.0, np.maximum(start.velocity + change[blocks:], 0.0))
+    moved = start.velocity + change[blocks:]
+    backward = start.velocity < 0.0
+    velocity = np.where(start.stuck | (np.where(backward, -moved, moved) < 0.0), 0.0, moved)
     return Instant(start.position + change[:blocks], velocity, start.stuck)
 
 

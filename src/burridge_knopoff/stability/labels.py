@@ -14,6 +14,7 @@ from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.settings import SEARCH
+from burridge_knopoff.stability.steady import instant_of
 
 
 def label(
@@ -70,6 +71,14 @@ def label_together(
         gone = others != UNDETERMINED
         labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
     return labels, times
+
+
+def moved(model: Model, starts: Sequence[Instant], time: float) -> list[Instant]:
+    """Return where states are after a time."""
+    position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
+    stuck = np.array([start.stuck for start in starts], dtype=np.intc)
+    end = new_ensemble(model).run(position, velocity, stuck, [time])
+    return [instant_of(state) for state in np.concatenate([end["position"][:, 0], end["velocity"][:, 0]], axis=1)]
 
 
 def label_states(

@@ -18,9 +18,8 @@ import numpy as np
 import scipy.special
 
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor, pushed
-from burridge_knopoff.stability.labels import UNDETERMINED, label
+from burridge_knopoff.stability.labels import UNDETERMINED, label, moved
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import CONFIDENCE
 from burridge_knopoff.stability.settings import SearchSettings
@@ -103,11 +102,7 @@ def _followed(
     size = tuning.parting_push * settings.resolution * model.scale
     chosen = generator.integers(len(returns), size=count)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
-    position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
-    stuck = np.array([start.stuck for start in starts], dtype=np.intc)
-    moved = new_ensemble(model).run(position, velocity, stuck, [time])
-    end = np.concatenate([moved["position"][:, 0], moved["velocity"][:, 0]], axis=1)
-    reached, _ = label(model, attractors, [instant_of(state) for state in end], settings.time_limit)
+    reached, _ = label(model, attractors, moved(model, starts, time), settings.time_limit)
     left = np.flatnonzero(~np.isin(reached, (index, attractor.partner)))
     others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
     gone, when = label(model, others, [starts[k] for k in left], time)

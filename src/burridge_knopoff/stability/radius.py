@@ -1,7 +1,7 @@
 """How near an attractor a trajectory is certain to stay: the radius, within which trajectories are captured.
 
 It is less than half the way to any other attractor, and trajectories that were pushed off by that much at random have
-come back.
+come back. The returns of a set of many dimensions are few and far between: its radius is as wide as they need.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.attractor import Attractor, pushed
-from burridge_knopoff.stability.labels import label
+from burridge_knopoff.stability.labels import label, moved
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.steady import SteadyMotion, instant_of, least_distance
@@ -54,7 +54,7 @@ def bounded(
     within = [midst(attractors, index, tolerance, tuning) for index in range(len(attractors))]
     result = []
     for index, attractor in enumerate(attractors):
-        radius = min(attractor.radius, tuning.largest_radius * model.scale)
+        radius = min(attractor.radius, max(tuning.largest_radius * model.scale, attractor.motion.spacing))
         for k, other in enumerate(attractors):
             if k != index and k not in within[index] and index not in within[k]:
                 apart = least_distance(attractor.motion.returns, other.motion.returns, radius / tuning.shared)
@@ -89,6 +89,9 @@ def captured(
         while left > 0:
             chosen = generator.integers(len(motion.returns), size=min(tuning.push_group, left))
             starts = [pushed(instant_of(motion.returns[k]), radius, generator) for k in chosen]
+            if close >= radius:
+                # The gaps hide whether they come closer: wherever they are later, they have to be recognised.
+                starts = moved(model, starts, tuning.slow_time * settings.transient)
             reached, _ = label(model, narrow, starts, settings.time_limit)
             if not np.isin(reached, [index, *inner]).all():
                 break

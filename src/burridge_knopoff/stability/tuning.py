@@ -61,7 +61,8 @@ class Tuning:
 
     # Whether a motion attracts, and from how far.
 
-    #: Largest radius: beyond it a push may leave the basin of a thin attractor although all samples come back.
+    #: Largest radius, where returns are no farther apart: beyond it a push may leave the basin of a thin attractor
+    #: although all samples come back.
     largest_radius: float = 0.02
     #: Part of the way to another attractor that a radius takes at most: less than half, so that no state is near both.
     shared: float = 0.4
