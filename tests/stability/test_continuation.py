@@ -78,6 +78,15 @@ def same(one, other):
         assert one == other
 
 
+def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
+    """Synchrony loses its stability between these two; the antiphase orbit is there at both."""
+    settings = SearchSettings(samples=6, fraction_samples=20)
+    found = continue_attractors(models((0.0862, 0.09)), settings, refine=Refine(1.0))
+    means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
+    assert means == [[0.0, 0.14, 0.19], [0.02, 0.02, 0.14, 0.19]]
+    assert 2 not in found.samples[0]
+
+
 def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
     """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
     monkeypatch.setattr(fractions, "PART", 30)

@@ -82,7 +82,21 @@ def continue_attractors(
     with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion, tuning) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        searches, samples = fraction_labels(_hand_on(searches, each), start, each)
+        searches = _hand_on(searches, each)
+        samples = [np.zeros(0, dtype=np.intc) for _ in searches]
+        gained = list(range(len(searches)))
+        while gained:
+            known = [len(search.attractors) for search in searches]
+            found = fraction_labels([searches[k] for k in gained], start, each)
+            for k, search, labels in zip(gained, *found, strict=True):
+                searches[k], samples[k] = search, labels
+            if known == [len(search.attractors) for search in searches]:
+                break
+            # What only these states have led to is looked for at the neighbours as well.
+            handed = _hand_on(searches, each)
+            gained = [k for k, search in enumerate(searches) if len(handed[k].attractors) > len(search.attractors)]
+            for k in gained:
+                searches[k] = handed[k]
         # The sets of attractors are complete now: what follows only reads them.
         upward = each("carried upward", _carried, searches[:-1], searches[1:])
         downward = each("carried downward", _carried, searches[1:], searches[:-1])
