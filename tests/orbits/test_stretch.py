@@ -5,10 +5,18 @@ from types import SimpleNamespace
 import pytest
 
 from burridge_knopoff.orbits.stretch import CLOSE, Half, Stretch
+from burridge_knopoff.orbits.symmetry import Symmetry
 
 
-def point(a, *, period=1.0, signature=(1, 2, 1), unstable=0, length=0.01, corner=False):
-    orbit = SimpleNamespace(a=a, period=period, signature=signature)
+def an_orbit(a, period=1.0, signature=(1, 2, 1), symmetry=Symmetry.ASYMMETRIC, mean_distance=0.2):
+    model = SimpleNamespace(scale=1.0)
+    return SimpleNamespace(
+        a=a, period=period, signature=signature, symmetry=symmetry, mean_distance=mean_distance, model=model
+    )
+
+
+def point(a, *, unstable=0, length=0.01, corner=False, **look):
+    orbit = an_orbit(a, **look)
     multipliers = SimpleNamespace(unstable=unstable)
     return SimpleNamespace(orbit=orbit, multipliers=multipliers, length=length, corner=corner)
 
@@ -64,8 +72,23 @@ def test_orbits_on_the_way_to_a_corner_are_not_shown():
 )
 def test_an_orbit_is_held_by_its_place_its_stops_and_its_period(a, period, signature, expected):
     whole = Stretch(half(point(0.09), end=0.08), half(point(0.11, period=1.1), end=0.125))
-    orbit = SimpleNamespace(a=a, period=period, signature=signature)
+    orbit = an_orbit(a, period, signature)
     assert whole.holds(orbit, 1e-3) is expected
     assert Stretch(Half([]), Half([])).holds(orbit, 1e-3) is False
-    mirrored = SimpleNamespace(a=a, period=period, signature=signature[::-1])
+    mirrored = an_orbit(a, period, signature[::-1])
     assert whole.holds(mirrored, 1e-3) is expected
+
+
+@pytest.mark.parametrize(
+    ("look", "expected"),
+    [
+        ({"mean_distance": 0.29}, True),
+        ({"mean_distance": 0.42}, False),
+        ({"mean_distance": 0.08}, False),
+        ({"symmetry": Symmetry.SYMMETRIC}, False),
+    ],
+)
+def test_another_orbit_of_the_same_stops_and_period_is_not_held(look, expected):
+    """In a ring the rotated images of two orbits may share both."""
+    whole = Stretch(half(point(0.09)), half(point(0.11, mean_distance=0.3)))
+    assert whole.holds(an_orbit(0.105, **look), 1e-3) is expected

@@ -128,11 +128,31 @@ def test_edges_are_those_of_the_orbits(found):
     assert (found["a_error"].values <= 1e-9).all()
 
 
+def test_an_edge_lies_by_the_values_between_which_it_was_looked_for(found):
+    """Within a step of the grid; one that is passed between values at which the branch is known, if there are any."""
+    low, high, a = (found[name].values for name in ("grid_low", "grid_high", "a"))
+    passed = found["change"].values == Change.PASSED
+    step = max(np.diff(A))
+    assert ((low - step <= a) & (a <= high + step))[~passed].all()
+    assert not ((a < low) | (a > high))[passed].any()
+    # That of synchrony at which the middle block begins to stick lies below the grid.
+    (first,) = np.flatnonzero(passed & (a < A[0]))
+    assert a[first] == pytest.approx(0.0355, abs=1e-4)
+    assert np.isnan(low[first])
+    assert high[first] == A[0]
+    assert (found["motion_before"].values == found["motion_after"].values)[passed].all()
+    assert found["motion_before"].values[first] == MotionKind.SYNCHRONIZED
+
+
 def test_numbers_are_rounded(found):
     for name in ("a", "period", "orbit_a", "orbit_mean_distance"):
         values = found[name].values
         assert [float(f"{value:.9e}") for value in values] == values.tolist()
         assert [float(f"{value:.8e}") for value in values] != values.tolist()
+
+
+def test_a_negative_rounding_of_0_is_0():
+    assert not np.signbit(_rounded(VARIABLES["a"], [-1e-13], 10)).any()
 
 
 def test_next_to_0_eleven_digits_behind_the_point_are_kept():

@@ -45,6 +45,8 @@ def all_of_kind(
     """Judge whether all runs from some states and under some laws have one of some kinds of motion in a range of a.
 
     kinds : meanings of `kind`: synchronized, periodic, quasiperiodic, chaotic
+
+    Not testable where the runs whose kind of motion is not known decide.
     """
     allowed = [int(kind) for kind in MotionKind if kind.name.lower() in kinds]
     what = " or ".join(kinds)
@@ -56,6 +58,11 @@ def all_of_kind(
             if not known.any():
                 raise NotTestableError(f"no kind of motion is known from {state} under the {law} law with {a}")
             right = np.isin(kind, allowed)
+            verdicts = [by_share(float(such.mean()), loose_share) for such in (right, right | ~known)]
+            if verdicts.count(FAILS) == 1:
+                raise NotTestableError(
+                    f"no kind of motion is known from {state} under the {law} law {at_values(grid, ~known)}"
+                )
             name = f"{law}, {state}"
             shares[name] = float(right[known].mean())
             measured.append(Measured(f"share of a with {what} motion, {name}", shares[name]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +14,16 @@ from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.branch_changes import Change
 
+if TYPE_CHECKING:
+    import xarray
+
 
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     """Judge whether branches of attractors, as a grows, become chaotic where a locked orbit ends, under both laws.
 
     A locked orbit is a closed one: the blocks stop in a ratio of whole numbers. A torus is not locked. What a branch is
-    like before it turns chaotic is taken at the value of a next below. Chaos that was there before and died is no
-    beginning of chaos, nor is an edge that a branch passes without a change.
+    like before it turns chaotic is taken at the value of a next below. Chaos that was there before is no beginning of
+    chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change.
 
     loose_share : share of the beginnings of chaos from which on the claim holds loosely
     """
@@ -33,6 +37,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         own = edges["law"].values == laws.index(name)
         before, after = edges["motion_before"].values, edges["motion_after"].values
         changes = own & (edges["change"].values != Change.PASSED) & (after == MotionKind.CHAOTIC)
+        changes &= ~_chaotic_before(edges, evidence.summary("refined").sel(law=name))
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
         unknown = changes & (before == MotionKind.UNDETERMINED)
         places = {
@@ -59,3 +64,14 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         f"Where a branch of attractors becomes chaotic as a grows, a locked orbit comes before: {', '.join(texts)}."
     )
     return Verdict(worst(verdicts), reason, measured, "; ".join(others))
+
+
+def _chaotic_before(edges: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
+    """Tell, for each edge, whether a branch ends there on another one that was chaotic already, shape (edge,)."""
+    a, kind = refined["a"].values, refined["kind"].values
+    result = np.zeros(edges.sizes["edge"], dtype=bool)
+    for k in np.flatnonzero(edges["change"].values == Change.END):
+        there = refined["branch"].values == edges["to_branch"].values[k]
+        below = np.flatnonzero(there.any(axis=1) & (a <= edges["grid_low"].values[k]))
+        result[k] = len(below) > 0 and bool((kind[below[-1]][there[below[-1]]] == MotionKind.CHAOTIC).any())
+    return result

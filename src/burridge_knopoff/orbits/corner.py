@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from burridge_knopoff.model.model import Instant
-from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.orbit import OrbitError, model_at
 from burridge_knopoff.orbits.periodic import orbit_of
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
@@ -89,8 +89,8 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
     for beyond in BEYOND:
         vector = orbit.reference.vector() + beyond * change
         state = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
-        model = orbit.model.at(max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
         try:
+            model = model_at(orbit.model, max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
             tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry))
         except OrbitError:
             continue

@@ -12,7 +12,7 @@ import numpy as np
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow
+from burridge_knopoff.orbits.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow, model_at
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
@@ -73,10 +73,7 @@ class Family:
 
     def model_at(self, a: float) -> Model:
         """Return the model at another friction parameter; raises OrbitError where its law does not allow that."""
-        try:
-            return self.model.at(a)
-        except ValueError as error:
-            raise OrbitError(str(error)) from None
+        return model_at(self.model, a)
 
     def at(self, a: float) -> Orbit:
         """Return the synchronized orbit at a > 0, continued from the nearest a at which it is known.

@@ -92,6 +92,14 @@ class Orbit:
         return float(self.reference.position[0] - self.reference.position[2])
 
 
+def model_at(model: Model, a: float) -> Model:
+    """Return a model at another friction parameter; raises OrbitError where its law does not allow that."""
+    try:
+        return model.at(a)
+    except ValueError as error:
+        raise OrbitError(str(error)) from None
+
+
 def flow(
     model: Model, start: Instant, time: float, perturbed: bool = False
 ) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.orbit import OrbitError, flow, rate
+from burridge_knopoff.orbits.orbit import OrbitError, flow, model_at, rate
 from burridge_knopoff.orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
@@ -174,10 +174,7 @@ def solve_return(
         if not time > 0.0:
             break
         if constraint is not None:
-            try:
-                model = model.at(model.a + float(step[-1]))
-            except ValueError:
-                break
+            model = model_at(model, model.a + float(step[-1]))
     raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
 
 

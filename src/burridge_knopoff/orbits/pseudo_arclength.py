@@ -16,7 +16,7 @@ import numpy as np
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.contacts import Contacts, contacts
 from burridge_knopoff.orbits.floquet import Multipliers, multipliers
-from burridge_knopoff.orbits.orbit import OrbitError, flow, rate
+from burridge_knopoff.orbits.orbit import OrbitError, flow, model_at, rate
 from burridge_knopoff.orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
 from burridge_knopoff.orbits.return_map import ReturnMap, directions
 
@@ -109,10 +109,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     tangent = point.tangent if tangent is None else tangent
     blocks = orbit.model.blocks
     base = orbit.reference.vector()
-    try:
-        model = orbit.model.at(orbit.a + length * float(tangent[-1]))
-    except ValueError as error:
-        raise OrbitError(str(error)) from None
+    model = model_at(orbit.model, orbit.a + length * float(tangent[-1]))
     guess = base + length * tangent[:-2]
     start = Instant(guess[:blocks], guess[blocks:], orbit.reference.stuck)
     time = orbit.return_time + length * float(tangent[-2])
@@ -147,7 +144,7 @@ def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float) -> np.ndarr
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
     here = flow(orbit.model, orbit.reference, time)[0].instant()
-    there = flow(orbit.model.at(orbit.a + PART * float(tangent[-1])), near, time)[0].instant()
+    there = flow(model_at(orbit.model, orbit.a + PART * float(tangent[-1])), near, time)[0].instant()
     change = (there.vector() - here.vector()) / PART
     along = rate(orbit.model, here)
     return np.concatenate([change - along * (along @ change) / (along @ along), tangent[-2:]])

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.orbit import OrbitError, after, rate
+from burridge_knopoff.orbits.orbit import OrbitError, after, model_at, rate
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
@@ -64,9 +64,11 @@ class ReturnMap:
         step = STEP
         while step > LEAST_STEP:
             for a in (self.model.a + step, self.model.a - step):
-                if a < 0.0:
+                try:
+                    model = model_at(self.model, a)
+                except OrbitError:
                     continue
-                other = ReturnMap(self.model.at(a), self.symmetry)
+                other = ReturnMap(model, self.symmetry)
                 change = other.end(start, time).vector() - end.vector()
                 if len(other.events()) == count:
                     return change / (a - self.model.a)

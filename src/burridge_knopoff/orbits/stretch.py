@@ -14,6 +14,9 @@ from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
 
+# Difference of ⟨J⟩, for v = 0.1, at which orbits between two neighbours on a branch may be the same.
+SAME_MEAN = 1e-3
+
 # Orbits closer than this along a branch are not kept apart.
 CLOSE = 1e-5
 
@@ -73,7 +76,10 @@ class Stretch:
         return [*self.downward.shown[:0:-1], *self.upward.shown]
 
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
-        """Tell whether an orbit is one of the stable ones: by its a, its stops, and its period within a share of it."""
+        """Tell whether an orbit is one of the stable ones: by its a, its stops and symmetry, its period and ⟨J⟩.
+
+        tolerance : share of the period within which it has to be that of the orbits beside it
+        """
         a, period = self._known
         if not len(a):
             return False
@@ -82,11 +88,18 @@ class Stretch:
         if not low <= orbit.a <= high:
             return False
         above = int(np.clip(np.searchsorted(a, orbit.a), 1, len(a) - 1)) if len(a) > 1 else 0
-        near = [self.stable[k].orbit.signature for k in {max(above - 1, 0), above}]
-        if not {orbit.signature, orbit.signature[::-1]} & set(near):
+        near = [self.stable[k].orbit for k in {max(above - 1, 0), above}]
+        if not any(other.signature in (orbit.signature, orbit.signature[::-1]) for other in near):
+            return False
+        if orbit.symmetry not in {other.symmetry for other in near}:
             return False
         expected = float(np.interp(orbit.a, a, period))
-        return abs(orbit.period - expected) <= tolerance * expected
+        if abs(orbit.period - expected) > tolerance * expected:
+            return False
+        # Next to a grazing ⟨J⟩ changes like a root.
+        means = [other.mean_distance for other in near]
+        margin = max(means) - min(means) + SAME_MEAN * orbit.model.scale
+        return min(means) - margin <= orbit.mean_distance <= max(means) + margin
 
     @cached_property
     def _known(self) -> tuple[np.ndarray, np.ndarray]:

@@ -19,12 +19,13 @@ from burridge_knopoff.stability.steady import instant_of
 #: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
 CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 
-#: Time for which returns are looked for, and how much farther than it returned the orbit that is found may lie.
-WINDOW = 1500.0
+#: Time for which returns are looked for, three times the longest period that has been met; and how much farther than it
+#: returned the orbit that is found may lie.
+WINDOW = 8000.0
 FARTHER = 30.0
 
-# Stops closer to each other in time are one.
-SIMULTANEOUS = 1e-9
+# No motion returns sooner. Where the end blocks all but stop together, the stop of the other one is no return.
+SOONEST = 0.1
 
 
 def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: float = WINDOW) -> PeriodicOrbit:
@@ -69,11 +70,11 @@ def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tu
     repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
     if model.chain.is_mirror_symmetric:
         order = mirror(model.blocks)
-        for k in np.flatnonzero(stops & (values[:, 0] == other)):
-            if times[k] > begun + SIMULTANEOUS:
-                repeated.append((times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]))
         if np.abs(state - state[order]).max() <= CLOSENESS[0] * model.scale:
-            repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, symmetry, at in repeated]
+            repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
+        else:
+            mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > begun + SOONEST))
+            repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
     repeated.sort(key=lambda item: item[0])
     for size in CLOSENESS:
         for time, symmetry, at in repeated:

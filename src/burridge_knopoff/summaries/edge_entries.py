@@ -39,7 +39,11 @@ LEAST_ERROR = 1e-10
 
 @dataclass(frozen=True)
 class Entry:
-    """An edge of a branch: found on an orbit, or known only to lie within a range of a."""
+    """An edge of a branch: found on an orbit, or known only to lie within a range of a.
+
+    low, high : nearest values of a below and above at which the branch is known; NaN where an edge that is passed lies
+        beyond all of them
+    """
 
     change: Change
     from_branch: int
@@ -156,7 +160,7 @@ def entries(
         ends: list[Edge] = []
         low, high = change.low, change.high
         below, above = int(grid[grid <= low][-1]), int(grid[grid >= high][0])
-        reach = a[above] - a[below] if change.change == Change.CHANGE else np.inf
+        reach = a[above] - a[below]
         numbers = of_slot.get((change.low, change.before)), of_slot.get((change.high, change.after))
         if numbers[0] is not None and numbers[0] == numbers[1]:
             # One orbit on both sides; only its section points were counted differently.
@@ -165,7 +169,8 @@ def entries(
             edge = getattr(stretches[number], name).end if number is not None else None
             if edge is None or any(abs(edge.a - other.a) <= LEAST_ERROR for other in ends):
                 continue
-            # An orbit that goes on for more than a step of the grid beyond a change did not bring it about.
+            # An orbit that goes on for more than a step of the grid beyond a change did not bring it about: another one
+            # beside it has taken the number of its branch.
             if a[low] - reach <= edge.a <= a[high] + reach:
                 ends.append(edge)
         motion = (
@@ -176,13 +181,13 @@ def entries(
         own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
         found += [Entry(*own, edge.kind, edge) for edge in ends] or [Entry(*own, _unlocated(change, kind), None)]
     for number, one_stretch in enumerate(stretches):
-        n = next(int(branch[slot]) for slot, index in of_slot.items() if index == number)
+        slot = next(slot for slot, index in of_slot.items() if index == number)
+        n, own_kind = int(branch[slot]), int(kind[slot])
+        values = np.array([a[k] for k, row in enumerate(slots) if n in row])
         for edge in one_stretch.downward.edges + one_stretch.upward.edges:
             if not edge.loses_stability and not edge.turns:
-                k = int(np.clip(np.searchsorted(a[grid], edge.a) - 1, 0, len(grid) - 2))
-                low, high = int(grid[k]), int(grid[k + 1])
-                motion = _motion(kind, slots, [low], n), _motion(kind, slots, [high], n)
-                own = Change.PASSED, n, n, float(a[low]), float(a[high]), motion, (np.nan, np.nan)
+                beside = max(values[values <= edge.a], default=np.nan), min(values[values >= edge.a], default=np.nan)
+                own = Change.PASSED, n, n, *beside, (own_kind, own_kind), (np.nan, np.nan)
                 found.append(Entry(*own, edge.kind, edge))
     return found
 

@@ -34,8 +34,8 @@ VARIABLES = {
     "change": _V(_EDGE, "i1", "what the branch of attractors does there", flag("i1", Change)),
     "from_branch": _V(_EDGE, "i2", "branch below the edge, or reached from above it", {"comment": "-1 undetermined"}),
     "to_branch": _V(_EDGE, "i2", "branch above the edge, or reached from below it", {"comment": "-1 undetermined"}),
-    "grid_low": _V(_EDGE, "f8", "largest a of refined.nc at which the branch is as before"),
-    "grid_high": _V(_EDGE, "f8", "smallest a of refined.nc at which it is as after"),
+    "grid_low": _V(_EDGE, "f8", "largest a of refined.nc at which the branch is as before, NaN for none"),
+    "grid_high": _V(_EDGE, "f8", "smallest a of refined.nc at which it is as after, NaN for none"),
     "motion_before": _V(_EDGE, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
     "motion_after": _V(_EDGE, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
     "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the edge lie at a on one side of it", _YES),
@@ -172,5 +172,5 @@ def _rounded(item: Variable, values: Sequence[Any], digits: int) -> np.ndarray:
     """Return values of a variable with so many significant digits."""
     if item.dtype != "f8":
         return np.array(values, dtype=item.dtype)
-    # Next to 0 digits behind the point count as well: nothing is known to more of them.
-    return np.array([float(f"{round(value, PLACES):.{digits - 1}e}") for value in values], dtype=float)
+    # Next to 0 digits behind the point count as well: nothing is known to more of them. Adding 0 makes -0 a 0.
+    return np.array([float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values], dtype=float)
