@@ -4,11 +4,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, EdgeKind, Model, MotionKind, law_of
+from burridge_knopoff import (
+    Chain,
+    EdgeKind,
+    Instant,
+    Model,
+    MotionKind,
+    closed_motion,
+    law_of,
+    multipliers,
+    synchronized_orbit,
+)
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
+from burridge_knopoff.summaries.edge_entries import _closed
 from burridge_knopoff.summaries.edges import VARIABLES, _rounded, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
@@ -142,6 +153,17 @@ def test_an_edge_lies_by_the_values_between_which_it_was_looked_for(found):
     assert high[first] == A[0]
     assert (found["motion_before"].values == found["motion_after"].values)[passed].all()
     assert found["motion_before"].values[first] == MotionKind.SYNCHRONIZED
+
+
+def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
+    """Next to synchrony that has lost its stability Newton's method finds that; in the end the blocks part."""
+    model = MODEL.at(0.09)
+    start = synchronized_orbit(model).reference
+    position = start.position + np.array([1e-5, 0.0, -1e-5])
+    assert multipliers(closed_motion(model, Instant(position, start.velocity, start.stuck))).unstable == 1
+    orbit = _closed(model, position + model.sliding_offset, start.velocity)
+    assert multipliers(orbit).unstable == 0
+    assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
 
 def test_numbers_are_rounded(found):

@@ -24,7 +24,8 @@ CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 WINDOW = 8000.0
 FARTHER = 30.0
 
-# No motion returns sooner. Where the end blocks all but stop together, the stop of the other one is no return.
+# Share of the time to the next stop of a block after which a stop of the other one may be a return in a mirror, as that
+# takes half of a period: where they all but stop together it is none.
 SOONEST = 0.1
 
 
@@ -73,7 +74,8 @@ def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tu
         if np.abs(state - state[order]).max() <= CLOSENESS[0] * model.scale:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
-            mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > begun + SOONEST))
+            soonest = begun + SOONEST * (times[own[1:2]] - begun).sum()
+            mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > soonest))
             repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
     repeated.sort(key=lambda item: item[0])
     for size in CLOSENESS:

@@ -13,6 +13,7 @@ import xarray
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import Edge
+from burridge_knopoff.orbits.floquet import multipliers
 from burridge_knopoff.orbits.following import Following
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
@@ -29,6 +30,9 @@ BEYOND = 4
 
 #: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
 LEAST_A = 0.0
+
+# Time after which a motion has come nearer to an orbit that attracts slowly than to any other beside it.
+LATER = 100_000.0
 
 # Share of its period within which a closed orbit is the one that has been followed.
 SAME_PERIOD = 1e-3
@@ -122,9 +126,12 @@ def followed(
 
 
 def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
-    """Return the closed orbit through a state U_i, U_i', or why there is none."""
+    """Return the closed orbit on which a motion through a state U_i, U_i' has settled, or why there is none."""
+    state = instant_of(np.concatenate([position - model.sliding_offset, velocity]))
     try:
-        return closed_motion(model, instant_of(np.concatenate([position - model.sliding_offset, velocity])))
+        found = closed_motion(model, state)
+        # Newton's method may come to another orbit beside one that attracts slowly.
+        return closed_motion(model, state, LATER) if multipliers(found).unstable else found
     except OrbitError as error:
         return error
 
