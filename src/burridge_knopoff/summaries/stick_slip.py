@@ -7,12 +7,14 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray
-from scipy.interpolate import CubicHermiteSpline
 from scipy.signal import find_peaks, periodogram
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.summaries.correlation import correlation, is_constant
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
@@ -21,7 +23,7 @@ STOP, START = 0, 1
 # The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
 PADDING = 8
 
-# Time between two samples of the velocities that are interpolated between events.
+# Time between two samples of the velocities in the event window.
 INTERVAL = 0.1
 
 _POINT = ("law", "initial", "a")
@@ -46,7 +48,7 @@ VARIABLES = {
         _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a length T"
     ),
     "velocity_correlation": Variable(
-        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the kept trajectory"
+        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the events with states"
     ),
     "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
 }
@@ -68,7 +70,8 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
             continue
         time, block, kind = all_events(read)
         velocity = read["velocity"]
-        record, duration = long_velocity(read, grid.models["v"])
+        law, _, a = point
+        record, duration = long_velocity(read, grid.model(law, grid.a[a]), transient)
         for n in range(blocks):
             own = block == n + 1
             stops = time[own & (kind == STOP) & (time >= transient)]
@@ -81,7 +84,7 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
             frequency = leading_frequency(record[:, n], duration)
             values["velocity_frequency"][index][n] = frequency
             values["velocity_frequency_error"][index][n] = 0.5 / duration if math.isfinite(frequency) else np.nan
-        values["velocity_correlation"][index] = correlation(velocity[:, 0], velocity[:, -1])
+        values["velocity_correlation"][index] = correlation(record[:, 0], record[:, -1])
         values["least_velocity"][index] = velocity.min(axis=0)
     return summary(
         "Stick-slip cycles of each block, and how the velocities of the blocks go together",
@@ -96,22 +99,25 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
     )
 
 
-def long_velocity(run: Mapping[str, np.ndarray], v: float) -> tuple[np.ndarray, float]:
+def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float) -> tuple[np.ndarray, float]:
     """Return equidistant velocities U', shape (n, blocks), and the time for which they last, as long as they are known.
 
-    run : arrays of a point file; v : velocity of the driver
+    run : arrays of a point file of the model; transient : of the run
 
-    Between two events with states positions are the cubics that have the positions and velocities at both: good enough
-    for frequencies, which hold for long, and not for single velocities. Where the kept trajectory lasts longer, its
-    samples are returned.
+    The motion is followed once more from the first stop with a state after the transient to the last event. Where the
+    kept trajectory lasts longer, its samples are returned.
     """
-    time, first = np.unique(run["event_time"], return_index=True)
-    kept = np.ptp(run["trajectory_time"])
-    if len(time) < 2 or np.ptp(time) <= kept:
-        return run["velocity"], float(kept)
-    position = CubicHermiteSpline(time, run["event_position"][first], run["event_velocity"][first] - v)
-    instants = np.linspace(time[0], time[-1], math.ceil(np.ptp(time) / INTERVAL) + 1)
-    return position.derivative()(instants) + v, float(np.ptp(time))
+    time, kept = run["event_time"], float(np.ptp(run["trajectory_time"]))
+    stops = np.flatnonzero((run["event_kind"] == STOP) & (time >= transient))
+    if not len(stops) or time[-1] - time[stops[0]] <= kept:
+        return run["velocity"], kept
+    first, duration = stops[0], float(time[-1] - time[stops[0]])
+    start = instant_of(
+        np.concatenate([run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]])
+    )
+    instants = np.linspace(0.0, duration, math.ceil(duration / INTERVAL) + 1)
+    states = (start.position[None], start.velocity[None], start.stuck[None].astype(np.intc))
+    return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], duration
 
 
 def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:
