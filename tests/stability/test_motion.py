@@ -5,8 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import MotionKind
-from burridge_knopoff.stability.motion import is_unstable, motion_kind, repetition, section_closed, section_period
+from burridge_knopoff import Chain, Model, MotionKind, law_of, simulate
+from burridge_knopoff.stability.motion import (
+    is_unstable,
+    motion_kind,
+    motion_of_run,
+    repetition,
+    section_closed,
+    section_period,
+)
 from burridge_knopoff.stability.settings import MOTION
 
 QUASIPERIODIC = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2000))
@@ -93,7 +100,9 @@ def test_the_numbers_of_the_kinds():
         # Motion that repeats is periodic, also on an orbit that repels all others.
         (1e-9, 1, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED),
         (0.1, 2, (0.02, 0.0), 1e-3, MotionKind.PERIODIC),
-        (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.PERIODIC),
+        # Uniform sliding: its section points are rounding.
+        (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
+        (0.1, 2, (-0.01, -0.02), 1e-2, MotionKind.PERIODIC),
         # Above the threshold but not above its error, or the other way round: no chaos.
         (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.PERIODIC),
         (0.1, 0, (9e-4, -0.01), 1e-5, MotionKind.UNDETERMINED),
@@ -155,3 +164,20 @@ def test_sections_that_repeat_after_however_many_points():
 )
 def test_an_orbit_that_repels(period, exponents, error, unstable):
     assert is_unstable(period, np.array(exponents), np.full(len(exponents), error), MOTION) is unstable
+
+
+def test_uniform_sliding_that_attracts_is_no_periodic_motion():
+    """Friction grows with speed there; what crosses W = 0 is rounding."""
+    model = Model(Chain(3), law_of("stribeck", 0.3), 0.5)
+    run = simulate(model, "plus", transient=2000.0, window=2000.0)
+    assert run.lyapunov_exponent[0] < -0.01
+    found = motion_of_run(vars(run), True, MOTION)
+    assert (found.kind, found.section_period) == (MotionKind.UNDETERMINED, 0)
+
+
+def test_what_repeats_without_a_section_point_is_periodic():
+    """Two blocks: W stays above 0, and the orbit is one of a family, so that the second exponent is 0."""
+    start = {"position": [0.5, -1.0], "velocity": [0.05, 0.05]}
+    run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), start, transient=2000.0, window=2000.0)
+    assert not len(run.crossing_time)
+    assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.PERIODIC

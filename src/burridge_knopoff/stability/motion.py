@@ -78,7 +78,10 @@ def _repeats(sequence: np.ndarray, period: int, tolerance: float) -> bool:
 
 
 #: What `section_period` looks at, by the names of point files.
-SECTION = ("crossing_velocity", "crossing_time", "crossing_direction", "event_time", "event_position", "event_velocity")
+SECTION = (
+    *("crossing_velocity", "crossing_time", "crossing_direction"),
+    *("event_time", "event_block", "event_kind", "event_position", "event_velocity"),
+)
 
 
 def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> int:
@@ -106,6 +109,14 @@ def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> i
         if _repeats(states, multiple, settings.period_tolerance):
             return multiple
     return 0
+
+
+def _stops_repeat(run: Mapping[str, np.ndarray], settings: MotionSettings) -> bool:
+    """Tell whether the states at the stops of a block repeat, where W hardly ever crosses 0."""
+    stops = run["event_kind"] == 0
+    own = stops & (run["event_block"] == run["event_block"][stops].min(initial=np.iinfo(np.int16).max))
+    states = _second_half(np.concatenate([run["event_position"][own], run["event_velocity"][own]], axis=1))
+    return repetition(states, settings.period_tolerance, settings.longest_period) > 0
 
 
 def _second_half(values: np.ndarray) -> np.ndarray:
@@ -157,11 +168,12 @@ def motion_kind(
     above `chaotic_exponent` and above its error. Otherwise the largest must be 0, that of the flow; then the motion is
     periodic if the next exponent is negative, and quasiperiodic if that one is 0 as well and the errors are small; but
     end blocks that move as one hardly ever move on a torus, so that there it has to be 0 within one standard error.
-    Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is within its error.
+    Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is within its error; and
+    uniform sliding that attracts, of which no exponent is 0 and the section points are rounding.
     """
-    if period:
-        return closed_kind(mean_distance, settings)
     known = np.flatnonzero(~np.isnan(exponent))
+    if period and not _is_at_rest(exponent, error, settings):
+        return closed_kind(mean_distance, settings)
     if _is_positive(exponent, error, settings):
         return MotionKind.CHAOTIC
     zero = zero_exponents(exponent, error, settings)
@@ -194,6 +206,11 @@ def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettin
     return bool(len(exponent) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]))
 
 
+def _is_at_rest(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
+    """Tell whether the largest exponent, if there is one, is certain to be negative: the flow has none that is 0."""
+    return bool(len(exponent) and exponent[0] < -max(settings.zero_exponent, settings.standard_errors * error[0]))
+
+
 @dataclass(frozen=True)
 class MotionOfRun:
     """The kind of motion that a run ended in.
@@ -220,7 +237,7 @@ def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSetti
     symmetric : whether its chain is its own mirror image
     """
     exponent, error = run["lyapunov_exponent"], run["lyapunov_error"]
-    period = section_period(run, settings)
+    period = 0 if _is_at_rest(exponent, error, settings) else section_period(run, settings)
     kind = MotionKind.UNDETERMINED
     # A number in a file, a word in a trajectory.
     if run["status"] in (Status.COMPLETED, Status.COMPLETED.name.lower()):
@@ -230,4 +247,6 @@ def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSetti
         if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
             # A weakly attracting orbit of a long period.
             kind = MotionKind.PERIODIC
+        if kind in OPEN and len(upward) < REPETITIONS and _stops_repeat(run, settings):
+            kind = closed_kind(mean, settings)
     return MotionOfRun(kind, period, is_unstable(period, exponent, error, settings))

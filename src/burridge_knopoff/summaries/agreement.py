@@ -130,7 +130,11 @@ def _fill_settled(
         there = known & (np.abs(mean - mine) <= allowed)
         kind, (_, finer) = values["kind"][law, initial], reached(own, *names, "kind")
         told = there & np.isin(finer, REGULAR) & np.isin(kind, OPEN)
-        told |= known & (finer == MotionKind.SYNCHRONIZED) & (mine < attractors.attrs["resolution"])
+        told |= (
+            known
+            & (finer == MotionKind.SYNCHRONIZED)
+            & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
+        )
         kind[...] = np.where(told, finer, kind)
         known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED)
         values["settled"][law, initial] = np.where(known, there, Answer.UNDETERMINED)
