@@ -7,6 +7,7 @@ import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
 from burridge_knopoff.summaries.branch_changes import Change
@@ -256,11 +257,13 @@ def _solvers() -> xarray.Dataset:
             "difference_error": (axes, 1e-5),
             "step_count": (axes, np.array([10_000, 10_000, 4_000_000])[:, None, None]),
             "end_time": (axes, 10_000.0),
+            "status": (axes, np.int8(Status.COMPLETED)),
         },
         solver=["map", "series", "rk4"],
         a=[0.02, 0.05, 0.08],
     )
     # The map does not know the nonlinear law.
     found["step_count"].values[1, 0] = -1
+    found["status"].values[1, 0] = -1
     found["difference"].values[1, 0] = np.nan
     return found

@@ -19,6 +19,7 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Verdict,
     at_values,
+    is_decided,
     worst,
 )
 from burridge_knopoff.stability.sampling import fraction_interval
@@ -67,8 +68,8 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
     for law in PAPER_LAWS:
         one, other = (runs["synchronized"].sel(law=law).values for runs in (first, second))
         known = np.isfinite(one) & np.isfinite(other)
-        if not known.any():
-            raise NotTestableError(f"no runs under the {law} law completed at {a}")
+        if not (known.any() and is_decided(one != other, known, loose_share)):
+            raise NotTestableError(f"too few runs under the {law} law completed at {a}")
         shares[law] = float((one != other)[known].mean())
         if shares[law] < 1.0:
             same.append(f"no difference {at_values(first['a'].values, known & (one == other))} ({law})")
@@ -76,7 +77,7 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         branch = evidence.choose(attractors, a)["initial_branch"]
         pairs = {law: (branch.sel(law=law, initial=state) for state in initial) for law in PAPER_LAWS}
-        differ = {law: _outcomes_differ(*pair) for law, pair in pairs.items()}
+        differ = {law: _outcomes(False, loose_share, *pair) for law, pair in pairs.items()}
         return judge_shares({law: share for law, share in differ.items() if share is not None}, loose_share)
 
     own, text = judge_shares(shares, loose_share)
@@ -94,8 +95,8 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
         runs = evidence.choose(evidence.of_state("mean_distance", name), a)
         one, other = (runs["synchronized"].sel(law=law).values for law in PAPER_LAWS)
         known = np.isfinite(one) & np.isfinite(other)
-        if not known.any():
-            raise NotTestableError(f"no runs from {name} completed at {a}")
+        if not (known.any() and is_decided(one == other, known, loose_share)):
+            raise NotTestableError(f"too few runs from {name} completed at {a}")
         shares[name] = float((one == other)[known].mean())
         if shares[name] < 1.0:
             differing.append(f"the outcomes from {name} differ {at_values(runs['a'].values, known & (one != other))}")
@@ -103,8 +104,8 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         branch = evidence.choose(attractors, a)["initial_branch"]
         pairs = {state: (branch.sel(law=law, initial=state) for law in PAPER_LAWS) for state in initial}
-        differ = {state: _outcomes_differ(*pair) for state, pair in pairs.items()}
-        return judge_shares({state: 1.0 - share for state, share in differ.items() if share is not None}, loose_share)
+        same = {state: _outcomes(True, loose_share, *pair) for state, pair in pairs.items()}
+        return judge_shares({state: share for state, share in same.items() if share is not None}, loose_share)
 
     own, text = judge_shares(shares, loose_share)
     reason = f"Both laws have the same outcome, synchrony or none, at {text} of the values of a with {a}."
@@ -112,10 +113,11 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
     return under_conventions(evidence, own, reason, measured, differing, labels)
 
 
-def _outcomes_differ(one: xarray.DataArray, other: xarray.DataArray) -> float | None:
-    """Return at which share of a one branch is synchrony and the other not; None if both are known nowhere."""
+def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.DataArray) -> float | None:
+    """Return at which share of a two branches are both synchrony or both not, or one is; None if too few are known."""
     known = ((one >= 0) & (other >= 0)).values
-    return float(((one == 0) != (other == 0)).values[known].mean()) if known.any() else None
+    right = (((one == 0) == (other == 0)) == same).values
+    return float(right[known].mean()) if known.any() and is_decided(right, known, loose) else None
 
 
 def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:

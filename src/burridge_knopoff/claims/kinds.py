@@ -19,6 +19,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_interval,
     by_share,
+    is_decided,
     worst,
 )
 from burridge_knopoff.stability.motion import (
@@ -58,8 +59,7 @@ def all_of_kind(
             if not known.any():
                 raise NotTestableError(f"no kind of motion is known from {state} under the {law} law with {a}")
             right = np.isin(kind, allowed)
-            verdicts = [by_share(float(such.mean()), loose_share) for such in (right, right | ~known)]
-            if verdicts.count(FAILS) == 1:
+            if not is_decided(right, known, loose_share):
                 raise NotTestableError(
                     f"no kind of motion is known from {state} under the {law} law {at_values(grid, ~known)}"
                 )
@@ -83,8 +83,9 @@ def all_of_kind(
             for state in initial:
                 known, kind = reached(evidence.choose(attractors, a), state, law, "kind")
                 known &= kind != MotionKind.UNDETERMINED
-                if known.any():
-                    found[f"{law}, {state}"] = float(np.isin(kind, allowed)[known].mean())
+                right = np.isin(kind, allowed)
+                if known.any() and is_decided(right, known, loose_share):
+                    found[f"{law}, {state}"] = float(right[known].mean())
         return judge_shares(found, loose_share)
 
     own, text = judge_shares(shares, loose_share)
@@ -192,7 +193,8 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
     runs = evidence.choose(evidence.of_state("lyapunov", initial), Range(above=0.0))
     for law in laws:
         run = evidence.at(runs, at).sel(law=law)
-        kind = MotionKind.UNDETERMINED if np.isnan(run["kind"].item()) else int(run["kind"].item())
+        grid, kinds = _kinds(evidence, initial, law, Range(above=0.0))
+        kind = int(kinds[grid == at].item())
         if kind == MotionKind.UNDETERMINED:
             raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is not known")
         verdicts.append(HOLDS if kind in (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC) else FAILS)
@@ -202,9 +204,9 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
         texts.append(f"{MotionKind(kind).words}{f' with {period} section points' if period else ''} ({law})")
-        others = np.isin(runs["kind"].sel(law=law).values, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
+        others = np.isin(kinds, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
         if others.any():
-            elsewhere.append(f"aperiodic {at_values(runs['a'].values, others)} ({law})")
+            elsewhere.append(f"aperiodic {at_values(grid, others)} ({law})")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}

@@ -20,6 +20,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_interval,
     by_value,
+    is_decided,
     with_error,
     worst,
 )
@@ -41,8 +42,8 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
     for law in PAPER_LAWS:
         state = runs["synchronized"].sel(law=law).values
         known, right = np.isfinite(state), state == synchronized
-        if not known.any():
-            raise NotTestableError(f"no run from {initial} under the {law} law completed at {a}")
+        if not (known.any() and is_decided(right, known, loose_share)):
+            raise NotTestableError(f"too few runs from {initial} under the {law} law completed at {a}")
         shares[law] = float(right[known].mean())
         measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law]))
         mean = runs["mean_distance"].sel(law=law).values[right]
@@ -57,8 +58,9 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
         found = {}
         for law in PAPER_LAWS:
             branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
-            if (branch >= 0).any():
-                found[law] = float(((branch[branch >= 0] == 0) == synchronized).mean())
+            known, right = branch >= 0, (branch == 0) == synchronized
+            if known.any() and is_decided(right, known, loose_share):
+                found[law] = float(right[known].mean())
         return judge_shares(found, loose_share)
 
     own, text = judge_shares(shares, loose_share)

@@ -127,6 +127,12 @@ def by_share(share: float, loose: float) -> str:
     return HOLDS if share == 1.0 else LOOSELY if share >= loose else FAILS
 
 
+def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
+    """Tell whether «for all» fails, or does not, whatever is not known, where `right` is known; both of shape (n,)."""
+    fails = [by_share(float(such.mean()), loose) == FAILS for such in (right & known, right | ~known)]
+    return len(known) > 0 and fails[0] == fails[1]
+
+
 def shares_text(shares: Mapping[str, float]) -> str:
     """Return shares as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
     return ", ".join(f"{100 * share:.1f} % ({name})" for name, share in shares.items())
