@@ -82,21 +82,21 @@ def continue_attractors(
     with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion, tuning) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        searches = _hand_on(searches, each)
+        searches = _hand_on(searches, each, [True] * len(searches))
         samples = [np.zeros(0, dtype=np.intc) for _ in searches]
-        gained = list(range(len(searches)))
-        while gained:
+        gained = [True] * len(searches)
+        while any(gained):
             known = [len(search.attractors) for search in searches]
-            found = fraction_labels([searches[k] for k in gained], start, each)
-            for k, search, labels in zip(gained, *found, strict=True):
+            those = [k for k, more in enumerate(gained) if more]
+            found = fraction_labels([searches[k] for k in those], start, each)
+            for k, search, labels in zip(those, *found, strict=True):
                 searches[k], samples[k] = search, labels
-            if known == [len(search.attractors) for search in searches]:
-                break
             # What only these states have led to is looked for at the neighbours as well.
-            handed = _hand_on(searches, each)
-            gained = [k for k, search in enumerate(searches) if len(handed[k].attractors) > len(search.attractors)]
-            for k in gained:
-                searches[k] = handed[k]
+            handed = _hand_on(
+                searches, each, [len(one.attractors) > count for one, count in zip(searches, known, strict=True)]
+            )
+            gained = [_knows_more(one, before) for one, before in zip(handed, searches, strict=True)]
+            searches = [one if more else before for one, more, before in zip(handed, gained, searches, strict=True)]
         # The sets of attractors are complete now: what follows only reads them.
         upward = each("carried upward", _carried, searches[:-1], searches[1:])
         downward = each("carried downward", _carried, searches[1:], searches[:-1])
@@ -128,17 +128,27 @@ def _searched(search: Search, starts: Sequence[InitialState], start: str) -> Sea
     return search
 
 
-def _hand_on(searches: Sequence[Search], each: Callable[..., list[Any]]) -> list[Search]:
-    """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are."""
-    searches = list(searches)
+def _knows_more(search: Search, before: Search) -> bool:
+    return len(search.attractors) > len(before.attractors)
+
+
+def _hand_on(searches: Sequence[Search], each: Callable[..., list[Any]], new: Sequence[bool]) -> list[Search]:
+    """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are.
+
+    new : which of the searches may know what its neighbours have not been asked for
+    """
+    searches, new = list(searches), list(new)
     for way in ("down", "up"):
-        before = searches[::-1]
-        handed = each(f"handed {way}", _handed_on, before[:-1], before[1:])
+        before, new = searches[::-1], new[::-1]
+        givers = [k for k in range(len(before) - 1) if new[k]]
+        handed = each(f"handed {way}", _handed_on, [before[k] for k in givers], [before[k + 1] for k in givers])
+        given = dict(zip(givers, handed, strict=True))
         searches = [before[0]]
-        for giver, taker, given in zip(before[:-1], before[1:], handed, strict=True):
+        for k, (giver, taker) in enumerate(pairwise(before)):
             # What has just come to the giver goes on as well.
-            gained = len(searches[-1].attractors) > len(giver.attractors)
-            searches.append(_handed_on(searches[-1], taker) if gained else given)
+            more = _knows_more(searches[-1], giver)
+            searches.append(_handed_on(searches[-1], taker) if more else given.get(k, taker))
+        new = [known or _knows_more(*pair) for known, *pair in zip(new, searches, before, strict=True)]
     return searches
 
 
