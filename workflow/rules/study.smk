@@ -74,10 +74,16 @@ SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
 
 # How the study is named to `snakemake`, by its config alone and from another folder.
 CONFIG_ARGUMENTS = []
-if not IMPORTED and Path(CONFIG_FILE).resolve() != (ROOT / "config/paper.yaml").resolve():
+if (
+    not IMPORTED
+    and Path(CONFIG_FILE).resolve() != (ROOT / "config/paper.yaml").resolve()
+):
     CONFIG_ARGUMENTS += ["--configfile", os.path.relpath(CONFIG_FILE)]
 if OVERRIDES:
-    CONFIG_ARGUMENTS += ["--config", *(f"{key}={value}" for key, value in OVERRIDES.items())]
+    CONFIG_ARGUMENTS += [
+        "--config",
+        *(f"{key}={value}" for key, value in OVERRIDES.items()),
+    ]
 ARGUMENTS = [*CONFIG_ARGUMENTS]
 if ROOT.resolve() != Path.cwd():
     ARGUMENTS[:0] = ["-s", os.path.relpath(workflow.main_snakefile)]
