@@ -112,7 +112,7 @@ def prepare_results():
         CLAIMS,
         [rule.params.get("sources") for rule in workflow.rules],
     ]
-    os.environ["BK_STUDY"] = f"{RESULTS} {identity(json.dumps(decides))}"
+    os.environ.update(BK_STUDY=f"{RESULTS} {identity(json.dumps(decides))}")
     try:
         check_folder(RESULTS, inside=True)
         write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
