@@ -10,7 +10,7 @@ from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.stability.chains import Sample, Watch
-from burridge_knopoff.stability.motion import motion_kind, section_period
+from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.summaries import chains, two_blocks
@@ -104,9 +104,8 @@ def test_two_blocks_are_whole_runs(compared):
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
         runs = [simulate(model.at(a), state, SETTINGS) for model in models(2, LAWS)]
         for i, run in enumerate(runs):
-            period = section_period(vars(run), MOTION)
-            kind = motion_kind(run.mean_distance, period, run.lyapunov_exponent, run.lyapunov_error, MOTION)
-            expected = [run.mean_distance, run.mean_distance_error, period, kind]
+            motion = motion_of_run(vars(run), True, MOTION)
+            expected = [run.mean_distance, run.mean_distance_error, motion.section_period, motion.kind]
             names = ("mean_distance", "mean_distance_error", "section_period", "kind")
             assert [compared[name].values[i, j, k] for name in names] == expected
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]

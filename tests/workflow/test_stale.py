@@ -146,7 +146,10 @@ def uncompiled(studied, tmp_path_factory):
     ("name", "roots"),
     [
         ("kernel/state.pxd", (*POINTS, *STABILITY, *SUMMARIES)),
-        ("kernel/ensemble.py", ("attractors_of_law", "basin_tile", "basin_pairs", "basins", "phases_of_law")),
+        (
+            "kernel/ensemble.py",
+            ("attractors_of_law", "basin_tile", "basin_pairs", "basins", "phases_of_law", "stick_slip"),
+        ),
     ],
 )
 def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studied, uncompiled, name, roots):

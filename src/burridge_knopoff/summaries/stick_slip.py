@@ -14,7 +14,6 @@ from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.together import new_ensemble
-from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.summaries.correlation import correlation, is_constant
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
@@ -112,11 +111,9 @@ def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float)
     if not len(stops) or time[-1] - time[stops[0]] <= kept:
         return run["velocity"], kept
     first, duration = stops[0], float(time[-1] - time[stops[0]])
-    start = instant_of(
-        np.concatenate([run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]])
-    )
+    position, velocity = run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]
     instants = np.linspace(0.0, duration, math.ceil(duration / INTERVAL) + 1)
-    states = (start.position[None], start.velocity[None], start.stuck[None].astype(np.intc))
+    states = (position[None], velocity[None], (velocity[None] == 0.0).astype(np.intc))
     return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], duration
 
 
