@@ -68,7 +68,7 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
     for law in PAPER_LAWS:
         one, other = (runs["synchronized"].sel(law=law).values for runs in (first, second))
         known = np.isfinite(one) & np.isfinite(other)
-        if not (known.any() and is_decided(one != other, known, loose_share)):
+        if not is_decided(one != other, known, loose_share):
             raise NotTestableError(f"too few runs under the {law} law completed at {a}")
         shares[law] = float((one != other)[known].mean())
         if shares[law] < 1.0:
@@ -95,7 +95,7 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
         runs = evidence.choose(evidence.of_state("mean_distance", name), a)
         one, other = (runs["synchronized"].sel(law=law).values for law in PAPER_LAWS)
         known = np.isfinite(one) & np.isfinite(other)
-        if not (known.any() and is_decided(one == other, known, loose_share)):
+        if not is_decided(one == other, known, loose_share):
             raise NotTestableError(f"too few runs from {name} completed at {a}")
         shares[name] = float((one == other)[known].mean())
         if shares[name] < 1.0:
@@ -117,7 +117,7 @@ def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.Dat
     """Return at which share of a two branches are both synchrony or both not, or one is; None if too few are known."""
     known = ((one >= 0) & (other >= 0)).values
     right = (((one == 0) == (other == 0)) == same).values
-    return float(right[known].mean()) if known.any() and is_decided(right, known, loose) else None
+    return float(right[known].mean()) if is_decided(right, known, loose) else None
 
 
 def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:

@@ -84,7 +84,7 @@ def all_of_kind(
                 known, kind = reached(evidence.choose(attractors, a), state, law, "kind")
                 known &= kind != MotionKind.UNDETERMINED
                 right = np.isin(kind, allowed)
-                if known.any() and is_decided(right, known, loose_share):
+                if is_decided(right, known, loose_share):
                     found[f"{law}, {state}"] = float(right[known].mean())
         return judge_shares(found, loose_share)
 

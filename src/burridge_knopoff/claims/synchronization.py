@@ -42,7 +42,7 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
     for law in PAPER_LAWS:
         state = runs["synchronized"].sel(law=law).values
         known, right = np.isfinite(state), state == synchronized
-        if not (known.any() and is_decided(right, known, loose_share)):
+        if not is_decided(right, known, loose_share):
             raise NotTestableError(f"too few runs from {initial} under the {law} law completed at {a}")
         shares[law] = float(right[known].mean())
         measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law]))
@@ -59,7 +59,7 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
         for law in PAPER_LAWS:
             branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
             known, right = branch >= 0, (branch == 0) == synchronized
-            if known.any() and is_decided(right, known, loose_share):
+            if is_decided(right, known, loose_share):
                 found[law] = float(right[known].mean())
         return judge_shares(found, loose_share)
 

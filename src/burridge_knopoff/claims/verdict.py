@@ -128,9 +128,11 @@ def by_share(share: float, loose: float) -> str:
 
 
 def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
-    """Tell whether «for all» fails, or does not, whatever is not known, where `right` is known; both of shape (n,)."""
-    fails = [by_share(float(such.mean()), loose) == FAILS for such in (right & known, right | ~known)]
-    return len(known) > 0 and fails[0] == fails[1]
+    """Tell whether «for all» fails, or does not, whatever is not known; not if nothing is. Both are of shape (n,)."""
+    if not known.any():
+        return False
+    worst_case, best_case = (by_share(float(such.mean()), loose) for such in (right & known, right | ~known))
+    return (worst_case == FAILS) == (best_case == FAILS)
 
 
 def shares_text(shares: Mapping[str, float]) -> str:

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.style import (
-    cells,
     color,
     label_panels,
     legend_below,
@@ -19,6 +18,7 @@ from burridge_knopoff.figures.style import (
     new_figure,
     page_width,
     say_nothing,
+    shade,
     styled,
 )
 
@@ -77,7 +77,6 @@ def draw(agreement: xarray.Dataset) -> Figure:
 def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, float]) -> None:
     """Draw the comparison of one law with the first, from one initial state, into three panels."""
     a = run["a"].values
-    edges = cells(a)
     difference, sections, order = panels
     _curve(difference, a, abs(run["difference"]), label="difference")
     noise = _positive(settings["standard_errors"] * run["difference_error"])
@@ -90,8 +89,7 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     _curve(sections, a, run["section_distance"])
     _curve(order, a, run["event_order_time"])
     for panel in panels:
-        for k in np.flatnonzero(run["agrees"].values == 0):
-            panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
+        shade(panel, a, run["agrees"].values == 0)
 
 
 def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, **look: Any) -> None:

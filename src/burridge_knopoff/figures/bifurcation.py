@@ -30,6 +30,7 @@ Section points W' at W = 0 against a, for each law and initial state; upward cro
 below. W is the sum of the positions relative to uniform sliding.
 """
 
+# Values of a beyond which points are so small that a cloud of many can be told apart; those of few are to be seen.
 FEW = 30
 
 _DIRECTIONS = (1, -1)
@@ -51,7 +52,6 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
                 a,
                 velocity,
                 ".",
-                # A point of few values of a is to be seen, a cloud of many to be told apart.
                 markersize=1.2 if len(np.unique(a)) > FEW else 2.4,
                 markeredgewidth=0,
                 color=color(index),

@@ -153,6 +153,13 @@ def cells(values: np.ndarray) -> np.ndarray:
     return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
+def shade(panel: Axes, values: np.ndarray, where: np.ndarray) -> None:
+    """Shade the cells of those of ascending values of which something is true."""
+    edges = cells(values)
+    for k in np.flatnonzero(where):
+        panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
+
+
 def color(index: int) -> str:
     """Return the colour of the curve of that number."""
     return COLORS[index % len(COLORS)]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, cells, color, marker, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, marker, new_figure, shade, styled
 
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"
@@ -29,10 +28,8 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
 def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     """Draw the same into a panel of a figure."""
     a = two_blocks["a"].values
-    edges = cells(a)
-    disagree = np.flatnonzero((two_blocks["agrees"] == 0).any(("other_law", "state")).values)
-    for k in disagree:
-        panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
+    disagree = (two_blocks["agrees"] == 0).any(("other_law", "state")).values
+    shade(panel, a, disagree)
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
         for number, state in enumerate(mean):
@@ -44,4 +41,4 @@ def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     panel.set_ylabel(r"$\langle J\rangle$")
     laws = two_blocks["law"].values
     shaded = "shaded: the laws disagree" if len(laws) == 2 else f"shaded: one disagrees\nwith the {laws[0]} law"
-    panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title=shaded if len(disagree) else None)
+    panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title=shaded if disagree.any() else None)
