@@ -127,8 +127,10 @@ def test_kinds(mean_distance, period, exponents, error, kind):
     assert motion_kind(mean_distance, period, np.array(exponents), errors, MOTION) == kind
 
 
-def test_the_tolerance_of_slow_drivers_is_smaller():
-    assert [MOTION.at_speed(v).period_tolerance for v in (0.1, 10.0, 0.01)] == [1e-6, 1e-6, pytest.approx(1e-7)]
+@pytest.mark.parametrize("name", ["period_tolerance", "zero_exponent", "chaotic_exponent"])
+def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
+    default = getattr(MOTION, name)
+    assert [getattr(MOTION.at_speed(v), name) / default for v in (0.1, 10.0, 0.01)] == [1.0, 1.0, pytest.approx(0.1)]
     assert MOTION.at_speed(0.01).synchronization_threshold == MOTION.synchronization_threshold
 
 

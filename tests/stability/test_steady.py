@@ -138,6 +138,7 @@ def test_a_bound_changes_no_distance_within_it():
     [
         (MotionKind.QUASIPERIODIC, 6e-4, MotionKind.CHAOTIC, MotionKind.CHAOTIC),
         (MotionKind.UNDETERMINED, 6e-4, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
+        (MotionKind.UNDETERMINED, 0.0, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
         (MotionKind.QUASIPERIODIC, 6e-4, None, MotionKind.QUASIPERIODIC),
         (MotionKind.QUASIPERIODIC, 5e-4, "not asked", MotionKind.QUASIPERIODIC),  # no more than what counts as 0
         (MotionKind.PERIODIC, 6e-4, "not asked", MotionKind.PERIODIC),
@@ -171,7 +172,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
 )
 def test_what_closes_when_it_is_followed_on_is_no_torus(tell, kind, threshold, mean, closes, expected):
     first = stand_in(kind=kind, mean_distance=mean, exponent=np.zeros(3)).motion
-    tell(steady, "_measure", [first])
+    tell(steady, "_measure", [first, None])
     late = None if closes is None else Returns(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
     asked = tell(steady, "visit", [late])
     found = measure(model(threshold), None, 50.0, 30.0, MOTION)

@@ -172,7 +172,8 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     known = np.isfinite(exponent) & np.isfinite(error)
     if not known.any():
         raise NotTestableError(f"no Lyapunov exponent of a run from {initial} is known with {a}")
-    zero = zero_exponents(exponent, error, MotionSettings(**evidence.config["motion"]))
+    settings = MotionSettings(**evidence.config["motion"]).at_speed(evidence.config["v"])
+    zero = zero_exponents(exponent, error, settings)
     share = float(zero[known].mean())
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [

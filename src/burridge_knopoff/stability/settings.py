@@ -38,9 +38,14 @@ class MotionSettings:
     120
     """
 
-    zero_exponent: Annotated[float, SHARE, "a Lyapunov exponent of this modulus at most counts as 0"] = 5e-4
+    zero_exponent: Annotated[
+        float, SHARE, "a Lyapunov exponent of this modulus at most counts as 0; below v = 0.1 it scales with v"
+    ] = 5e-4
     chaotic_exponent: Annotated[
-        float, SHARE, "a motion is chaotic if its largest exponent is above this and not 0 within its errors"
+        float,
+        SHARE,
+        "a motion is chaotic if its largest exponent is above this and not 0 within its errors; below v = 0.1 it scales "
+        "with v",
     ] = 1e-3
     standard_errors: Annotated[
         float, ERRORS, "an exponent of this many standard errors at most counts as 0 as well"
@@ -58,8 +63,14 @@ class MotionSettings:
         check_fields(self)
 
     def at_speed(self, v: float) -> MotionSettings:
-        """Return the settings with the tolerance that a driver of speed v asks for: slower motion is smaller."""
-        return replace(self, period_tolerance=self.period_tolerance * min(1.0, v / 0.1))
+        """Return the settings that a driver of speed v asks for: slower motion is smaller, and takes longer."""
+        share = min(1.0, v / 0.1)
+        return replace(
+            self,
+            zero_exponent=share * self.zero_exponent,
+            chaotic_exponent=share * self.chaotic_exponent,
+            period_tolerance=share * self.period_tolerance,
+        )
 
 
 #: The defaults of a study.

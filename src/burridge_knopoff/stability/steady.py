@@ -160,22 +160,21 @@ def measure(
 
     transient : in which the perturbations turn into the directions of the exponents
 
-    Where only the error of the largest exponent leaves open whether the motion is chaotic, it is measured in a longer
-    window. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
+    Where only the errors of the exponents leave open which kind it is, it is measured in a longer window. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
     exponent shows it have closed by then.
     """
+    settings = settings.at_speed(model.v)
     found = _measure(model, start, transient, window, settings, tuning)
     if found is None or found.kind not in OPEN:
         return found
-    if found.exponent[0] > settings.zero_exponent:
+    if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > settings.zero_exponent:
         longer = _measure(model, start, transient, tuning.longer_window * window, settings, tuning)
-        if longer is None:
-            return found
-        # The returns stay those of the usual window: their number decides how attractors are told apart.
-        found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+        if longer is not None:
+            # The returns stay those of the usual window: their number decides how attractors are told apart.
+            found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
     if found.kind in OPEN:
         late = visit(model, found.instant(), tuning.lasting * transient, window, tuning)
-        if late is not None and late.closed(settings.at_speed(model.v).period_tolerance):
+        if late is not None and late.closed(settings.period_tolerance):
             found = replace(
                 found, kind=closed_kind(judged_distance(found.mean_distance, model.chain.is_mirror_symmetric), settings)
             )
@@ -185,7 +184,7 @@ def measure(
 def _measure(
     model: Model, start: Instant, transient: float, window: float, settings: MotionSettings, tuning: Tuning
 ) -> SteadyMotion | None:
-    """Measure the motion in one window; see `measure`."""
+    """Measure the motion in one window, by settings for its speed; see `measure`."""
     position = start.position + model.sliding_offset
     initial = InitialState("continued", tuple(position), tuple(start.velocity))
     options = Settings(
@@ -205,7 +204,6 @@ def _measure(
     found = _returns(model, trajectory.event_block, trajectory.event_kind, states, tuning)
     if found is None:
         return None
-    settings = settings.at_speed(model.v)
     period = section_period(vars(trajectory), settings)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     mean = judged_distance(trajectory.mean_distance, model.chain.is_mirror_symmetric)
