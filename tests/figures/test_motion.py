@@ -34,3 +34,10 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, point, suffix):
         write_figure(motion.draw({"plus": point}), tmp_path / f"{name}.{suffix}")
     assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
     assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_no_two_blocks_that_are_named_look_the_same(point):
+    blocks = {"block": range(1, motion.MOST_NAMED + 1)}
+    many = point.isel(block=[0] * motion.MOST_NAMED).assign_coords(blocks)
+    lines = motion.draw({"plus": many}).axes[0].get_lines()
+    assert len({(line.get_color(), str(line._dash_pattern)) for line in lines}) == motion.MOST_NAMED

@@ -4,7 +4,14 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, legend_entries, styled
+from burridge_knopoff.figures.style import (
+    begin_at_zero,
+    label_panels,
+    legend_below,
+    legend_entries,
+    panel_table,
+    styled,
+)
 
 
 @pytest.mark.parametrize(("width", "rows"), [(20.0, 1), (4.0, 3), (0.5, 6)])
@@ -62,3 +69,13 @@ def test_only_several_panels_have_letters():
     assert [panel.get_title(loc="left") for panel in panels] == ["(a) one", "(b) two"]
     label_panels(panels[:1], ["one"])
     assert panels[0].get_title(loc="left") == "one"
+
+
+def test_a_row_of_many_panels_goes_on_in_the_next_line():
+    figure, table = panel_table(1.0, 4, "x", ["one", "two"])
+    assert [len(row) for row in table] == [4, 4]
+    assert len(figure.axes) == 8
+    assert [panel.get_xlabel() for panel in table[1]] == ["", "x", "x", "x"]
+    assert [panel.get_ylabel() for panel in table[1]] == ["two", "", "", "two"]
+    table[0, 0].set_ylim(3.0, 4.0)
+    assert [panel.get_ylim()[0] for panel in table.flat] == [3.0] * 4 + [0.0] * 4

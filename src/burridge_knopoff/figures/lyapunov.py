@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import cells, label_panels, legend_entries, new_figure, page_width, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_below, legend_entries, panel_table, styled
 from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Lyapunov exponents"
@@ -17,21 +17,33 @@ CATEGORY = "Synchronization"
 INPUTS = ("lyapunov",)
 CAPTION = """\
 The largest Lyapunov exponents against a, with bars of three standard errors from batches, for each law and initial
-state. The strips above the panels show the kind of motion that follows from the exponents and the section points; white
-is undetermined.
+state. What lies below the frame, among it −∞, is not shown. The strips at the top show the kind of motion that follows
+from the exponents and the section points; white is undetermined.
 """
+
+# Very negative exponents would take the room of those that tell kinds of motion apart.
+LOWEST = -0.13
+
+# The least that the frame reaches up to, so that exponents near 0 are seen as such.
+LEAST_TOP = 0.06
+
+# Where the curves end and the strip begins, in units of the panel's height.
+CURVES, STRIP = 0.9, 0.93
 
 
 @styled
 def draw(lyapunov: xarray.Dataset) -> Figure:
     """Draw the largest exponents against a with three standard errors, the kind of motion as a strip above them.
 
-    A panel for each law and initial state; exponents below the panel, among them those that are −∞, are not shown.
+    A panel for each law and initial state.
     """
     laws, states = lyapunov["law"].values, lyapunov["initial"].values
-    figure, panels = new_figure(page_width(len(states)), 0.8 + 2.1 * len(laws), rows=len(laws), columns=len(states))
+    figure, table = panel_table(2.1, len(states), "$a$", ["Lyapunov exponents" for _ in laws])
+    panels = list(table.flat)
     a = lyapunov["a"].values
     edges = cells(a)
+    ends = (lyapunov["lyapunov_exponent"] + 3.0 * lyapunov["lyapunov_error"].fillna(0.0)).values
+    top = max([LEAST_TOP, *ends[np.isfinite(ends)]])
     titles = []
     for number, panel in enumerate(panels):
         run = lyapunov.sel(law=laws[number // len(states)], initial=states[number % len(states)])
@@ -51,24 +63,16 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
                 color=("black", "0.5", "0.75")[n],
                 label=rf"$\lambda_{n + 1}$",
             )
-        panel.set_ylim(-0.13, 0.08)
-        # A strip above the curves, in units of the panel's height.
+        panel.set_ylim(LOWEST, LOWEST + (top - LOWEST) / CURVES)
         for left, right, kind in zip(edges[:-1], edges[1:], run["kind"].values, strict=True):
-            panel.axvspan(left, right, 0.93, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)
-        panel.axhline(0.0653, color="black", linewidth=0.5)
+            panel.axvspan(left, right, STRIP, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)
+        panel.plot(edges[[0, -1]], [STRIP, STRIP], color="black", linewidth=0.5, transform=panel.get_xaxis_transform())
         panel.xaxis.set_minor_locator(NullLocator())
-        if number >= len(panels) - len(states):
-            panel.set_xlabel("$a$")
-        if number % len(states) == 0:
-            panel.set_ylabel("Lyapunov exponents")
-    for panel in panels:
         panel.set_xlim(edges[0], edges[-1])
-    panels[0].legend(*legend_entries(panels), loc="upper left", bbox_to_anchor=(0.0, 0.93))
-    kinds = sorted({int(kind) for kind in np.unique(lyapunov["kind"].values)})
-    figure.legend(
-        handles=[Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in kinds],
-        loc="outside lower center",
-        ncols=len(kinds),
-    )
+    kinds = [
+        Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words)
+        for kind in np.unique(lyapunov["kind"].values).tolist()
+    ]
+    legend_below(figure, [*legend_entries(panels)[0], *kinds])
     label_panels(panels, titles)
     return figure

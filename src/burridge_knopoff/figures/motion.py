@@ -8,7 +8,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled
 
 TITLE = "Motion from {initial}"
 CATEGORY = "Runs"
@@ -25,7 +25,8 @@ WIDTHS = (2.2, 1.1, 1.4, 1.0)
 # A legend of more blocks than these would take the room of the curves.
 MOST_NAMED = 12
 
-SHADES = ("#7FB2DA", "#D55E00", "#000000")
+# Their number has no divisor in common with that of the dashes: all pairs come up before one comes again.
+SHADES = ("#7FB2DA", "#D55E00", "#000000", "#009E73", "#CC79A7", "#E69F00", "#0072B2")
 
 
 @styled
@@ -56,6 +57,6 @@ def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
             point[name].sel(block=block),
             linestyle=DASHES[index % len(DASHES)],
             linewidth=WIDTHS[index % len(WIDTHS)],
-            color=SHADES[index] if index < len(SHADES) else color(index),
+            color=SHADES[index % len(SHADES)],
             label=f"block {block}",
         )

@@ -23,6 +23,7 @@ error of that difference as a bar, and the number of steps in a unit of time.
 PAPER_STEPS = 1e6
 
 MARKERS = ("o", "s", "^")
+FILLINGS = ("full", "none", "left", "top", "right", "bottom")
 
 # Width, in places of a, over which the points at one a are spread.
 SPREAD = 0.6
@@ -80,7 +81,9 @@ def draw(solvers: xarray.Dataset) -> Figure:
 
 def _look(solver: int, initial: int, hue: str | None = None) -> dict[str, Any]:
     """Return the look of a point: colour and shape tell the solver, the filling the initial state."""
-    hue = color(solver) if hue is None else hue
-    face = (hue, "white", "0.75")[initial % 3]
-    look = {"color": hue, "marker": MARKERS[solver], "markersize": 4.0, "markeredgewidth": 0.8}
-    return {**look, "markerfacecolor": face, "linestyle": ""}
+    look = {
+        "color": color(solver) if hue is None else hue,
+        "marker": MARKERS[solver],
+        "fillstyle": FILLINGS[initial % 6],
+    }
+    return {**look, "markersize": 4.5, "markeredgewidth": 0.6, "linestyle": ""}

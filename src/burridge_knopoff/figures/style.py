@@ -24,10 +24,15 @@ Arguments = ParamSpec("Arguments")
 #: Width of two journal columns, in inches.
 PAGE = 7.0
 
+# Panels side by side, at most, where there is one for each initial state.
+ACROSS = 3
+
 # Okabe and Ito's colours: told apart by colour-blind readers, and by their lightness in print.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
-DASHES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
+DASHES: tuple[Any, ...] = (
+    "-", "--", ":", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (10, 3)), (0, (1, 4)), (0, (5, 1, 5, 4))
+)  # fmt: skip
 MARKERS = ("o", "x", "s", "^", "D", "v", "+")
 
 #: A legend that hides the lines behind it.
@@ -87,6 +92,36 @@ def new_figure(
 def page_width(columns: int) -> float:
     """Return the width, in inches, of a figure of so many columns of panels: a page for two, in proportion for more."""
     return PAGE * max(1.0, columns / 2)
+
+
+def panel_table(
+    height: float, columns: int, x: str, ys: Sequence[str], share_y: bool = True
+) -> tuple[Figure, np.ndarray]:
+    """Return a figure and its panels, shape (len(ys), columns): a row that is too long for a line goes on in the next.
+
+    height : of a panel in inches, with its title
+    x, ys : labels of the axes: the same below all columns, another one for each row
+    """
+    across = min(columns, ACROSS)
+    lines = -(-columns // across)
+    count = len(ys) * lines
+    figure, panels = new_figure(page_width(across), 0.6 + height * count, count, across, share_rows=False)
+    table = np.reshape(np.array(panels, dtype=object), (len(ys), lines * across))
+    for panel in table[:, columns:].flat:
+        panel.remove()
+    table = table[:, :columns]
+    for row, y in zip(table, ys, strict=True):
+        for number, panel in enumerate(row):
+            if number % across == 0:
+                panel.set_ylabel(y)
+            elif share_y:
+                panel.tick_params(labelleft=False)
+            if share_y and number:
+                panel.sharey(row[0])
+    for panel in table[-1, -across:]:
+        panel.set_xlabel(x)
+        panel.tick_params(labelbottom=True)
+    return figure, table
 
 
 def begin_at_zero(panel: Axes) -> None:

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import branch_names
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import label_panels, legend_below, page_width, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, styled
 from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Windows of a"
@@ -59,20 +59,27 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
 
 
 def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
-    """Draw each value of a as wide as half the way to its neighbours on the branch, one step of the grid at most."""
-    grid = refined["a"].values[refined["in_grid"].values == 1]
-    widest = 0.5 * float(np.diff(grid).max(initial=0.0))
+    """Draw each value of a as a bar, halfway to the next on the branch; where the branch ends, to the next of all."""
+    # The other law may have more values.
+    refined = refined.isel(value=refined["a"].notnull().values)
+    every, edges = refined["a"].values, cells(refined["a"].values)
+    # Within a step of the grid only branches that change are looked for: the others go on.
+    step = np.diff(every[refined["in_grid"].values == 1]).max(initial=0.0)
     for row, number in enumerate(numbers):
         slots = refined["branch"].values == number
-        here = slots.any(axis=1)
-        a, kind = refined["a"].values[here], refined["kind"].values[here, slots[here].argmax(axis=1)]
-        half = np.minimum(0.5 * np.diff(a), widest)
-        left, right = np.append(widest, half), np.append(half, widest)
+        (here,) = np.nonzero(slots.any(axis=1))
+        a, kind = every[here], refined["kind"].values[here, slots[here].argmax(axis=1)]
+        joined, middle = np.diff(a) < 1.001 * step, 0.5 * (a[1:] + a[:-1])
+        left = np.append(edges[here[:1]], np.where(joined, middle, edges[here[1:]]))
+        right = np.append(np.where(joined, middle, edges[here[:-1] + 1]), edges[here[-1:] + 1])
+        colors = [KIND_COLORS[int(item)] for item in kind]
         panel.barh(
             np.full(len(a), row),
-            left + right,
+            right - left,
             0.8,
-            a - left,
-            color=[KIND_COLORS[int(item)] for item in kind],
-            linewidth=0,
+            left,
+            color=colors,
+            # The shortest branches are thinner than a hair.
+            edgecolor=colors,
+            linewidth=0.4,
         )

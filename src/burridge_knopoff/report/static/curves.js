@@ -50,10 +50,12 @@ builders.distance = (box) => {
 
 /** All laws share the range of ⟨J⟩. */
 function distanceRange() {
-  const all = [...runs.mean_distance.flat(2), ...data.attractors.flatMap((law) => law.mean_distance)].filter((value) => typeof value === "number");
-  const largest = Math.max(0.01, ...all);
+  const largest = Math.max(0.01, ...tops(runs.mean_distance.flat(2), runs.mean_distance_error.flat(2)), ...data.attractors.flatMap((law) => law.mean_distance.map(plain)));
   return [-0.04 * largest, 1.06 * largest];
 }
+
+/** Return where the bars of three errors end; where there is no value, 0. */
+const tops = (values, errors) => values.map((value, n) => plain(value) + 3 * plain(errors[n]));
 
 legends.kinds = () => [
   ...runs.exponents[0][0][0].slice(0, 3).map((_, n) => ({ name: `λ${subscript(n + 1)}`, color: grey(n), shape: "circle" })),
@@ -85,7 +87,7 @@ builders.exponents = (box) => {
   return {
     traces: [...curves, strip],
     xaxis: aAxis(),
-    yaxis: axis("Lyapunov exponents", { range: [-0.13, 0.08], domain: [0, 0.92] }),
+    yaxis: axis("Lyapunov exponents", { range: [-0.13, Math.max(0.08, 1.1 * Math.max(...tops(runs.exponents.flat(3), runs.exponent_errors.flat(3))))], domain: [0, 0.92] }),
     yaxis2: { domain: [0.945, 1], visible: false, fixedrange: true },
     shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 0, y1: 0, layer: "below", line: { color: ink("muted"), width: 1 } }],
   };

@@ -18,7 +18,7 @@ builders.sections = (box) => {
     colorscale: [[0, translucent(hue(color), 0.35)], [0.5, hue(color)], [1, hue(color)]],
     hovertemplate: `a = %{x}<br>W′ = %{y:.4f}<br>%{text}, ${sign > 0 ? "upward" : "downward"}<extra></extra>`,
   });
-  return { traces: [layer(1, "#0072B2"), layer(-1, "#D55E00")], xaxis: aAxis(), yaxis: axis("<i>W</i>′ at <i>W</i> = 0", { range: edges }) };
+  return { traces: [layer(1, "#0072B2"), layer(-1, "#D55E00")], xaxis: aAxis(), yaxis: axis("<i>W</i>′ at <i>W</i> = 0", { range: [edges[0] - 8 * width, edges[1] + 8 * width] }) };
 };
 
 legends.map = (list) => data.basins.maps[Number(list.dataset.map)].classes.map((item) => ({ name: `${item.name}: ${shown(item.percent.toFixed(2))} %`, color: item.color, shape: "patch", edge: ink("muted") }));
