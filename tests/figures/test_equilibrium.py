@@ -14,4 +14,4 @@ def test_equilibrium_draws_eigenvalues_and_simulated_rates():
     assert drawn[3] == dataset["growth_rate"].sel(law="nonlinear").values.tolist()
     real = dataset["eigenvalue"].sel(part="real", law="nonlinear").max("mode")
     assert drawn[2] == real.values.tolist()
-    assert [len(line.get_xdata()) for line in plane.get_lines()].count(3) == 12
+    assert [len(line.get_xdata()) for line in plane.get_lines()].count(3 * 6) == 2

@@ -1,6 +1,7 @@
 """Friction against speed: the curves are the laws', and the legend has their formulas."""
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from burridge_knopoff.figures.friction_laws import draw
@@ -22,6 +23,8 @@ def test_friction_laws_are_the_models():
         assert np.array_equal(drawn, least[number, 0], equal_nan=True)
         speed, friction = laws.get_lines()[1 + number].get_data()
         assert np.allclose(friction, {"linearized": 1.0 - 0.3 * speed, "nonlinear": 1.0 / (1.0 + 0.3 * speed)}[law])
+    # As fast as runs are that feel 0.7 under the linearized law, and a little faster.
+    assert laws.get_xlim()[1] == pytest.approx(1.1)
 
 
 def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
@@ -32,7 +35,10 @@ def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
     }
     figure = draw(runs(laws, np.ones((3, 1, 2))), laws, 0.2)
     entries = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert entries[:2] == ["linearized: Φ = 1 − aU′", "drop: Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.02"]
-    assert entries[2].startswith("own: Φ = 1 - c*tanh(a*u/c)")
+    assert entries[:2] == [
+        "linearized: Φ = 1 − $aU$′",
+        "drop: Φ = (1 − $σ$)/(1 + $aU$′/(1 − $σ$)), $σ$ = 0.02",
+    ]
+    assert entries[2].startswith("own: Φ = 1 - $c$*tanh($a$*$u$/$c$)")
     assert entries[2].count("\n") == 2
     assert law_of("own", 0.1, {"formula": "1 - c*u", "c": 0.1}).words.count("c = 0.1") == 1

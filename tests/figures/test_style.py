@@ -28,6 +28,10 @@ def test_a_legend_has_as_many_columns_as_fit(width, rows):
     (legend,) = figure.legends
     tops = {round(text.get_window_extent().y0) for text in legend.get_texts()}
     assert len(legend.get_texts()) == 6
+    in_rows = sorted(
+        legend.get_texts(), key=lambda text: (-round(text.get_window_extent().y0), text.get_window_extent().x0)
+    )
+    assert [text.get_text()[-2] for text in in_rows] == list("012345")
     assert len(tops) == rows
     assert rows == 6 or legend.get_window_extent().width <= figure.bbox.width
 

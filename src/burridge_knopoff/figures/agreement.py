@@ -17,6 +17,8 @@ from burridge_knopoff.figures.style import (
     legend_entries,
     new_figure,
     page_width,
+    panel_table,
+    say,
     say_nothing,
     shade,
     styled,
@@ -29,10 +31,12 @@ CONDITION = "has_several_laws"
 CAPTION = """\
 Each law compared with the first one of the study, for each initial state, against a: the difference of ⟨J⟩ with both
 tolerances, the Wasserstein distance between the section points W', and the time until which both laws have the same
-order of events. Shaded where the two disagree, in ⟨J⟩ or in the kind of motion.
+order of events. What is 0, or below 1e-17 and 1e-7 in the first two, lies at the foot. Shaded where the two disagree,
+in ⟨J⟩ or in the kind of motion.
 """
 
-ROUNDING = 1e-17
+# Smaller differences of ⟨J⟩ and distances of section points set the scale of nothing: they are drawn here, as is 0.
+FLOORS = (1e-17, 1e-7)
 
 LABELS = (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")
 
@@ -50,22 +54,17 @@ def draw(agreement: xarray.Dataset) -> Figure:
         figure, (panel,) = new_figure(page_width(1), 1.5)
         say_nothing(panel, f"the {first} law is the only one: there is nothing to compare")
         return figure
-    figure, panels = new_figure(page_width(len(states)), 5.6 * len(others), rows=3 * len(others), columns=len(states))
-    rows = np.reshape(np.array(panels, dtype=object), (len(others), 3, len(states)))
+    figure, table = panel_table(1.7, len(states), "$a$", LABELS * len(others))
+    panels = list(table.flat)
     titles = []
-    for block, other in zip(rows, others, strict=True):
+    for block, other in zip(np.reshape(table, (len(others), 3, len(states))), others, strict=True):
+        for panel in block[:, 0]:
+            panel.set_yscale("log")
         for column, initial in enumerate(states):
             _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
-        # Differences of synchronized runs are rounding; they set the scale of nothing.
-        for panel, floor in ((block[0, 0], ROUNDING), (block[1, 0], 5e-9)):
-            panel.set_ylim(floor, max(1.0, panel.get_ylim()[1]))
-        for row, label in zip(block, LABELS, strict=True):
-            row[0].set(ylabel=label, yscale="log")
         pair = "between the laws" if len(others) == 1 else f"of the {other} and the {first} law"
         names = (rf"difference of $\langle J\rangle$ {pair}", "distance of the section points $W'$", "event order")
         titles += [f"{initial}: {name}" for name in names for initial in states]
-    for panel in rows[-1, -1]:
-        panel.set_xlabel("$a$")
     handles, _ = legend_entries(panels)
     if (agreement["agrees"] == 0).any():
         handles.append(Patch(facecolor="0.9", edgecolor="0.6", label="the laws disagree"))
@@ -78,25 +77,23 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     """Draw the comparison of one law with the first, from one initial state, into three panels."""
     a = run["a"].values
     difference, sections, order = panels
-    _curve(difference, a, abs(run["difference"]), label="difference")
-    noise = _positive(settings["standard_errors"] * run["difference_error"])
+    _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), label="difference")
+    if not run["difference"].any():
+        say(difference, "0 at all $a$")
+    noise = (settings["standard_errors"] * run["difference_error"]).clip(min=FLOORS[0])
     name = f"{settings['standard_errors']:g} standard errors"
     difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name)
     pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
-    share = _positive(settings["relative_tolerance"] * pair.max("law"))
+    share = (settings["relative_tolerance"] * pair.max("law")).clip(min=FLOORS[0])
     name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
     difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name)
-    _curve(sections, a, run["section_distance"])
-    _curve(order, a, run["event_order_time"])
+    _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]))
+    _curve(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0))
     for panel in panels:
         shade(panel, a, run["agrees"].values == 0)
 
 
 def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, **look: Any) -> None:
-    panel.plot(a, _positive(values), "-o", markersize=2.2, linewidth=0.8, color=color(0), **look)
-
-
-def _positive(values: xarray.DataArray) -> np.ndarray:
-    """Return the values with those that a logarithmic axis cannot show left out."""
-    array = np.asarray(values, dtype=float)
-    return np.where(array > 0.0, array, np.nan)
+    panel.plot(a, values, "-o", markersize=2.2, linewidth=0.8, color=color(0), **look)
+    if not values.notnull().any():
+        say(panel, "not known at any $a$")

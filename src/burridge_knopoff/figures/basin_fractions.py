@@ -14,6 +14,7 @@ from burridge_knopoff.figures.style import (
     legend_entries,
     new_figure,
     page_width,
+    say_nothing,
     styled,
 )
 from burridge_knopoff.stability.sampling import fraction_interval
@@ -32,7 +33,7 @@ raised or lowered.
 def draw(attractors: xarray.Dataset) -> Figure:
     """Draw, for each law, the fraction of sampled states that reach each branch, and ⟨J⟩ along sweeps up and down in a.
 
-    Both sides of a branch are counted together, and so are all branches of short ranges; bands are 95 % Wilson
+    Both sides of a branch are counted together, and so are all branches of small basins; bands are 95 % Wilson
     intervals.
     """
     laws = attractors["law"].values
@@ -55,6 +56,9 @@ def draw(attractors: xarray.Dataset) -> Figure:
 def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     a = attractors["a"].values
     samples = int(attractors.attrs["fraction_samples"])
+    if not samples:
+        say_nothing(panel, "no states were sampled")
+        return
     branch, count = attractors["branch"].values, attractors["basin_count"].values
     names = branch_names(attractors)
     shown = [[number] for number, color in sorted(colors.items()) if color != OTHER_COLOR]
@@ -76,12 +80,15 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         alone = there & ~np.append(there[1:], False) & ~np.append(False, there[:-1])
         panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
 
-    undetermined = attractors["undetermined_count"].values / max(samples, 1)
+    undetermined = attractors["undetermined_count"].values / samples
     undetermined = np.where(undetermined > 0.0, undetermined, np.nan)
     panel.plot(a, undetermined, "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
+    if not attractors["sweep_mean_distance"].notnull().any():
+        say_nothing(panel, "no attractor to follow")
+        return
     styles = {"upward": ("black", ">", 3.6), "downward": ("#E69F00", "<", 2.2)}
     for direction, (color, marker, size) in styles.items():
         for number in range(attractors.sizes["sweep"]):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
@@ -18,7 +21,7 @@ FROM_STUDY = ("marked_states",)
 CAPTION = """\
 Maps over the initial positions U_1(0) and U_N(0) of the end blocks, each pixel in the colour of the branch that is
 reached; the mirror image of a branch in a lighter shade, undetermined in black. The initial states of the study that
-lie in this plane are marked.
+lie in this plane are numbered.
 """
 
 COLUMNS = 2
@@ -38,6 +41,11 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
     colors = branch_colors(attractors)
     names = branch_names(attractors)
     extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
+    there = {
+        name: (x, y)
+        for name, (x, y) in marked_states.items()
+        if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]
+    }
     laws = basins["law"].attrs["flag_meanings"].split()
     titles = []
     shown: dict[tuple[int, int], Patch] = {}
@@ -59,24 +67,19 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
             shown[branch, -side] = Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name)
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
         panel.set_box_aspect(1.0)
-        for name, (x, y) in marked_states.items():
-            if not (extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]):
-                continue
-            panel.plot(x, y, "o", markersize=5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=1.0)
-            left = x > 0.5 * (extent[0] + extent[1])
-            panel.annotate(
-                name,
-                (x, y),
-                xytext=(-6 if left else 6, 5),
-                textcoords="offset points",
-                ha="right" if left else "left",
-                bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8},
-            )
+        for index, (x, y) in enumerate(there.values()):
+            panel.plot(x, y, "o", markersize=8, markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.7)
+            panel.plot(x, y, **_number(index))
         if number >= count - columns:
             panel.set_xlabel("$U_1(0)$")
         if number % columns == 0:
             panel.set_ylabel("$U_N(0)$")
-    handles = [shown[key] for key in sorted(shown)]
-    legend_below(figure, handles)
+    states = [Line2D([], [], **_number(index), label=f"state {name}") for index, name in enumerate(there)]
+    legend_below(figure, [*(shown[key] for key in sorted(shown)), *states])
     label_panels(list(panels.flat)[:count], titles)
     return figure
+
+
+def _number(index: int) -> dict[str, Any]:
+    """Return the look of the number of an initial state."""
+    return {"marker": f"${index + 1}$", "color": "black", "markersize": 4.5, "markeredgewidth": 0.3, "linestyle": ""}

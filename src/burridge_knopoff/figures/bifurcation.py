@@ -11,12 +11,12 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.dataset.variables import DIRECTION
 from burridge_knopoff.figures.style import (
+    cells,
     color,
     label_panels,
     legend_below,
     legend_entries,
-    new_figure,
-    page_width,
+    panel_table,
     styled,
 )
 from burridge_knopoff.summaries.bifurcation import section_points
@@ -41,7 +41,10 @@ _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"]
 def draw(bifurcation: xarray.Dataset) -> Figure:
     """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
     laws, initial = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
-    figure, panels = new_figure(page_width(len(initial)), 0.5 + 2.6 * len(laws), rows=len(laws), columns=len(initial))
+    figure, table = panel_table(2.6, len(initial), "$a$", ["$W'$ at $W=0$" for _ in laws])
+    panels = list(table.flat)
+    grid = np.unique(bifurcation["a"])
+    ends = cells(grid)[[0, -1]]
     titles = []
     for number, panel in enumerate(panels):
         law, state = laws[number // len(initial)], initial[number % len(initial)]
@@ -52,16 +55,13 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
                 a,
                 velocity,
                 ".",
-                markersize=1.2 if len(np.unique(a)) > FEW else 2.4,
+                markersize=1.2 if len(grid) > FEW else 3.6,
                 markeredgewidth=0,
                 color=color(index),
                 rasterized=True,
                 label=_LABELS[direction],
             )
-        if number >= len(panels) - len(initial):
-            panel.set_xlabel("$a$")
-        if number % len(initial) == 0:
-            panel.set_ylabel("$W'$ at $W=0$")
+        panel.set_xlim(*ends)
         titles.append(f"{state}, {law} law")
     _, shown = legend_entries(panels)
     look: Any = {"linestyle": "none", "marker": "o", "markersize": 4}

@@ -7,16 +7,20 @@ import xarray
 
 OTHER_COLOR = "#999999"
 
-# The synchronized attractor has the first; the others go to the branches that exist at the most values of a.
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#999933")
+# The synchronized attractor has the first; the others go to the branches that most sampled states reach.
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#999933", "#332288")
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch; those of a short range share one."""
-    branch = attractors["branch"].values
-    # Both sides of a branch fill a slot each: counted once.
-    there = {int(n): int((branch == n).any(axis=-1).sum()) for n in np.unique(branch) if n > 0}
-    ranked = sorted(there, key=lambda n: (-there[n], n))
+    """Return the colour of each branch; those of small basins share one."""
+    branch, count = attractors["branch"].values, attractors["basin_count"].values
+    # Where no states were sampled, the number of values of a decides; both sides of a branch are counted once there.
+    sizes = {
+        int(n): (int(count[branch == n].sum()), int((branch == n).any(axis=-1).sum()))
+        for n in np.unique(branch)
+        if n > 0
+    }
+    ranked = sorted(sizes, key=lambda n: (sizes[n], -n), reverse=True)
     colors = dict.fromkeys(ranked, OTHER_COLOR)
     colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
     return {**({0: COLORS[0]} if (branch == 0).any() else {}), **colors}

@@ -62,7 +62,7 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
         [handles[k] for k in order], [labels[k] for k in order], loc="center right", handletextpad=0.3, fontsize=7.0
     )
     wide = lower.subplots()
-    draw_panel(wide, two_blocks)
+    draw_panel(lower, wide, two_blocks)
     titles = [f"$N={count}$" for count in blocks]
     label_panels([*panels[: len(blocks)], wide], [*titles, r"$N=2$: $\langle J\rangle$ of each initial state"])
     return figure

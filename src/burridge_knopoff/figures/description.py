@@ -47,7 +47,7 @@ class Description:
 
     def caption_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the caption of one picture, in one paragraph, with what the paper has of it."""
-        paper = f" The paper's {self.paper}." if self.paper else ""
+        paper = f" Compare the paper's {self.paper}." if self.paper else ""
         return _filled(f"{' '.join(self.caption.split())}{paper}", wildcards)
 
     def in_study(self, summaries: Collection[str]) -> Description | None:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import color, label_panels, panel_table, say, styled
 
 TITLE = "J against time"
 CATEGORY = "Runs"
@@ -30,24 +30,21 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     The linear panels leave out the first relaxation, which is up to a hundred times what follows; a run that ended
     early leaves the rest of its panel empty.
     """
-    figure, panels = new_figure(page_width(len(runs)), 4.0, rows=2, columns=len(runs), share_rows=False)
+    figure, table = panel_table(1.8, len(runs), r"$\tau$", [r"$J(\tau)$"] * 2, share_y=False)
     titles = []
-    for column, (initial, point) in enumerate(runs.items()):
-        for row in range(2):
-            panel = panels[row * len(runs) + column]
-            distance = point["distance"].values
-            panel.plot(point["time"], np.maximum(distance, FLOOR) if row else distance, color=color(0), linewidth=0.5)
-            if row == 0:
-                panel.set_ylim(0.0, settled_top(distance))
+    for (linear, logarithmic), (initial, point) in zip(table.T, runs.items(), strict=True):
+        time, distance = point["time"], point["distance"].values
+        linear.plot(time, distance, color=color(0), linewidth=0.5)
+        linear.set_ylim(0.0, settled_top(distance))
+        logarithmic.plot(time, np.maximum(distance, FLOOR), color=color(0), linewidth=0.5)
+        logarithmic.set(yscale="log", ylim=(FLOOR, 10.0))
+        for panel in (linear, logarithmic):
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
-        panel.set_xlabel(r"$\tau$")
+            if not distance.any():
+                say(panel, "$J$ is 0 at all times")
         titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")
-    for panel in (panels[0], panels[len(runs)]):
-        panel.set_ylabel(r"$J(\tau)$")
-    for panel in panels[len(runs) :]:
-        panel.set(yscale="log", ylim=(FLOOR, 10.0))
-    panels[0].legend(loc="upper right", handlelength=1.2)
-    label_panels(panels, titles + [f"{title}, logarithmic" for title in runs])
+    table[0, 0].legend(loc="upper right", handlelength=1.2)
+    label_panels(table.flat, titles + [f"{title}, logarithmic" for title in runs])
     return figure
 
 

@@ -9,9 +9,19 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
-from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, new_figure, page_width, styled
+from burridge_knopoff.figures.style import (
+    begin_at_zero,
+    cells,
+    label_panels,
+    legend_below,
+    new_figure,
+    page_width,
+    say_nothing,
+    styled,
+)
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 
 TITLE = "Edges of the attractors"
@@ -20,7 +30,7 @@ INPUTS = ("attractors", "edges")
 CAPTION = """\
 ⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to: solid
 where they are stable, dashed where they are not and were followed a little beyond an edge. Grey points: all attractors.
-Marks: edges, by what happens there; a short line is one that is only known to lie between two values of a. Below, where
+Marks: edges, by what happens there; a bar at the foot is the range of a in which one is only known to lie. Below, where
 the study covers it: the road from one period to chaos, enlarged, with the stops of the three blocks in a period.
 """
 
@@ -36,6 +46,8 @@ UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
     EdgeKind.CRISIS: ("-", "crisis"),
     EdgeKind.UNDETERMINED: (":", "undetermined"),
 }
+
+BAR: Any = {"facecolor": "0.7", "edgecolor": "black", "linewidth": 0.7, "zorder": 2}
 
 #: Ranges of a and ⟨J⟩ of the panels below.
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
@@ -53,12 +65,16 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
     colors = branch_colors(attractors)
     for place, panel in enumerate(panels):
         number = place % len(laws)
-        _attractors(panel, attractors.sel(law=laws[number]))
+        law = attractors.sel(law=laws[number])
+        _attractors(panel, law)
         _orbits(panel, edges, number, colors)
         _edges(panel, edges, number)
         panel.set_xlabel("$a$")
         if place < len(laws):
             begin_at_zero(panel)
+            panel.set_xlim(*cells(attractors["a"].values)[[0, -1]])
+            if (law["branch"] < 0).all():
+                say_nothing(panel, "no attractor was found")
         else:
             _stops(panel, edges, number)
             panel.set_xlim(*ROAD[0])
@@ -114,8 +130,8 @@ def _edges(panel: Axes, edges: xarray.Dataset, law: int) -> None:
             zorder=3,
         )
     for one, (dashes, _) in UNLOCATED.items():
-        for value in np.unique(a[own & (kind == one)]):
-            panel.axvline(value, ymax=0.05, color="black", linestyle=dashes, linewidth=0.7, zorder=2)
+        for value, error in np.unique(np.stack([a, edges["a_error"].values], 1)[own & (kind == one)], axis=0):
+            panel.axvspan(value - error, value + error, 0.0, 0.05, linestyle=dashes, **BAR)
 
 
 def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
@@ -151,10 +167,6 @@ def _legend(figure: Figure, edges: xarray.Dataset) -> None:
             for one, (marker, name) in MARKS.items()
             if one in located
         ),
-        *(
-            Line2D([], [], color="black", linewidth=0.7, linestyle=line, label=name)
-            for one, (line, name) in UNLOCATED.items()
-            if one in kind
-        ),
+        *(Patch(linestyle=line, label=name, **BAR) for one, (line, name) in UNLOCATED.items() if one in kind),
     ]
     legend_below(figure, handles)

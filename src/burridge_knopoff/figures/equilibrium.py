@@ -19,15 +19,15 @@ CAPTION = """\
 the growth rate of perturbations, against a, and what the tangent dynamics of the simulation shows.
 """
 
-# Of the first and of the last law: where curves lie on each other both are seen.
+# Of the first and of the last law: where points lie on each other both are seen.
 WIDTHS = (2.2, 1.0)
 
 
 @styled
 def draw(equilibrium: xarray.Dataset) -> Figure:
-    """Draw the eigenvalues in the complex plane as a goes up, and the largest real part against a, for each law.
+    """Draw the eigenvalues in the complex plane at all a, and the largest real part against a, for each law.
 
-    Lines are eigenvalues of the Jacobian; markers on the right are growth rates of the simulated tangent flow.
+    Lines on the right are eigenvalues of the Jacobian; markers are growth rates of the simulated tangent flow.
     """
     figure, (plane, growth) = new_figure(PAGE, 3.2, columns=2, share_rows=False, share_columns=False)
     a = equilibrium["a"].values
@@ -37,8 +37,8 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
         one = equilibrium.sel(law=law)
         eigenvalue = one["eigenvalue"]
         real, imaginary = (eigenvalue.sel(part=part).values for part in ("real", "imaginary"))
-        for mode in range(real.shape[1]):
-            plane.plot(real[:, mode], imaginary[:, mode], color=color(n), linewidth=width)
+        # Not joined: eigenvalues that collide cannot be told apart.
+        plane.plot(real.ravel(), imaginary.ravel(), "o", color=color(n), markersize=width, markeredgewidth=0)
         plane.plot(real[-1], imaginary[-1], marker(n), color=color(n), markersize=4)
         growth.plot(a, real.max(axis=1), color=color(n), linewidth=1.0)
         some = slice(None, None, max(1, len(a) // 12))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any
@@ -12,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import BEHIND, PAGE, color, dashes, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, dashes, label_panels, new_figure, styled
 from burridge_knopoff.laws import Law, law_of
 
 TITLE = "Friction laws"
@@ -22,12 +23,12 @@ INPUTS = ("mean_distance",)
 FROM_STUDY = ("law_descriptions", "shown_a")
 CAPTION = """\
 (a) The friction Φ of each law, as a share of the static friction, against the velocity U' of a block, for the value
-of a of the single runs and the largest of the study, and the static friction that holds a stuck block (U' = 0). (b) The
-least friction on a slipping block in each run, against a.
+of a of the single runs and the largest of the study, and the static friction that holds a stuck block (U' = 0); up to
+the velocity that runs at the largest a reach. (b) The least friction on a slipping block in each run, against a.
 """
 
-# Largest velocity that is drawn.
-FASTEST = 3.0
+# Velocities that runs may reach; all are drawn if the friction tells nothing.
+SPEEDS = np.linspace(0.0, 3.0, 3001)
 
 # Lines, and letters of each, that a law may take in the legend.
 LINES = 3
@@ -43,8 +44,12 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     """
     laws = [law_of(name, shown_a, description) for name, description in law_descriptions.items()]
     a_values = sorted({shown_a, float(mean_distance["a"].max())})
-    figure, (left, right) = new_figure(PAGE, 2.8 + 0.17 * len(laws), columns=2, share_rows=False)
-    speed = np.linspace(0.0, FASTEST, 301)
+    figure, (left, right) = new_figure(PAGE, 3.2 + 0.17 * len(laws), columns=2, share_rows=False)
+    last = mean_distance.sel(a=a_values[-1])["least_friction"].min("initial")
+    # Where the friction has fallen to the least of the runs.
+    reached = [SPEEDS[(law.at(a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws]
+    fastest = 1.1 * max(reached) or SPEEDS[-1]
+    speed = np.linspace(0.0, fastest, 301)
     left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, label="stuck")
     largest = 1.0
     for n, law in enumerate(laws):
@@ -55,7 +60,8 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
         for k, initial in enumerate(mean_distance["initial"].values):
             least = mean_distance["least_friction"].sel(initial=initial, law=law.name)
             right.plot(mean_distance["a"], least, color=color(n), linestyle=dashes(k))
-    left.set(xlabel="velocity $U'$", ylabel=r"friction $\Phi$", xlim=(-0.15, FASTEST), ylim=(-0.15, 1.08 * largest))
+    left.set(xlabel="velocity $U'$", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, fastest))
+    left.set_ylim(-0.15, 1.08 * largest)
     right.set(xlabel="$a$", ylabel=r"least $\Phi$", ylim=(min(-0.15, right.get_ylim()[0]), 1.08))
     for panel in (left, right):
         panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
@@ -70,9 +76,11 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
 
 
 def _entry(law: Law) -> str:
-    return "\n".join(wrap(f"{law.name}: {law.words}", LETTERS, max_lines=LINES, placeholder=" …"))
+    lines = wrap(f"{law.name}: {law.words}", LETTERS, max_lines=LINES, placeholder=" …")
+    # Symbols in italics, as on the axes.
+    return "\n".join(re.sub(r"\b(aU|[a-zσ])\b", r"$\1$", line) for line in lines)
 
 
 def _styles(panel: Axes, names: Sequence[str], others: Sequence[Line2D] = ()) -> None:
     lines = [Line2D([], [], color="0.3", linestyle=dashes(k), label=name) for k, name in enumerate(names)]
-    panel.legend(handles=[*others, *lines], loc="lower left", bbox_to_anchor=(0.05, 0.03), **BEHIND)
+    panel.legend(handles=[*others, *lines], loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)

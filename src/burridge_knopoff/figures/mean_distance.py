@@ -22,8 +22,9 @@ state (black, bars of three standard errors).
 """
 OPTIONAL = {
     "attractors": """\
-Coloured points: the attractors that were found, by branch. Below: the branch that each initial state reaches under each
-convention of contact and start.
+Coloured points: the attractors that were found, by branch. Below: the branch on which each initial state ends under
+each convention of contact and start, after a push if the motion before it does not attract; a run above may not get
+there within its time.
 """
 }
 
@@ -125,7 +126,7 @@ def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names:
     shown: dict[str, str] = {}
     for branch, color in sorted(colors.items()):
         shown.setdefault("other branches" if color == OTHER_COLOR else names[branch], color)
-    # The colour of short branches comes last.
+    # The colour that branches of small basins share comes last.
     shown = dict(sorted(shown.items(), key=lambda item: item[1] == OTHER_COLOR))
     handles += [
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)

@@ -16,7 +16,8 @@ CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
 Every solver of each law at a few values of a: ⟨J⟩, its difference from that of the study's own solver with the standard
-error of that difference as a bar, and the number of steps in a unit of time.
+error of that difference as a short line, and the number of steps in a unit of time. What is 0, or below 1e-17, lies at
+the foot of the second row.
 """
 
 #: Steps in a unit of time of the paper's own numerical solution.
@@ -70,7 +71,7 @@ def draw(solvers: xarray.Dataset) -> Figure:
     handles = [Line2D([], [], **_look(n, 0), label=name) for n, name in enumerate(names)]
     handles += [Line2D([], [], **_look(0, j, "0.3"), label=f"from {initial}") for j, initial in enumerate(states)]
     handles.append(Line2D([], [], color="0.3", marker="_", linestyle="", markersize=6, label="standard error"))
-    handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's steps"))
+    handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="steps of the paper's runs"))
     legend_below(figure, handles)
     titles = [[r"$\langle J\rangle$" for _ in laws]]
     titles.append([f"difference from {solvers.attrs[f'solver_{law}']}" for law in laws])

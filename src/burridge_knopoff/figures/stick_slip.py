@@ -19,10 +19,11 @@ CATEGORY = "Runs"
 INPUTS = ("stick_slip",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
-Cycles of each block against a, a column for each initial state: the time between two stops, the frequency of the end
-blocks over that of the middle block, by the peaks of the spectra of their velocities and by their stops, the
-correlation of the velocities of the end blocks, and the share of time for which each block sticks. Bars are standard
-errors of cycle times and how finely the spectra resolve; the band and the dotted line are what the paper states.
+Cycles of each block against a, a column for each initial state, under one law, that of the figures of single runs,
+which stands above the columns: the time between two stops, the frequency of the end blocks over that of the middle
+block, by the peaks of the spectra of their velocities and by their stops, the correlation of the velocities of the end
+blocks, and the share of time for which each block sticks. Bars are standard errors of cycle times and how finely the
+spectra resolve; the band and the dotted line are what the paper states for its chain.
 """
 
 #: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -60,20 +61,20 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
         together.plot(run["a"], run["velocity_correlation"], "o", color="black", markersize=2.0)
         together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
         sticks.set_xlabel("$a$")
-    labels = ("time between stops", f"ratio to block {middle}", "correlation", "share of the window")
+    labels = (
+        "time between stops",
+        f"frequency: end blocks\nover block {middle}",
+        f"correlation of\n$U_1'$ with $U_{{{count}}}'$",
+        "share of time stuck",
+    )
     for row, label in enumerate(labels):
         panels[row * len(states)].set_ylabel(label)
     for row in (0, 1, 3):
         begin_at_zero(panels[row * len(states)])
     panels[2 * len(states)].set_ylim(-1.1, 1.1)
     legend_below(figure, _legend(shown))
-    titles = (
-        "cycle time",
-        "frequency of the end blocks",
-        f"$U_1'$ with $U_{{{count}}}'$",
-        "stick fraction",
-    )
-    label_panels(panels, [f"{initial}, {shown_law} law: {title}" for title in titles for initial in states])
+    heads = [f"{initial}, {shown_law} law" for initial in states]
+    label_panels(panels, heads + [""] * (len(panels) - len(heads)))
     return figure
 
 
@@ -102,6 +103,6 @@ def _legend(shown: list[int]) -> list[Line2D | Patch]:
         *(Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)),
         Line2D([], [], **gray, label="frequency of the velocity"),
         Line2D([], [], **gray, markerfacecolor="none", label="frequency of the stops"),
-        Patch(facecolor="0.88", label="the paper's 2 to 3"),
-        Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="the paper's 1/2"),
+        Patch(facecolor="0.88", label="2 to 3, the paper's chain"),
+        Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="1/2, the paper's chain"),
     ]

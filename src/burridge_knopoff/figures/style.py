@@ -14,7 +14,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.container import ErrorbarContainer
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from burridge_knopoff.provenance.files import write_whole
@@ -34,9 +34,6 @@ DASHES: tuple[Any, ...] = (
     "-", "--", ":", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (10, 3)), (0, (1, 4)), (0, (5, 1, 5, 4))
 )  # fmt: skip
 MARKERS = ("o", "x", "s", "^", "D", "v", "+")
-
-#: A legend that hides the lines behind it.
-BEHIND: Any = {"frameon": True, "facecolor": "white", "edgecolor": "none", "framealpha": 1.0}
 
 # Letters of the titles that fit into an inch, as a rule.
 LETTERS = 17
@@ -115,7 +112,7 @@ def panel_table(
             if number % across == 0:
                 panel.set_ylabel(y)
             elif share_y:
-                panel.tick_params(labelleft=False)
+                panel.tick_params(which="both", labelleft=False)
             if share_y and number:
                 panel.sharey(row[0])
     for panel in table[-1, -across:]:
@@ -129,7 +126,7 @@ def begin_at_zero(panel: Axes) -> None:
     tops = [each.dataLim.y1 for each in panel.get_shared_y_axes().get_siblings(panel)]
     # Where all is 0, rounding sets the scale of nothing.
     top = max([0.01, *filter(np.isfinite, tops)])
-    panel.set_ylim(-0.03 * top, 1.05 * top)
+    panel.set_ylim(-0.03 * top, 1.1 * top)
 
 
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
@@ -156,10 +153,12 @@ def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
     return list(entries.values()), list(entries)
 
 
-def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
+def legend_below(figure: Figure | SubFigure, handles: Sequence[Artist]) -> None:
     """Put a legend below all panels, in as many columns as fit into the width of the figure."""
     for columns in range(len(handles), 0, -1):
-        legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns)
+        # Columns are filled one after the other; rows are what is read.
+        in_rows = [handle for first in range(columns) for handle in handles[first::columns]]
+        legend = figure.legend(handles=in_rows, loc="outside lower center", ncols=columns)
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()
@@ -189,8 +188,9 @@ def cells(values: np.ndarray) -> np.ndarray:
 
 
 def shade(panel: Axes, values: np.ndarray, where: np.ndarray) -> None:
-    """Shade the cells of those of ascending values of which something is true."""
+    """Shade the cells of those of ascending values of which something is true; the panel shows the cells of all."""
     edges = cells(values)
+    panel.set_xlim(edges[0], edges[-1])
     for k in np.flatnonzero(where):
         panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
 
@@ -210,9 +210,14 @@ def marker(index: int) -> str:
     return MARKERS[index % len(MARKERS)]
 
 
+def say(panel: Axes, words: str) -> None:
+    """Write into the middle of a panel."""
+    panel.text(0.5, 0.5, words, ha="center", transform=panel.transAxes)
+
+
 def say_nothing(panel: Axes, reason: str) -> None:
     """Leave a panel empty but for the reason why."""
-    panel.text(0.5, 0.5, reason, ha="center", transform=panel.transAxes)
+    say(panel, reason)
     panel.set_axis_off()
 
 

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 import xarray
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.style import PAGE, color, marker, new_figure, shade, styled
+from burridge_knopoff.figures.style import (
+    PAGE,
+    color,
+    legend_below,
+    legend_entries,
+    marker,
+    new_figure,
+    shade,
+    styled,
+)
 
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"
@@ -21,12 +31,12 @@ first one for one of the states, in ⟨J⟩ or in the kind of motion.
 def draw(two_blocks: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩ of all laws from each state; shaded where any disagrees with the first one, for any of the states."""
     figure, (panel,) = new_figure(PAGE, 2.8)
-    draw_panel(panel, two_blocks)
+    draw_panel(figure, panel, two_blocks)
     return figure
 
 
-def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
-    """Draw the same into a panel of a figure."""
+def draw_panel(figure: Figure | SubFigure, panel: Axes, two_blocks: xarray.Dataset) -> None:
+    """Draw the same into the panel of a figure, with a legend below."""
     a = two_blocks["a"].values
     disagree = (two_blocks["agrees"] == 0).any(("other_law", "state")).values
     shade(panel, a, disagree)
@@ -40,5 +50,8 @@ def draw_panel(panel: Axes, two_blocks: xarray.Dataset) -> None:
     panel.set_xlabel("$a$")
     panel.set_ylabel(r"$\langle J\rangle$")
     laws = two_blocks["law"].values
-    shaded = "shaded: the laws disagree" if len(laws) == 2 else f"shaded: one disagrees\nwith the {laws[0]} law"
-    panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title=shaded if disagree.any() else None)
+    handles, _ = legend_entries([panel])
+    if disagree.any():
+        words = "the laws disagree" if len(laws) == 2 else f"one disagrees with the {laws[0]} law"
+        handles.append(Patch(facecolor="0.9", edgecolor="0.6", label=words))
+    legend_below(figure, handles)

@@ -21,7 +21,7 @@ def kinds() -> list[dict[str, Any]]:
 
 
 def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
-    """Return number, name and colour of each branch, those of a short range last; they share a colour and a name."""
+    """Return number, name and colour of each branch, those of small basins last; they share a colour and a name."""
     colors = branch_colors(attractors)
     names = branch_names(attractors)
     ordered = sorted(colors, key=lambda number: (colors[number] == OTHER_COLOR, number))

@@ -128,6 +128,7 @@ const shapes = {
   cross: '<path d="M5 1h4v4h4v4h-4v4h-4v-4h-4v-4h4z"/>',
   star: '<path d="M7 .5l2 4.3 4.6.5-3.4 3.2.9 4.7L7 10.8l-4.1 2.4.9-4.7L.4 5.3 5 4.8z"/>',
   hexagon: '<path d="M7 1l5.2 3v6L7 13l-5.2-3V4z"/>',
+  pentagon: '<path d="M7 1l6 4.4-2.3 7H3.3L1 5.4z"/>',
   x: '<path d="M2.5 2.5l9 9m0-9l-9 9" fill="none" stroke-width="2"/>',
   patch: '<rect x="1" y="1" width="12" height="12" stroke-width="1"/>',
   line: '<path d="M0 7h14" stroke-width="2"/>',

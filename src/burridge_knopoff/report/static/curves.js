@@ -1,8 +1,8 @@
 // ⟨J⟩ of runs and attractors, exponents, and basin fractions, against a.
-const branchShapes = ["circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star", "hexagon"];
+const branchShapes = ["circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star", "hexagon", "pentagon"];
 const runShapes = ["circle", "triangle-down", "square", "triangle-up", "diamond", "pentagon", "hexagon2", "x"];
 
-/** The groups of the legend in order, each with a shape of its own; short branches share one. */
+/** The groups of the legend in order, each with a shape of its own; branches of small basins share one. */
 const groups = new Map();
 for (const branch of data.branches)
   if (!groups.has(branch.group))

@@ -1,0 +1,76 @@
+"""What a panel has nothing of it says; values of a at which nothing is drawn stay on the axis."""
+
+import numpy as np
+import xarray as xr
+
+from burridge_knopoff.figures import agreement, basin_fractions, bifurcation, distance
+
+GRID = {"law": ["linearized", "nonlinear"], "initial": ["symmetric"], "a": [0.1, 0.2]}
+
+
+def words(figure):
+    return [[text.get_text() for text in panel.texts] for panel in figure.axes]
+
+
+def test_fractions_of_no_states_and_sweeps_of_no_attractors():
+    names = ("law", "a", "attractor")
+    sweeps = ("law", "direction", "sweep", "a")
+    attractors = xr.Dataset(
+        {
+            "branch": (names, np.full((1, 2, 1), -1)),
+            "basin_count": (names, np.zeros((1, 2, 1), dtype=int)),
+            "sweep_mean_distance": (sweeps, np.full((1, 2, 1, 2), np.nan)),
+            "branch_number": ("number", np.zeros(0, dtype=int)),
+            "branch_name": ("number", np.zeros(0, dtype=str)),
+        },
+        {"law": ["linearized"], "a": [0.1, 0.2], "direction": ["upward", "downward"]},
+        {"fraction_samples": 0},
+    )
+    assert words(basin_fractions.draw(attractors)) == [["no states were sampled"], ["no attractor to follow"]]
+
+
+def test_all_values_of_a_stay_on_the_axis_of_section_points():
+    flag = {"flag_meanings": "linearized"}
+    points = xr.Dataset(
+        {
+            "crossing_velocity": ("crossing", [0.3, -0.3]),
+            "crossing_direction": ("crossing", [1, -1]),
+            "crossing_count": ("point", [2, 0, 0]),
+        },
+        {"a": ("point", [2.0, 3.0, 5.0]), "law": ("point", [0] * 3, flag), "initial": ("point", [0] * 3, flag)},
+    )
+    (panel,) = bifurcation.draw(points).axes
+    assert panel.get_xlim() == (1.5, 6.0)
+
+
+def test_differences_of_0_lie_at_the_foot_and_are_said():
+    names = ("other_law", "initial", "a")
+    zeros = np.zeros((1, 1, 2))
+    found = dict.fromkeys(("difference", "difference_error", "section_distance"), (names, zeros))
+    summary = xr.Dataset(
+        {
+            **found,
+            "event_order_time": (names, [[[10.0, 20.0]]]),
+            "agrees": (names, [[[1, 0]]]),
+            "mean_distance": (("law", "initial", "a"), np.zeros((2, 1, 2))),
+        },
+        {**GRID, "other_law": ["nonlinear"]},
+        {"relative_tolerance": 0.1, "standard_errors": 3.0},
+    )
+    figure = agreement.draw(summary)
+    assert words(figure) == [["0 at all $a$"], [], []]
+    for panel, floor in zip(figure.axes, agreement.FLOORS, strict=False):
+        assert panel.get_lines()[0].get_ydata().tolist() == [floor] * 2
+        assert panel.get_ylim()[0] < floor
+    # The shading leaves the columns alike.
+    assert np.allclose(figure.axes[0].get_xlim(), (0.05, 0.25))
+
+
+def test_a_distance_of_0_is_said():
+    run = xr.Dataset(
+        {"distance": ("time", np.zeros(200))},
+        {"time": np.arange(200.0), "a": 0.1},
+        {"transient": 50.0, "law": "linearized", "initial": "symmetric"},
+    )
+    other = run.assign(distance=run["distance"] + 0.1)
+    assert words(distance.draw({"symmetric": run, "plus": other})) == [["$J$ is 0 at all times"], []] * 2
