@@ -23,6 +23,7 @@ def test_basin_maps_hold_label_and_time_of_every_pixel():
     names = ["synchronized", "branch 3", "branch 7"]
     known = xr.Dataset({"branch_number": ("number", [0, 3, 7]), "branch_name": ("number", names)})
     known["branch"] = ("law", "a", "attractor"), [[[0, 3, 7]]]
+    known["basin_count"] = known["branch"]
     one = basin_maps(basins, known, {"plus": (0.9, -0.9)})["maps"][0]
     label = np.frombuffer(base64.b64decode(one["label"]), dtype="u1").reshape(2, 3)
     names = np.array([item["name"] for item in one["classes"]])[label]

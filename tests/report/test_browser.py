@@ -29,6 +29,10 @@ LOW_CONTRAST = """() => {
   }).map((node) => node.textContent.trim().slice(0, 40));
 }"""
 
+# Whether the frame of a chart holds all its points and the bars above them.
+FRAMED = """(box) => box._fullData.filter((trace) => trace.error_y?.visible).every((trace) =>
+  trace.y.every((y, n) => y === null || y + trace.error_y.array[n] <= box._fullLayout.yaxis.range[1]))"""
+
 FOCUSED = """() => {
   const node = document.activeElement;
   const style = getComputedStyle(node);
@@ -71,6 +75,7 @@ class Reader:
             chart.and_(self.page.locator("[data-drawn]")).wait_for(timeout=20_000)
             assert chart.locator(".main-svg").count() >= 1
             assert chart.evaluate("box => box._fullData.some((trace) => (trace.x ?? []).length)"), chart
+            assert chart.evaluate(FRAMED), chart
         return len(charts)
 
     def close(self):

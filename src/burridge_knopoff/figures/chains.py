@@ -9,7 +9,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_entries, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_below, legend_entries, styled
 from burridge_knopoff.figures.two_blocks import draw_panel
 from burridge_knopoff.stability.chains import STANDARD_ERRORS
 
@@ -41,8 +41,8 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
     """
     blocks = chains["blocks"].values
     rows = math.ceil(len(blocks) / COLUMNS)
-    figure = Figure(figsize=(PAGE, rows * ROW_HEIGHT + TWO_BLOCKS_HEIGHT + 0.4), layout="constrained")
-    heights = [rows * ROW_HEIGHT + 0.4, TWO_BLOCKS_HEIGHT]
+    figure = Figure(figsize=(PAGE, rows * ROW_HEIGHT + TWO_BLOCKS_HEIGHT + 0.6), layout="constrained")
+    heights = [rows * ROW_HEIGHT + 0.6, TWO_BLOCKS_HEIGHT]
     upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
     grid = upper.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False)
     panels = list(grid.flat)
@@ -58,9 +58,7 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
     handles, labels = legend_entries(panels[: len(blocks)])
     # Points with bars come last of themselves.
     order = sorted(range(len(labels)), key=lambda k: not labels[k].startswith("synchronized"))
-    panels[0].legend(
-        [handles[k] for k in order], [labels[k] for k in order], loc="center right", handletextpad=0.3, fontsize=7.0
-    )
+    legend_below(upper, [handles[k] for k in order])
     wide = lower.subplots()
     draw_panel(lower, wide, two_blocks)
     titles = [f"$N={count}$" for count in blocks]
