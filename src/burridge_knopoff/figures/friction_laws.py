@@ -78,7 +78,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
 def _entry(law: Law) -> str:
     lines = wrap(f"{law.name}: {law.words}", LETTERS, max_lines=LINES, placeholder=" …")
     # Symbols in italics, as on the axes.
-    return "\n".join(re.sub(r"\b(aU|[a-zσ])\b", r"$\1$", line) for line in lines)
+    return "\n".join(re.sub(r"\b(\w?aU|[a-zUση])\b", r"$\1$", line) for line in lines)
 
 
 def _styles(panel: Axes, names: Sequence[str], others: Sequence[Line2D] = ()) -> None:
