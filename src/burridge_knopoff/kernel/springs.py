@@ -2,7 +2,7 @@
 
 In co-moving coordinates x_i = U_i − vτ − e_i, with e the positions of uniform sliding, the spring force on block i is
 
-    s_i = f_i − (K x)_i,    f_i = threshold_i Φ(av),
+    s_i = f_i − (K x)_i,    f_i = threshold_i Φ(v),
 
 with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to the blocks before and after it.
 A ring has a spring between the last block and the first.

@@ -3,10 +3,10 @@
 It is set from a `model.Instant` and read out as one. Besides positions, velocities and which blocks stick it holds what
 the next event depends on, and it is changed in place. (An `InitialState` gives U(0) and U'(0), as the paper does.)
 
-Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −Φ(av)·1, velocity is U_i' itself, so that a
-stuck block has velocity exactly 0. Because K·1 = D the spring force on block i is
+Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −threshold Φ(v), velocity is U_i' itself, so
+that a stuck block has velocity exactly 0. Because K·1 = D the spring force on block i is
 
-    s_i = D_i vτ − (K U)_i = threshold_i Φ(av) − (K x)_i
+    s_i = D_i vτ − (K U)_i = threshold_i Φ(v) − (K x)_i
 
 and nothing in the system depends on τ. A block slips against friction threshold_i Φ, and starts where the spring force
 on it passes threshold_i.

@@ -143,7 +143,7 @@ class Chain:
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).
 
-        Uniform sliding is U_i = vτ + e_i where Φ(av) is that friction.
+        Uniform sliding is U_i = vτ + e_i where Φ(v) is that friction.
         """
         load = self._solve(self.thresholds.copy())
         if self.ends == "ring":
