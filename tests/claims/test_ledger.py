@@ -194,8 +194,8 @@ def test_values_join_neighbours_and_count_many() -> None:
     assert at_values(A, (A > 0.0) & (A < 0.025)) == "at a = 0.0025 to 0.02"
     assert at_values(A, (A == 0.05) | (A > 0.285)) == "at a = 0.05, 0.29 to 0.3"
     assert at_values(A, (A == 0.05) | (A > 0.29)) == "at a = 0.05, 0.295, 0.3"
-    assert at_values(A, [k % 3 == 0 for k in range(len(A))]) == "at 22 values of a from 0 to 0.3"
-    assert at_values(np.arange(20.0), np.arange(20) % 2 == 0) == "at 10 values of a from 0 to 18"
+    assert at_values(A, [k % 3 == 0 for k in range(len(A))]) == "at 22 of the 64 values of a from 0 to 0.3"
+    assert at_values(np.arange(20.0), np.arange(20) % 2 == 0) == "at 10 of the 19 values of a from 0 to 18"
     assert at_values(np.arange(17.0), np.arange(17) % 2 == 1) == "at a = 1, 3, 5, 7, 9, 11, 13, 15"
     assert at_values(A, A > 1.0) == "at a = "
 

@@ -143,8 +143,8 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
             )
         )
         together[convention] = worst(judged.values()) if len(judged) == len(claims) else FAILS
-        against = [name for name, verdict in judged.items() if verdict == FAILS]
-        open_ones = [name for name in claims if name not in judged]
+        against = [_words(name) for name, verdict in judged.items() if verdict == FAILS]
+        open_ones = [_words(name) for name in claims if name not in judged]
         texts.append(
             f"{convention}: "
             + "; ".join(
@@ -162,6 +162,11 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
         else f"Under none of {len(conventions)} conventions do all {len(claims)} statements hold."
     )
     return Verdict(best, reason, measured, " | ".join(texts))
+
+
+def _words(name: str) -> str:
+    """Return the name of a claim in words: «plus does not synchronize»."""
+    return f"«{name.replace('_', ' ')}»"
 
 
 def phases_decide(
@@ -197,7 +202,10 @@ def phases_decide(
             ]
         if not right[:, inside, k].all():
             shown = _span(together[:, inside, k]), _span(against[:, inside, k])
-            changes.append(f"A = {size:g}: {shown[0]} of the close, {shown[1]} of the opposite phases")
+            changes.append(
+                f"A = {size:g}: {shown[0]} of the close phases synchronize, {shown[1]} of the opposite ones end in "
+                "antiphase"
+            )
     for law, low in zip(laws, together_low, strict=True):
         lost = ~inside & (low[:, slips] < share).any(axis=1)
         if lost.any():

@@ -192,7 +192,7 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
     verdict = HOLDS if ratio >= much else LOOSELY if ratio >= loose else FAILS
     reason = (
         f"The map takes at most {own.max():.2f} steps in a unit of time, the paper's stepping {steps:,.0f}: "
-        f"{ratio:,.0f} times as many."
+        f"about {float(f'{ratio:.1g}'):,.0f} times as many."
     )
     if np.isfinite(series):
         # It solves the differential equations, as the paper's stepping does.

@@ -124,7 +124,7 @@ def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a:
         if (friction <= 0.0).any():
             negative.append(f"not positive {at_values(runs['a'].values, friction <= 0.0)} ({state})")
     reason = f"The least friction on a slipping block with {a} ({law}) is {least:.3f}, in the run {where}."
-    return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("least Φ(aU')", least)], "; ".join(negative))
+    return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("least Φ(U')", least)], "; ".join(negative))
 
 
 def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdict:

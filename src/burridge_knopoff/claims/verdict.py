@@ -181,7 +181,7 @@ def with_error(value: float, error: float | None = None) -> str:
 def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
     """Return where the chosen values of a grid lie, neighbours of the grid joined: «at a = 0.0025 to 0.02, 0.0475».
 
-    More than MOST_SPANS of them are counted: «at 44 values of a from 0.1025 to 0.3».
+    More than MOST_SPANS of them are counted: «at 44 of the 80 values of a from 0.1025 to 0.3».
 
     a : ascending, shape (n,)
     chosen : which of them, shape (n,)
@@ -194,5 +194,6 @@ def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
             f"{first:g}" if len(run) == 1 else f"{first:g}, {last:g}" if len(run) == 2 else f"{first:g} to {last:g}"
         )
     if len(parts) > MOST_SPANS:
-        return f"at {len(index)} values of a from {a[index[0]]:g} to {a[index[-1]]:g}"
+        between = index[-1] - index[0] + 1
+        return f"at {len(index)} of the {between} values of a from {a[index[0]]:g} to {a[index[-1]]:g}"
     return f"at a = {', '.join(parts)}"

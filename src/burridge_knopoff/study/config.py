@@ -78,8 +78,8 @@ _SOLVER = OneOf(SOLVERS)
 AGREEMENT = {
     "relative_tolerance": Field(
         SHARE,
-        "a law agrees with the first one if its motion is of the same kind, periodic and quasiperiodic counting as one, "
-        "and <J> differs by no more than this share of the larger one, …",
+        "a law agrees with the first one if its motion is of the same kind, periodic and quasiperiodic counting as "
+        "one, and <J> differs by no more than this share of the larger one, …",
         0.1,
     ),
     "standard_errors": Field(
