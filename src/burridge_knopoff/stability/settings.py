@@ -44,8 +44,8 @@ class MotionSettings:
     chaotic_exponent: Annotated[
         float,
         SHARE,
-        "a motion is chaotic if its largest exponent is above this and not 0 within its errors; below v = 0.1 it scales "
-        "with v",
+        "a motion is chaotic if its largest exponent is above this and not 0 within its errors; below v = 0.1 it "
+        "scales with v",
     ] = 1e-3
     standard_errors: Annotated[
         float, ERRORS, "an exponent of this many standard errors at most counts as 0 as well"

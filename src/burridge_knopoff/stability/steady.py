@@ -160,8 +160,9 @@ def measure(
 
     transient : in which the perturbations turn into the directions of the exponents
 
-    Where only the errors of the exponents leave open which kind it is, it is measured in a longer window. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
-    exponent shows it have closed by then.
+    Where only the errors of the exponents leave open which kind it is, it is measured in a longer window. What may be a
+    torus is followed on for `lasting` transients: closed orbits that attract so weakly that no exponent shows it have
+    closed by then.
     """
     settings = settings.at_speed(model.v)
     found = _measure(model, start, transient, window, settings, tuning)
