@@ -38,6 +38,6 @@ def test_first_order_with_events(law):
 
 
 def test_the_last_step_ends_at_the_end(law):
-    run = simulate(law, 0.08, "minus", solver="rk4", step=0.3, transient=1.0, window=1.0, batches=2)
-    assert run.end_time == 2.0
+    run = simulate(law, 0.08, "minus", solver="rk4", step=0.03, transient=0.1, window=0.1, batches=2)
+    assert run.end_time == 0.2
     assert run.step_count == 7

@@ -1,5 +1,6 @@
 """Settings of a run: what is refused, and that their defaults are those of the schema."""
 
+import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Settings, simulate
@@ -50,6 +51,17 @@ def test_bad_input_is_refused_in_one_line(options, words):
 def test_a_run_that_would_keep_too_much_is_refused_by_what_decides_it(key, options):
     """2N + 1 numbers for each sample of a trajectory, 2N + 3 for each event with states: as many as a few GB hold."""
     asked = Settings(**{"transient": 0.0, "window": 1e5, **options})
-    asked.check_blocks(3)
+    asked.check_chain(Chain(3))
     with pytest.raises(ValueError, match=f"^{key}: .* the run would keep"):
-        asked.check_blocks(60)
+        asked.check_chain(Chain(60))
+
+
+def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():
+    """A step of 1 told that the paper's two states synchronize, where one of them does not."""
+    stiff = Chain(3, coupling=100.0)
+    assert max(np.linalg.eigvalsh(stiff.stiffness)) ** 0.5 <= stiff.highest_frequency
+    Settings(solver="rk4", step=0.1).check_chain(Chain(3))
+    Settings(solver="series", step=1.0).check_chain(Chain(3))
+    for chain, step in ((Chain(3), 0.11), (stiff, 0.04)):
+        with pytest.raises(ValueError, match=rf"^step: {step} is not allowed: at most 0\.\d+ in this chain"):
+            Settings(solver="rk4", step=step).check_chain(chain)

@@ -60,8 +60,8 @@ def simulate(
 ) -> Trajectory:
     """Run one simulation and return its trajectory: `simulate(law, a, initial)` or `simulate(model, initial)`.
 
-    law, a : a law and its friction parameter, 0.08 if none is given: the name of a law that is built in, or a `Law`;
-        or in the place of both a `Model`, which has its own chain, v and contact
+    law, a : a law and its friction parameter: the name of a law that is built in (a is 0.08 if none is given), or a
+        `Law` (its own a); or in the place of both a `Model`, which has its own chain, v and contact
     initial : minus (if none is given) or plus (the paper's, three blocks), an `InitialState`,
         {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,)
     settings : of the run; by_name : some of them, or all, by name (see `Settings`)
@@ -81,7 +81,8 @@ def simulate(
     2
     """
     if not isinstance(law, Model):
-        a = 0.08 if a is None else a
+        own = law.a if isinstance(law, Law) else 0.08
+        a = own if a is None else a
     elif not (a is None or isinstance(a, int | float)):
         # By position: simulate(model, initial, settings).
         if initial is not None and settings is not None:

@@ -68,7 +68,7 @@ def sweep(
     else:
         models = [given_model(law, value, len(state.position), chain, v, contact) for value in values]
     for model in models:
-        chosen.check_blocks(model.blocks)
+        chosen.check_chain(model.chain)
         model.begin(state, chosen.start)
 
     def one(model: Model) -> xarray.Dataset:

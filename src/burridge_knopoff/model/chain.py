@@ -130,6 +130,11 @@ class Chain:
         )
 
     @property
+    def highest_frequency(self) -> float:
+        """An angular frequency that no mode of slipping blocks exceeds: all eigenvalues of K lie in Gershgorin's discs."""
+        return math.sqrt(float((self.diagonal + self.before + self.after).max()))
+
+    @property
     def damping_limit(self) -> float:
         """The a below which every mode of slipping blocks oscillates under Φ = 1 − aU', if the chain is uniform."""
         return 2.0 * math.sqrt(self.driving.min()) / float(self.thresholds[0])

@@ -22,7 +22,7 @@ def run(model: Model, initial: InitialState, settings: Settings | None = None, a
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
     settings = Settings() if settings is None else settings
-    settings.check_blocks(model.blocks)
+    settings.check_chain(model.chain)
     at = model.begin(initial, settings.start) if at is None else at
     runner = _prepare(model, settings)
     runner.begin(at)

@@ -102,12 +102,29 @@ def _followed(
     size = tuning.parting_push * settings.resolution * model.scale
     chosen = generator.integers(len(returns), size=count)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
-    reached, _ = label(model, attractors, moved(model, starts, time), settings.time_limit)
-    left = np.flatnonzero(~np.isin(reached, (index, attractor.partner)))
-    others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
-    gone, when = label(model, others, [starts[k] for k in left], time)
-    # Who gets elsewhere later was still there. Who gets nowhere that is known has left, at a time that nobody knows.
-    within, nowhere = gone != UNDETERMINED, (gone == UNDETERMINED) & (reached[left] == UNDETERMINED)
-    spent = np.where(within, when, np.where(nowhere, 0.5 * time, time))
-    survived = time * (count - len(left)) + spent.sum()
-    return Lifetime(int((within | nowhere).sum()), float(survived))
+    both = index, attractor.partner
+    others = [other for k, other in enumerate(attractors) if k not in both]
+    # Chaos is left at a constant rate, and so is, once the first have had the time for it, the state of not being
+    # certain of another attractor: what comes before that time says nothing.
+    late = max((_capture_time(other, settings, tuning) for other in others), default=0.0)
+    reached, _ = label(model, attractors, moved(model, starts, late + time), settings.time_limit)
+    if np.isin(reached, both).all():
+        return Lifetime(0, time * count)
+    gone, when = label(model, others, starts, late + time)
+    # Who gets nowhere that is known has left, at a time that nobody knows.
+    known, nowhere = gone != UNDETERMINED, (gone == UNDETERMINED) & (reached == UNDETERMINED)
+    spent = np.where(known, np.maximum(when - late, 0.0), np.where(nowhere, 0.5 * time, time))
+    return Lifetime(int((known & (when > late) | nowhere).sum()), float(spent.sum()))
+
+
+def _capture_time(attractor: Attractor, settings: SearchSettings, tuning: Tuning) -> float:
+    """Return a time within which trajectories that have left chaos are certain to be on an attractor.
+
+    By its weakest exponent they come from the largest radius to its own, and then so often close to it as they have to.
+    """
+    motion = attractor.motion
+    rate = -motion.exponent[1]
+    nearer = math.log(max(tuning.largest_radius / attractor.radius, 1.0))
+    close = attractor.close_returns * settings.window / len(motion.returns)
+    slow = nearer > rate * tuning.patient_time
+    return min(tuning.patient_time, tuning.lateness * (close + (math.inf if slow else nearer / rate)))

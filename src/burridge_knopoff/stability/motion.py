@@ -141,7 +141,12 @@ def section_closed(section: np.ndarray, tolerance: float) -> bool:
 
 def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
     """Return which exponents, of these standard errors, cannot be distinguished from 0; all of shape (n,)."""
-    return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * error)
+    return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * _certain(exponent, error))
+
+
+def _certain(exponent: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Return the errors, infinite where that of a finite exponent is not known."""
+    return np.where(np.isfinite(exponent) & np.isnan(error), np.inf, error)
 
 
 def judged_distance(mean_distance: float, symmetric: bool) -> float:
@@ -172,6 +177,7 @@ def motion_kind(
     uniform sliding that attracts, of which no exponent is 0 and the section points are rounding.
     """
     known = np.flatnonzero(~np.isnan(exponent))
+    error = _certain(exponent, error)
     if period and not _is_at_rest(exponent, error, settings):
         return closed_kind(mean_distance, settings)
     if _is_positive(exponent, error, settings):
@@ -203,11 +209,13 @@ def is_unstable(period: int, exponent: np.ndarray, error: np.ndarray, settings: 
 
 def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
     """Tell whether the largest exponent, if there is one, is certain to be positive."""
+    error = _certain(exponent, error)
     return bool(len(exponent) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]))
 
 
 def _is_at_rest(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
     """Tell whether the largest exponent, if there is one, is certain to be negative: the flow has none that is 0."""
+    error = _certain(exponent, error)
     return bool(len(exponent) and exponent[0] < -max(settings.zero_exponent, settings.standard_errors * error[0]))
 
 

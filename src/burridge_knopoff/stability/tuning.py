@@ -99,6 +99,9 @@ class Tuning:
     exposure: float = 4.0
     #: Where these leave open whether the lifetime is below or beyond, so many times more are followed.
     undecided: int = 10
+    #: Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are
+    #: not yet captured no longer make chaos seem to last.
+    lateness: float = 2.0
     #: Push, in resolutions, that parts trajectories which begin at different times of one and the same.
     parting_push: float = 0.1
 

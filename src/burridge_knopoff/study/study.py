@@ -233,13 +233,18 @@ def _study(config: Mapping[str, Any]) -> Study:
     rules.fill_chains(filled)
     rules.fill_names(filled)
     rules.check_models(filled, values, study.blocks)
+    chain = study.model(study.laws[0], values[0]).chain
     for law in study.laws:
-        study.settings(law).check_blocks(study.blocks)
+        study.settings(law).check_chain(chain)
     with rules.under("basins."):
         _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
+    for law in study.laws if "solvers" in study.stages else ():
+        for solver in study.other_solvers(law):
+            with rules.under("solvers."):
+                study.settings(law, solver).check_chain(chain)
     rules.check_size(filled, len(grid), study.blocks)
     rules.leave_out(filled, study.left_out)
     return study
