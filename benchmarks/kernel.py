@@ -123,7 +123,7 @@ def now() -> dict[str, float]:
         kernel, clouds = new_ensemble(Model(Chain(blocks), law_of(law, a))), Clouds([cloud], 2 * blocks, [RADIUS])
         found[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
             lambda k=kernel, c=clouds, x=position, w=velocity: k.label(
-                x, w, np.zeros_like(x, np.intc), c, [RETURNS], END
+                x, w, np.zeros_like(x, np.intc), c, [RETURNS], [0], END
             )
         )
     for name, kind in BUILT_IN.items():

@@ -176,11 +176,12 @@ def test_what_a_state_reaches(search, monkeypatch, place, spacing, expected):
 
 def test_states_are_followed_until_something_is_found(search):
     search.told = [-1, 0, "new", -1, -1, -1, 0]
-    # No more than three at a time, and six in all, in vain.
-    for starts, found, followed, vain in (("abcd", True, "abc", 2), ("efgh", False, "efg", 5), ("ij", False, "i", 6)):
+    states = {name: instant_of(np.full(6, float(ord(name)))) for name in "abcdefghij"}
+    # No more than three at a time, six in all, and none twice, in vain.
+    for starts, found, followed, vain in (("abcd", True, "abc", 2), ("efgh", False, "efg", 5), ("aij", False, "i", 6)):
         search.followed.clear()
-        assert search.discover(starts) == found
-        assert (search.followed, search.vain) == (list(followed), vain)
+        assert search.discover([states[name] for name in starts]) == found
+        assert (search.followed, len(search.vain)) == ([states[name] for name in followed], vain)
 
 
 def test_labels_are_verified_much_closer_to_the_attractors(search, tell):

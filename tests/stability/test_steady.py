@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, Settings, law_of, simulate
+from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, Settings, find_attractors, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
+from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import Returns, instant_of, lies_on, measure, visit
 from burridge_knopoff.stability.tuning import TUNING
@@ -53,6 +54,44 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     # Too few returns say nothing.
     assert visit(chain, start, 500.0, 20.0) is None
     assert measure(chain, start, 500.0, 20.0, MOTION) is None
+
+
+@pytest.mark.parametrize(
+    ("stopping", "block", "mirror_block"),
+    [((1, 2, 3, 4), 1, 1), ((2, 3), 2, 2), ((1, 3), 1, 4), ((2,), 2, 3), ((3, 4), 4, 1), ((), None, None)],
+)
+def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mirror_block):
+    """Of two equally far out the lower one; a motion and its mirror image are seen at stops of mirror blocks."""
+    number = np.tile(np.arange(1, 5), 20)
+    states = np.random.default_rng(3).uniform(size=(80, 8))
+    chain, kind = Model(Chain(4), law_of("linearized", 0.1)), np.where(np.isin(number, stopping), 0, 1)
+    found = steady._returns(chain, number, kind, states, TUNING)
+    mirrored = steady._returns(chain, 5 - number, kind, states[:, [3, 2, 1, 0, 7, 6, 5, 4]], TUNING)
+    if block is None:
+        assert found is None
+        return
+    assert (found.block, found.mirror_block) == (mirrored.mirror_block, mirrored.block) == (block, mirror_block)
+    assert (found.returns == states[number == block]).all()
+    assert (found.returns == mirrored.mirror_returns).all()
+    assert (found.mirror_returns == mirrored.returns).all()
+
+
+def test_attractors_whose_ends_never_stop_are_known():
+    """In four blocks at a = 0.02 some states come to motion in which only the middle blocks stop."""
+    settings = SearchSettings(samples=40)
+    chain = Model(Chain(4), law_of("linearized", 0.02))
+    attractors, labels = find_attractors(chain, settings)
+    assert (labels >= 0).all()
+    assert {item.motion.block for item in attractors} == {1, 2}
+    box = settings.position, settings.velocity
+    drawn = sampled_states(4, settings.samples, *box, settings.seed)
+    for index in set(labels.tolist()):
+        motion, state = attractors[index].motion, drawn[labels.tolist().index(index)]
+        run = simulate(chain, state, transient=60_000, window=6000, lyapunov_exponents=0)
+        assert run.mean_distance == pytest.approx(motion.mean_distance, abs=2e-4)
+        stops = np.bincount(run.event_block[run.event_kind == 0], minlength=5)[1:]
+        assert (stops > 0).tolist() == (motion.stop_rate > 0.0).tolist()
+        assert np.flatnonzero(stops)[0] == motion.block - 1
 
 
 def test_mirror_images_of_a_motion():

@@ -68,8 +68,8 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
 def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
     """Judge whether in every motion that attracts some block stops again and again; loosely if so in nine of ten.
 
-    Attractors are known by the stops of the first block: motion without any would be among what drawn states reach that
-    is not known. So their share counts as well.
+    Attractors are known by the stops of a block: motion without any would be among what drawn states reach that is not
+    known. So their share counts as well.
     """
     evidence.check_blocks()
     attractors = evidence.choose(evidence.summary("attractors"), a)

@@ -23,6 +23,8 @@ cdef class Ensemble:
     cdef Clouds clouds
     cdef Py_ssize_t[:, ::1] streak
     cdef Py_ssize_t[::1] returns
+    cdef Py_ssize_t[::1] section
+    cdef Vectors slipped
     cdef double[::1] point
     cdef Vectors target
     cdef int[::1] label_of
@@ -35,8 +37,8 @@ cdef class Ensemble:
 
     cdef void _refill(self) noexcept nogil
     cdef void _run(self) noexcept nogil
-    cdef mask _move(self) noexcept nogil
+    cdef void _move(self) noexcept nogil
     cdef void _finish(self, mask where, int status) noexcept nogil
     cdef void _sample(self) noexcept nogil
     cdef void _aim(self, int lane, Py_ssize_t k) noexcept nogil
-    cdef void _visit(self, mask where) noexcept nogil
+    cdef void _visit(self, Py_ssize_t cloud, mask where) noexcept nogil

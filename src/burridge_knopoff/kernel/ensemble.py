@@ -65,6 +65,8 @@ class Ensemble:
     clouds: Clouds
     streak: cython.Py_ssize_t[:, ::1]
     returns: cython.Py_ssize_t[::1]
+    section: cython.Py_ssize_t[::1]
+    slipped: Vectors
     point: cython.double[::1]
     target: Vectors
     label_of: cython.int[::1]
@@ -103,6 +105,8 @@ class Ensemble:
         self.events = LaneEvents(order)
         self.point = np.zeros(2 * self.blocks)
         self.target = Vectors(1)
+        self.slipped = Vectors(self.blocks)
+        self.section = np.zeros(0, dtype=np.intp)
         self.steps = 0
         self.rounds = 0
 
@@ -113,19 +117,22 @@ class Ensemble:
         stuck: np.ndarray,
         clouds: Clouds,
         returns: Sequence[int],
+        section: Sequence[int],
         end: float,
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return which cloud each state comes close to, −1 for none by time `end`, and when that was certain.
 
         position, velocity, stuck : x_i, U_i' and which blocks stick, shape (n, blocks)
-        clouds : Clouds of states (x_i, U_i') at stops of the first block
-        returns : for each cloud how many successive stops of the first block have to be close to it
+        clouds : Clouds of states (x_i, U_i') at stops of one block each
+        returns : for each cloud how many successive stops of its block have to be close to it
+        section : for each cloud its block, from 0 on
         """
         n = len(position)
         labels = np.full(n, UNDETERMINED, dtype=np.intc)
         times = np.zeros(n)
         self.clouds = clouds
         self.returns = np.array(returns, dtype=np.intp)
+        self.section = np.array(section, dtype=np.intp)
         self.streak = np.zeros((LANES, clouds.count), dtype=np.intp)
         self.label_of = labels
         self.sample_time = np.zeros(0)
@@ -160,6 +167,7 @@ class Ensemble:
             "event_kind": np.zeros((n, events), dtype=np.intc),
         }
         self.label_of = np.zeros(0, dtype=np.intc)
+        self.section = np.zeros(0, dtype=np.intp)
         self.sample_time = np.array(times, dtype=float)
         self.sample_position, self.sample_velocity = result["position"], result["velocity"]
         self.sample_slip = result["slip"]
@@ -181,6 +189,9 @@ class Ensemble:
         count: np.ndarray,
     ) -> None:
         """Run all trajectories, with what is known of each at its end in these arrays."""
+        if not np.shape(position) == np.shape(velocity) == np.shape(stuck) == (len(position), self.blocks):
+            shapes = ", ".join(str(np.shape(values)) for values in (position, velocity, stuck))
+            raise ValueError(f"position, velocity, stuck: shapes {shapes} are not allowed: each (n, {self.blocks})")
         self.position = np.ascontiguousarray(position, dtype=float)
         self.velocity = np.ascontiguousarray(velocity, dtype=float)
         self.stuck = np.ascontiguousarray(stuck, dtype=np.intc)
@@ -199,15 +210,15 @@ class Ensemble:
                 self.lanes.settle(self.fresh)
             self._finish(self.active & self.lanes.accumulating, ACCUMULATING_EVENTS)
             self.series.expand(self.lanes)
-            self._visit(self._move())
+            self._move()
             self._refill()
 
-    def _move(self) -> mask:
-        """Move every lane to its next event, or as far as its series goes; return where the first block has stopped."""
+    def _move(self) -> None:
+        """Move every lane to its next event, or as far as its series goes, and look at the returns among the events."""
         i: cython.Py_ssize_t
+        cloud: cython.Py_ssize_t
         zero: vec = splat(0.0)
         fastest: vec = zero
-        slipped: vec = self.lanes.slip.at[0]
         length: vec
         left: vec
         total: vec
@@ -215,7 +226,10 @@ class Ensemble:
         event: mask
         for i in range(self.blocks):
             fastest = largest(fastest, magnitude(self.lanes.velocity.at[i]))
-        ended = less(zero, self.series.reach.at[0]) & less(fastest, splat(ABSURD_SPEED))
+            self.slipped.at[i] = self.lanes.slip.at[i]
+        # Towards a pole of the law pieces shrink until the clock stands still.
+        left = self.lanes.clock.at[0]
+        ended = less(left, left + self.series.reach.at[0]) & less(fastest, splat(ABSURD_SPEED))
         self._finish(self.active & ~ended, DIVERGED)
         self.events.find(self.lanes, self.series, self.active)
         length = self.events.time.at[0]
@@ -237,7 +251,13 @@ class Ensemble:
             if bits(ended):
                 self.lanes.change(i, ended)
         self.lanes.settle(event)
-        return event & ~equal(slipped, zero) & equal(self.lanes.slip.at[0], zero)
+        if not bits(event):
+            return
+        for cloud in range(self.section.shape[0]):
+            i = self.section[cloud]
+            self._visit(
+                cloud, event & self.active & ~equal(self.slipped.at[i], zero) & equal(self.lanes.slip.at[i], zero)
+            )
 
     def _sample(self) -> None:
         """Keep the states at the times that lie within the coming step."""
@@ -273,13 +293,12 @@ class Ensemble:
         self.next_sample[lane] = k
         put(self.target.at, lane, self.sample_time[k] if k < self.sample_time.shape[0] else LONG)
 
-    def _visit(self, where: mask) -> None:
-        """Look at the returns of some lanes; a lane is done when enough of them have been near one cloud."""
+    def _visit(self, cloud: cython.Py_ssize_t, where: mask) -> None:
+        """Look at the returns of some lanes to a cloud; a lane is done when enough of them have been near it."""
         i: cython.Py_ssize_t
-        cloud: cython.Py_ssize_t
         lane: cython.int
-        returned: cython.int = bits(where & self.active)
-        if len(self.label_of) == 0:
+        returned: cython.int = bits(where)
+        if not returned:
             return
         for lane in range(LANES):
             if not returned >> lane & 1:
@@ -287,15 +306,13 @@ class Ensemble:
             for i in range(self.blocks):
                 self.point[i] = lane_of(self.lanes.position.at[i], lane)
                 self.point[self.blocks + i] = lane_of(self.lanes.velocity.at[i], lane)
-            for cloud in range(self.clouds.count):
-                if not self.clouds.near(cloud, self.point):
-                    self.streak[lane, cloud] = 0
-                    continue
-                self.streak[lane, cloud] += 1
-                if self.streak[lane, cloud] >= self.returns[cloud]:
-                    self.label_of[self.lanes.member[lane]] = cloud
-                    self._finish(from_bits(1 << lane), COMPLETED)
-                    break
+            if not self.clouds.near(cloud, self.point):
+                self.streak[lane, cloud] = 0
+                continue
+            self.streak[lane, cloud] += 1
+            if self.streak[lane, cloud] >= self.returns[cloud]:
+                self.label_of[self.lanes.member[lane]] = cloud
+                self._finish(from_bits(1 << lane), COMPLETED)
 
     def _finish(self, where: mask, status: cython.int) -> None:
         """End the trajectories of some lanes."""

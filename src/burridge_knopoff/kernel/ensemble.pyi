@@ -49,6 +49,7 @@ class Ensemble:
         stuck: np.ndarray,
         clouds: Clouds,
         returns: Sequence[int],
+        section: Sequence[int],
         end: float,
     ) -> tuple[np.ndarray, np.ndarray]: ...
     def run(

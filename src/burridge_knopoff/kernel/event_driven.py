@@ -131,7 +131,8 @@ class EventDriven:
             remaining = (self.end - self.clock) - self.clock_rest
             reach = self.series.expand(self.state, self.piece)
             self.steps += 1
-            if not reach > 0.0 or not self._fastest() < ABSURD_SPEED:
+            # Towards a pole of the law pieces shrink until the clock stands still.
+            if not self.clock + reach > self.clock or not self._fastest() < ABSURD_SPEED:
                 return DIVERGED
             # The end of the run has no part in the search: it must not move an event by a bit.
             block = self.search.first(self.state, self.piece, reach, self.observer.side if self.observing else 0)

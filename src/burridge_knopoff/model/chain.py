@@ -131,7 +131,7 @@ class Chain:
 
     @property
     def highest_frequency(self) -> float:
-        """An angular frequency that no mode of slipping blocks exceeds: all eigenvalues of K lie in Gershgorin's discs."""
+        """An angular frequency that no mode of slipping blocks exceeds, by Gershgorin's bound on eigenvalues of K."""
         return math.sqrt(float((self.diagonal + self.before + self.after).max()))
 
     @property

@@ -152,10 +152,9 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
         if filled.any():
             infinite = measured["lost"]
             mean = growth.sum(axis=0) / duration.sum()
-        # Under a slow driver all blocks may stick for a whole batch: what was waited for comes in the next.
-        if filled.sum() > 1:
+        if filled.all():
             finite = np.isfinite(mean)
-            statistical = batch[filled][:, finite].std(axis=0, ddof=1) / math.sqrt(filled.sum())
+            statistical = batch[:, finite].std(axis=0, ddof=1) / math.sqrt(settings.batches)
             alignment = min(settings.lyapunov_alignment, settings.transient)
             resolution = math.log1p(duration.sum() / (1.0 + alignment)) / duration.sum()
             error[finite] = np.hypot(statistical, resolution)

@@ -76,6 +76,6 @@ def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning:
         size = tuning.slow_push * settings.resolution * model.scale
         start = pushed(instant_of(motion.returns[k]), size, generator)
         found = visit(model, start, tuning.slow_time * settings.transient, settings.window, tuning)
-        if found is not None:
+        if found is not None and found.block == motion.block:
             clouds += [found.returns, found.mirror_returns]
     return motion.with_returns(np.concatenate(clouds), tuning)

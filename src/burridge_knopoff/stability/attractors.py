@@ -51,8 +51,9 @@ def find_attractors(
     tuning : what the search decides by itself
 
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
-    nothing that settles. What no state reaches is not found, nor is a motion on which the first block never stops:
-    attractors are known by the states at its stops. Raises ValueError if an initial state does not fit the model.
+    nothing that settles. What no state reaches is not found, nor is a motion on which no block ever stops: attractors
+    are known by the states at the stops of a block, of those that stop the nearest to an end. Raises ValueError if an
+    initial state does not fit the model.
 
     Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
 
@@ -77,7 +78,7 @@ class Search:
     """Finds the attractors of one model.
 
     motion_settings : how kinds of motion are told apart
-    attractors : those found so far; vain : trajectories followed without finding one
+    attractors : those found so far; vain : states that were followed without finding one
     """
 
     model: Model
@@ -85,7 +86,7 @@ class Search:
     motion_settings: MotionSettings = MOTION
     tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
-    vain: int = 0
+    vain: set[bytes] = field(default_factory=set)
 
     @property
     def resolution(self) -> float:
@@ -167,13 +168,14 @@ class Search:
     def discover(self, starts: Sequence[Instant]) -> bool:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
         known = len(self.attractors)
-        for start in starts[: self.tuning.fruitless]:
-            if self.vain >= self.tuning.in_vain:
+        fresh = {state: start for start in starts if (state := start.vector().tobytes()) not in self.vain}
+        for state, start in list(fresh.items())[: self.tuning.fruitless]:
+            if len(self.vain) >= self.tuning.in_vain:
                 break
             self.reach(start)
             if len(self.attractors) > known:
                 return True
-            self.vain += 1
+            self.vain.add(state)
         return False
 
     def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:

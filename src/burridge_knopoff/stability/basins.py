@@ -57,7 +57,7 @@ def known_attractors(
         if steady is None:
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} is not an attractor: its "
-                "motion does not complete, or the first block hardly ever stops"
+                "motion does not complete, or its blocks hardly ever stop"
             )
         error = 5.0 * (one["mean_distance_error"].item() + steady.mean_distance_error) + TUNING.same_mean * model.scale
         if abs(steady.mean_distance - one["mean_distance"].item()) > error:

@@ -46,7 +46,7 @@ def label_together(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Do the work of `label` for states x_i, U_i' and which blocks stick, each of shape (n, blocks).
 
-    A state has reached an attractor when enough of its successive returns, at the stops of the first block, lie within
+    A state has reached an attractor when enough of its successive returns, at the stops of its block, lie within
     the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these, or any other
     without patience, if it gets there within the attractor's patience.
     """
@@ -58,8 +58,9 @@ def label_together(
             [attractor.radius for attractor in attractors],
         )
         returns = [attractor.close_returns for attractor in attractors]
+        section = [attractor.motion.block - 1 for attractor in attractors]
         begun = position[states], velocity[states], stuck[states].astype(np.intc)
-        return new_ensemble(model).label(*begun, clouds, returns, end)
+        return new_ensemble(model).label(*begun, clouds, returns, section, end)
 
     labels, times = first(attractors, slice(None), time_limit)
     prompt = [index for index, attractor in enumerate(attractors) if not attractor.patience]

@@ -123,8 +123,7 @@ def _capture_time(attractor: Attractor, settings: SearchSettings, tuning: Tuning
     By its weakest exponent they come from the largest radius to its own, and then so often close to it as they have to.
     """
     motion = attractor.motion
-    rate = -motion.exponent[1]
-    nearer = math.log(max(tuning.largest_radius / attractor.radius, 1.0))
+    rate = max(-motion.exponent[1], 1.0 / tuning.patient_time)
+    nearer = math.log(max(tuning.largest_radius / attractor.radius, 1.0)) / rate
     close = attractor.close_returns * settings.window / len(motion.returns)
-    slow = nearer > rate * tuning.patient_time
-    return min(tuning.patient_time, tuning.lateness * (close + (math.inf if slow else nearer / rate)))
+    return min(tuning.patient_time, tuning.lateness * (nearer + close))

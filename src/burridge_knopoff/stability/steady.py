@@ -36,16 +36,20 @@ STANDING = 1e-14
 class Returns:
     """The returns of a trajectory in a window after a transient.
 
-    returns : states at the stops of the first block, shape (n, 2 blocks), positions x_i and velocities U_i'
+    returns : states at the stops of one block, shape (n, 2 blocks), positions x_i and velocities U_i'
     mirror_returns : those of the mirrored motion; none, shape (0, 2 blocks), where the chain has no mirror image
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
+    block, mirror_block : the block of these returns, of those that stop the nearest to an end, and that of the mirrored
+        motion: the same if both ends do
     """
 
     returns: np.ndarray
     mirror_returns: np.ndarray
     spacing: float
     drift: float
+    block: int = 1
+    mirror_block: int = 1
 
     def closed(self, tolerance: float) -> bool:
         """Tell whether the returns repeat: the motion is a closed orbit."""
@@ -69,7 +73,7 @@ class SteadyMotion:
     stop_rate : stops of each block in a unit of time, shape (blocks,)
     kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
 
-    returns, mirror_returns, spacing : see `Returns`
+    returns, mirror_returns, spacing, block, mirror_block : see `Returns`
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -89,10 +93,19 @@ class SteadyMotion:
     kind: MotionKind
     section_period: int
     exponent: np.ndarray
+    block: int = 1
+    mirror_block: int = 1
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
-        return replace(self, returns=self.mirror_returns, mirror_returns=self.returns, stop_rate=self.stop_rate[::-1])
+        return replace(
+            self,
+            returns=self.mirror_returns,
+            mirror_returns=self.returns,
+            stop_rate=self.stop_rate[::-1],
+            block=self.mirror_block,
+            mirror_block=self.block,
+        )
 
     def symmetrized(self, tuning: Tuning = TUNING) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
@@ -130,11 +143,17 @@ def visit(model: Model, start: Instant, transient: float, window: float, tuning:
 
 def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning) -> Returns | None:
     """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
-    stops = states[(block == 1) & (kind == 0)]
+    across = model.blocks + 1
+    stopping = sorted(set(block[kind == 0].astype(int).tolist()), key=lambda one: (min(one, across - one), one))
+    if not stopping:
+        return None
+    section = stopping[0]
+    mirror_section = section if across - section in stopping else across - section
+    stops = states[(block == section) & (kind == 0)]
     mirror_returns = stops[:0]
     fewest = len(stops)
     if model.chain.is_mirror_symmetric:
-        position, velocity = np.split(states[(block == model.blocks) & (kind == 0)], 2, axis=1)
+        position, velocity = np.split(states[(block == across - mirror_section) & (kind == 0)], 2, axis=1)
         mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
         fewest = min(fewest, len(mirror_returns))
     if fewest < tuning.fewest_returns:
@@ -145,6 +164,8 @@ def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarr
         mirror_returns=mirror_returns,
         spacing=_spacing(second, tuning.near_share),
         drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),
+        block=section,
+        mirror_block=mirror_section,
     )
 
 
@@ -223,6 +244,8 @@ def _measure(
         kind=kind,
         section_period=period,
         exponent=exponent,
+        block=found.block,
+        mirror_block=found.mirror_block,
     )
 
 
