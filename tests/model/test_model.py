@@ -2,11 +2,17 @@
 
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Model
+from burridge_knopoff import Chain, FormulaLaw, Model, law_of
 
 
 def test_a_law_has_to_be_analytic_up_to_the_velocity_of_the_driver():
     law = FormulaLaw(0.1, "1/(1 + a*u) + 0.0001*log(1 - u/16)")
-    assert Model(Chain(3), law, 12.0).v == 12.0
-    with pytest.raises(ValueError, match="^v: 20.0 is not allowed: the law formula is not analytic up to that speed$"):
-        Model(Chain(3), law, 20.0)
+    assert Model(Chain(3), law, 1.5).v == 1.5
+    with pytest.raises(ValueError, match="^v: 2.0 is not allowed: the law formula is not analytic up to ten times"):
+        Model(Chain(3), law, 2.0)
+
+
+def test_a_model_is_of_a_chain_and_a_law():
+    for given, key in (((3, law_of("linearized", 0.1)), "chain"), ((Chain(3), "linearized"), "law")):
+        with pytest.raises(ValueError, match=f"^{key}: .* is not allowed: a {key.capitalize()}$"):
+            Model(*given)

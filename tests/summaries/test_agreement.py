@@ -254,6 +254,9 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
         ((1.0, 1.0), (0.0, 0.0), (2, 3), 0),
         ((1.0, 1.0), (0.0, 0.0), (1, -1), -1),
         ((1.0, 1.0), (0.0, 0.0), (-1, -1), -1),
+        # Whatever the kinds are, these are two results.
+        ((1.0, 1.2), (0.0, 0.0), (1, -1), 0),
+        ((1.0, np.nan), (0.0, np.nan), (1, -1), -1),
     ],
 )
 def test_the_verdict_on_two_runs(means, errors, kinds, agrees):

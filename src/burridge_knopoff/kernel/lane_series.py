@@ -181,15 +181,21 @@ class LaneSeries:
             gap[i] = lanes.slip.at[i] * w[i] - self.stuck.at[i] * force
 
     def _bound(self) -> None:
-        """Set the time over which the first neglected terms stay below TRUNCATION."""
+        """Set the time over which the first neglected terms stay below TRUNCATION.
+
+        0 where a term is no number: the larger of that and a number may be the number, but no sum is one.
+        """
         i: cython.Py_ssize_t
         lane: cython.int
         end: cython.Py_ssize_t = self.order * self.width + 1
         last: vec = splat(0.0)
         previous: vec = splat(0.0)
+        total: vec = splat(0.0)
         for i in range(self.blocks):
             last = largest(magnitude(self.velocity.at[end + i]), last)
             previous = largest(magnitude(self.velocity.at[end - self.width + i]), previous)
+            total = total + (self.velocity.at[end + i] + self.velocity.at[end - self.width + i])
+        last = last + splat(0.0) * total
         for lane in range(LANES):
             put(
                 self.reach.at,

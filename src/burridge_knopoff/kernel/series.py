@@ -225,14 +225,19 @@ class Series:
             s[n + 1] = force
 
     def _step(self, piece: Piece) -> cython.double:
-        """Return the time over which the last terms that are kept stay below TRUNCATION; LONGEST if nothing slips."""
+        """Return the time over which the last terms that are kept stay below TRUNCATION; LONGEST if nothing slips.
+
+        0 where a term is no number: the larger of that and a number may be the number, but no sum is one.
+        """
         i: cython.Py_ssize_t
         last: cython.double = 0.0
         previous: cython.double = 0.0
+        total: cython.double = 0.0
         for i in range(piece.blocks):
+            total += abs(piece.velocity[ORDER, i]) + abs(piece.velocity[ORDER - 1, i])
             last = max(last, abs(piece.velocity[ORDER, i]))
             previous = max(previous, abs(piece.velocity[ORDER - 1, i]))
-        if not (last + previous < 1e300):
+        if not (total < 1e300):
             return 0.0
         return min(_length(last, self.last_root, ORDER), _length(previous, self.previous_root, ORDER - 1), LONGEST)
 

@@ -21,6 +21,11 @@ class FormulaError(ValueError):
     """A formula that is no friction law; the message says why."""
 
 
+def names_of(formula: str) -> set[str]:
+    """Return the names in a formula, but for those of functions."""
+    return set(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
+
+
 def tape_of(formula: str, values: Mapping[str, float]) -> Tape:
     """Return the tape of a formula in the speed u.
 
@@ -60,7 +65,7 @@ class _Reader:
             case ast.Name(id=name) if name in self.names:
                 return self.names[name]
             case ast.Name(id=name):
-                raise FormulaError(f"{name}: unknown name; u is the slip speed U', a the friction parameter")
+                raise FormulaError(f"{name}: unknown name without a number; u is the slip speed U', a the parameter")
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.read(operand)
             case ast.UnaryOp(op=ast.USub(), operand=operand):

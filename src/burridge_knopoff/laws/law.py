@@ -6,7 +6,6 @@ where friction is least. A law of one's own is a class with a formula, or a form
 
 from __future__ import annotations
 
-import re
 import unicodedata
 from collections.abc import Mapping
 from functools import cached_property
@@ -15,7 +14,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.laws.formula import FormulaError, tape_of
+from burridge_knopoff.laws.formula import FormulaError, names_of, tape_of
 from burridge_knopoff.laws.tape import Tape
 
 #: Speeds up to which a law has to be analytic; no block of a chain with springs and thresholds of about 1 comes there.
@@ -64,6 +63,14 @@ class Law:
         self._set(a, {**self.defaults, **numbers})
 
     def _set(self, a: float, numbers: Mapping[str, float]) -> None:
+        for key in ("formula", "text"):
+            if key not in vars(self) and not hasattr(type(self), key):
+                raise ValueError(f"{self.name}.{key}: missing; needed: a text")
+        for key in numbers:
+            if key in ("a", "u"):
+                raise ValueError(f"{self.name}.{key}: not allowed as the name of a number: it has its meaning already")
+            if key not in names_of(self.formula):
+                raise ValueError(f"{self.name}.{key}: not in the formula {self.formula!r}")
         for key, value in {"a": a, **numbers}.items():
             if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(value) < 1e300:
                 raise ValueError(f"{key}: {value!r} is not allowed: a finite number")
@@ -169,11 +176,6 @@ class FormulaLaw(Law):
     def __init__(self, a: float, formula: str, /, *, name: str = "formula", **numbers: float) -> None:
         self.name = name
         self.formula = formula
-        for key in numbers:
-            if key in ("a", "u"):
-                raise ValueError(f"{name}.{key}: not allowed as the name of a number: it has its meaning already")
-            if not re.search(rf"\b{re.escape(key)}\b", formula):
-                raise ValueError(f"{name}.{key}: not in the formula {formula!r}")
         self._set(a, numbers)
 
     @property

@@ -39,7 +39,7 @@ def basin_map(
 
     law : a Model, which has its own a, chain, v and contact; or a law at this a: the name of one that is built in, or a
         `Law`
-    initial : gives all but U_1(0) and U_N(0), in any form that `simulate` takes
+    initial : gives all but U_1(0) and U_N(0), in any form that `simulate` takes; minus has three blocks
     chain : without one the paper's springs, as many blocks as the initial state has; v, contact : see `Model`
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)

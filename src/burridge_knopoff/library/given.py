@@ -43,7 +43,9 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
         pair = _plain(given)
         lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
         if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(f"initial: {str(given)[:60]} is not allowed: {_FORMS}, each one number a block")
+            raise ValueError(
+                f"initial: {' '.join(str(given).split())[:60]} is not allowed: {_FORMS}, each one number a block"
+            )
         numbers = dict(zip(("position", "velocity"), lists, strict=True))
     return InitialState(**_KEYS.form(numbers, "initial"))
 

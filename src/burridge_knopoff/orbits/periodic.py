@@ -23,6 +23,7 @@ from burridge_knopoff.orbits.orbit import OrbitError, flow, model_at, rate
 from burridge_knopoff.orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.settings import DURATION
 
 #: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
 #: long as it gains, down to where rounding begins to count.
@@ -200,7 +201,8 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     model, guess : the state, in the model whose orbit is sought
     return_time : after which the state about returns: a period, or half of one for SYMMETRIC, in a mirror
 
-    Raises OrbitError if none is found, ValueError if the chain has no mirror image and the symmetry needs one.
+    Raises OrbitError if none is found, ValueError for a time or a symmetry that is not allowed, as where the chain has
+    no mirror image and the symmetry needs one.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
@@ -212,6 +214,7 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     >>> near.a, round(near.period, 4)
     (0.081, 157.2682)
     """
+    return_time, symmetry = DURATION.form(return_time, "return_time"), Symmetry(symmetry)
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(
             f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image"

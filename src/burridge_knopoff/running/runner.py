@@ -78,7 +78,10 @@ class Runner:
             self.carry(perturbations)
 
     def begin(self, at: Instant) -> None:
-        """Begin at τ = 0 from an instant."""
+        """Begin at τ = 0 from an instant; raises ValueError if it is none of the model's blocks."""
+        blocks = self.model.blocks
+        if not isinstance(at, Instant) or any(np.shape(values) != (blocks,) for values in vars(at).values()):
+            raise ValueError(f"state: {' '.join(str(at).split())[:60]} is not allowed: an Instant of {blocks} blocks")
         self.kernel.begin(at.position, at.velocity, at.stuck)
 
     def carry(self, perturbations: np.ndarray) -> None:

@@ -19,10 +19,10 @@ import numpy as np
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.settings import DURATION, Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.settings import SAMPLE, WATCH, Sample, Watch
+from burridge_knopoff.stability.settings import SAMPLE, TIME, WATCH, Sample, Watch
 
 
 class Outcome(IntEnum):
@@ -134,7 +134,8 @@ def transverse_exponent(
     The state is made symmetric, and an antisymmetric perturbation is carried along exactly (see `kernel.tangent`). The
     exponent is its mean rate of growth over the window, which begins after a time of alignment; the standard error is
     that of BATCHES equal batches. Negative: mirror blocks that are near each other synchronize. NaN if the run fails,
-    −∞ if the perturbation vanishes. Raises ValueError if the chain is not its own mirror image.
+    −∞ if the perturbation vanishes. Raises ValueError if the chain is not its own mirror image, and for times that are
+    not allowed.
 
     model, state : any state of a motion, as `Model.begin` and `Orbit.reference` are
     alignment, window : in units of 1/ω, as the exponent is in units of ω
@@ -147,6 +148,7 @@ def transverse_exponent(
     (-0.007, True)
     """
     _check_mirror(model)
+    alignment, window = DURATION.form(alignment, "alignment"), TIME.form(window, "window")
     blocks = model.blocks
     index = np.arange(2 * blocks)
     # A direction of no special symmetry but this one.

@@ -13,6 +13,7 @@ from burridge_knopoff.orbits.return_map import mirror
 from burridge_knopoff.orbits.simpler import simplest
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.settings import DURATION
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.steady import instant_of
 
@@ -35,7 +36,8 @@ def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: f
     model, state : of the motion
     settling, window : times that it is left to settle first, and in which it has to return
 
-    Raises OrbitError if the motion does not return within the window, or to no periodic orbit.
+    Raises OrbitError if the motion does not return within the window, or to no periodic orbit, ValueError for a time or
+    a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -44,6 +46,7 @@ def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: f
     >>> round(orbit.period, 4), orbit.symmetry.name, orbit.signature
     (157.2451, 'SYMMETRIC', (20, 54, 20))
     """
+    settling, window = DURATION.form(settling, "settling"), DURATION.form(window, "window")
     runner = Runner(model, keep_events=True, events_from=settling)
     runner.begin(state)
     if runner.run(settling + window) != Status.COMPLETED:

@@ -10,10 +10,11 @@ import numpy as np
 
 from burridge_knopoff.kernel.clouds import Clouds
 from burridge_knopoff.kernel.ensemble import UNDETERMINED
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import STARTS, Instant, Model
+from burridge_knopoff.model.ranges import OneOf, Whole
 from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor
-from burridge_knopoff.stability.settings import SEARCH
+from burridge_knopoff.stability.settings import SEARCH, TIME
 from burridge_knopoff.stability.steady import instant_of
 
 
@@ -99,7 +100,8 @@ def label_states(
     time_limit : by which a state has to reach one of them
     threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
 
-    A label is the index of an attractor, or −1 where none is reached.
+    A label is the index of an attractor, or −1 where none is reached. Raises ValueError, one line, for shapes, times or
+    a start that are not allowed, for numbers that are not finite, and for velocities below 0 under one-sided contact.
 
     >>> import numpy as np
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
@@ -112,6 +114,19 @@ def label_states(
     >>> labels.tolist(), times.round().tolist()
     ([0, 1], [62.0, 355.0])
     """
+    position, velocity = np.asarray(position, dtype=float), np.asarray(velocity, dtype=float)
+    if not position.shape == velocity.shape == (len(position), model.blocks):
+        raise ValueError(
+            f"position, velocity: shapes {position.shape}, {velocity.shape} are not allowed: (n, {model.blocks}), both"
+        )
+    slowest = 0.0 if model.contact == "one_sided" else -np.inf
+    if not (np.isfinite(position).all() and np.isfinite(velocity).all() and (velocity >= slowest).all()):
+        raise ValueError(
+            f"position, velocity: not allowed under {model.contact}: finite, and velocities of {slowest:g} or more"
+        )
+    OneOf(STARTS).form(start, "start")
+    time_limit = TIME.form(time_limit, "time_limit")
+    threads = Whole(1, 1024).form(threads, "threads")
     stuck = model.starts_stuck(position, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
     times = np.zeros(len(position))

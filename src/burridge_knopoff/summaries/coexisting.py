@@ -31,8 +31,9 @@ def coexisting_attractors(
     found = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not found.attractors[0]:
         raise ValueError(
-            f"a: {model.a!r} is not allowed: no attractor was found, from {settings.samples} sampled states "
-            "(none is at 0)"
+            f"transient: {settings.transient:g} is not allowed at a = {model.a!r}: no attractor was found; longer, or "
+            f"more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples {settings.samples} "
+            "(at a = 0 there is none)"
         )
     parts = [one_law(found, starts, settings, motion, start)]
     dataset = merge(parts, branch_numbers(parts, [model], settings))

@@ -23,7 +23,8 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
     """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
 
     A torus and a closed orbit without synchrony are one kind here: which of them a value of a shows, one beside it need
-    not (`motion.REGULAR`). There is no verdict where the kind of one of the two motions is not determined.
+    not (`motion.REGULAR`). Where the kind of one of the two motions is not determined, only ⟨J⟩ beyond the tolerance is
+    a verdict.
     values : mean_distance, its error and kind of both laws, the first and the other, shape (2, …, a); the rest is
         filled in
     a : ascending, shape (a,)
@@ -41,8 +42,10 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
             np.full_like(first, threshold),
         ]
     )
-    agrees = (values["same_kind"] == Answer.YES) & (np.abs(values["difference"]) <= tolerance)
-    values["agrees"][...] = np.where(determined, agrees, Answer.UNDETERMINED)
+    apart = np.abs(values["difference"]) > tolerance
+    disagrees = apart | (values["same_kind"] == Answer.NO)
+    open_kind = ~determined | np.isnan(values["difference"])
+    values["agrees"][...] = np.where(disagrees, Answer.NO, np.where(open_kind, Answer.UNDETERMINED, Answer.YES))
     for j, agrees in enumerate(values["agrees"]):
         apart = a[agrees == Answer.NO]
         values["parting_a"][j] = apart[0] if len(apart) else np.nan

@@ -1,0 +1,111 @@
+"""What library calls refuse in a line, before the kernel sees it, and runs that end where their law does."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    FormulaLaw,
+    InitialState,
+    Instant,
+    Law,
+    Model,
+    SearchSettings,
+    Symmetry,
+    closed_motion,
+    find_attractors,
+    find_periodic_orbit,
+    follow,
+    label_states,
+    law_of,
+    simulate,
+    transverse_exponent,
+)
+from burridge_knopoff.kernel.ensemble import Ensemble
+from burridge_knopoff.running.together import new_ensemble
+
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
+STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
+POSITION, VELOCITY = np.full((4, 3), -1.0), np.full((4, 3), 0.1)
+
+
+@pytest.fixture(scope="module")
+def attractors():
+    return find_attractors(MODEL, SearchSettings(samples=12, transient=500, window=500))[0]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"velocity": VELOCITY[:1]}, "shapes"),
+        ({"velocity": VELOCITY[:3]}, "shapes"),
+        ({"position": POSITION[:, :2], "velocity": VELOCITY[:, :2]}, "shapes"),
+        ({"position": POSITION * np.nan}, "finite"),
+        ({"velocity": -VELOCITY}, "velocities of 0 or more"),
+        ({"start": "stuck"}, "start: 'stuck' is not allowed"),
+        ({"time_limit": -1.0}, "time_limit: -1.0 is not allowed"),
+        ({"time_limit": float("nan")}, "time_limit: nan is not allowed"),
+        ({"threads": 0}, "threads: 0 is not allowed"),
+    ],
+)
+def test_states_that_cannot_be_labelled(attractors, given, message):
+    states = {"position": POSITION, "velocity": VELOCITY, **given}
+    with pytest.raises(ValueError, match=message) as refused:
+        label_states(MODEL, attractors, **states)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: closed_motion(Model(Chain(4), MODEL.law), STATE),
+        lambda: closed_motion(MODEL, Instant(np.zeros(3), np.zeros(2), np.zeros(3, bool)), 10.0),
+        lambda: closed_motion(MODEL, "plus"),
+        lambda: closed_motion(MODEL, STATE, float("nan")),
+        lambda: closed_motion(MODEL, STATE, -5.0),
+        lambda: find_periodic_orbit(MODEL, STATE, float("nan"), Symmetry.ASYMMETRIC),
+        lambda: find_periodic_orbit(MODEL, STATE, 10.0, "none"),
+        lambda: transverse_exponent(MODEL, STATE, -5.0, 100.0),
+        lambda: transverse_exponent(MODEL, STATE, 5.0, -100.0),
+        lambda: follow(None, (0.1, 0.05)),
+        lambda: follow(None, (float("nan"), 0.6)),
+        lambda: simulate("linearized", 0.08, np.zeros((3, 2))),
+    ],
+)
+def test_calls_that_have_no_answer(call):
+    with pytest.raises(ValueError, match="not allowed|is not a valid") as refused:
+        call()
+    assert "\n" not in str(refused.value)
+
+
+def test_the_kernel_takes_no_arrays_that_do_not_fit():
+    kernel: Ensemble = new_ensemble(MODEL)
+    with pytest.raises(ValueError, match=r"shapes \(4, 3\), \(1, 3\), \(4, 3\) are not allowed: each \(n, 3\)"):
+        kernel.run(POSITION, VELOCITY[:1], np.zeros((4, 3), np.intc), [1.0])
+
+
+def test_a_law_has_the_a_that_it_was_given():
+    assert simulate(law_of("nonlinear", 0.3), transient=0, window=5).model.a == 0.3
+    assert simulate(law_of("nonlinear", 0.3), 0.1, transient=0, window=5).model.a == 0.1
+    assert simulate("nonlinear", transient=0, window=5).model.a == 0.08
+
+
+@pytest.mark.parametrize("missing", ["formula", "text"])
+def test_a_law_of_ones_own_says_what_it_lacks(missing):
+    words = {"formula": "1 - a*u", "text": "Φ = 1 − aU′"}
+    kind = type("Own", (Law,), {key: value for key, value in words.items() if key != missing})
+    with pytest.raises(ValueError, match=f"{missing}: missing"):
+        kind(0.1)
+    unused = type("Own", (Law,), {**words, "defaults": {"c": 0.5}})
+    with pytest.raises(ValueError, match="c: not in the formula"):
+        unused(0.1)
+
+
+def test_a_run_ends_where_its_law_does():
+    """A block that is let go far ahead of the others comes to the speed at which the root has no value."""
+    model = Model(Chain(3), FormulaLaw(0.0, "sqrt(1 - 0.05*u)"))
+    far = InitialState("far", (-100.0, -30.0, 20.0), (0.1, 0.1, 0.1))
+    assert simulate(model, far, transient=0, window=50).status == "diverged"
+    at = model.begin(far)
+    arrays = (np.tile(values, (3, 1)) for values in (at.position, at.velocity, at.stuck.astype(np.intc)))
+    assert (new_ensemble(model).run(*arrays, [50.0])["end"] < 50.0).all()
