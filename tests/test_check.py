@@ -200,6 +200,14 @@ def test_solvers_that_nobody_asked_for_are_not_missing(results, capsys):
     assert said[1] == "not counted: 3 runs of other solvers, none of which was asked for yet"
 
 
+def test_a_folder_of_another_name_is_said_to_be_that_study(results, capsys):
+    name = results.name
+    moved = results.rename(results.with_name("moved"))
+    assert main(["check", str(moved)]) == 0
+    said = capsys.readouterr().out
+    assert f"this is study {name} under another name: Snakemake looks for it in a folder {name}\n" in said
+
+
 #: Of another state, law or a than those of the study, or where none is computed.
 LEFT_OVER = """
 points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc

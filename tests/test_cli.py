@@ -158,6 +158,7 @@ def test_no_events(tmp_path):
         ([*DROP, "--number", "sigma=1", "--out", "x.nc"], "carlson_langer: '(1 - sigma)/"),
         ([*DROP, *("--number", "sigma=0.1") * 2, "--out", "x.nc"], "--number: sigma sigma: each name once"),
         ([*OWN, "1 - b*u", "--out", "x.nc"], "b: unknown name"),
+        (["orbit", "--law", "linearized", "--a", "0.08", "--events", "-3"], "--events: '-3' is not allowed: a whole"),
         ([*OWN, "-1", "--out", "x.nc"], "at u = 0 it is -1"),
         ([*OWN, "", "--out", "x.nc"], "not a formula"),
         ([*OWN, "__import__('os')", "--out", "x.nc"], "not a formula"),

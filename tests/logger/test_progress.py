@@ -259,4 +259,6 @@ def test_snakemake_says_what_is_reworded():
     assert reworded("Select jobs to execute...") == ""
     assert '"Select jobs to execute..."' in getsource(job_scheduler)
     missing = exceptions.MissingRuleException("x.nc")
-    assert reworded(exceptions.format_exception_to_string(missing)) == "x.nc: neither a rule nor a file of this study"
+    assert reworded(exceptions.format_exception_to_string(missing)) == (
+        "x.nc: neither a rule nor a file of this study, or of a stage that it goes without"
+    )

@@ -272,6 +272,6 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     assert values["same_kind"].tolist() == [
         [-1 if -1 in kinds else int(kinds in {(k, k) for k in range(4)} | {(1, 2)}), 1]
     ]
-    assert values["difference"].tolist() == [[means[1] - means[0], 0.0]]
-    assert values["difference_error"].tolist() == [[np.hypot(*errors), 0.0]]
+    assert values["difference"] == pytest.approx(np.array([[means[1] - means[0], 0.0]]), nan_ok=True)
+    assert values["difference_error"] == pytest.approx(np.array([[np.hypot(*errors), 0.0]]), nan_ok=True)
     assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)

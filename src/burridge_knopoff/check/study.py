@@ -95,6 +95,8 @@ def check_study(results: str | Path) -> Check:
     record, study, points = recorded_study(results)
     left = leftovers(results, study)
     notes = []
+    if study.name != results.resolve().name:
+        notes.append(f"this is study {study.name} under another name: Snakemake looks for it in a folder {study.name}")
     # Nobody who asks for points only asks for them by other solvers.
     if not ((results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()):
         unasked = [points.pop(path) for path in list(points) if path.is_relative_to(results / "solvers")]

@@ -41,6 +41,7 @@ def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Calla
 
 # Python also takes 1_0 for ten, and the digits of every script.
 number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
+how_many = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
 count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
 _numbers = _reader(
     r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, count, model_of, number, said_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, how_many, model_of, number, said_of, state_of
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.running.settings import LONGEST, Settings
 
@@ -38,7 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add(motion, Settings, "start")
     parser.add_argument(
         "--events",
-        type=count,
+        type=how_many,
         default=20,
         metavar="N",
         help="number of stops and starts printed (default: %(default)s)",

@@ -143,11 +143,12 @@ def digest(dataset: xarray.Dataset) -> str:
             mean = one["mean_distance"].values[slots]
             kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
             share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)
+            largest = f"largest basin fraction {share.max():.3f} (a = {a[share.argmax()]:g})"
             name = names[int(number)]
             ends, means = span(f"{where[0]:g}", f"{where[-1]:g}"), span(f"{mean.min():.4f}", f"{mean.max():.4f}")
             lines.append(
                 f"{law}, {name}: at {len(where)} of {len(a)} values of a, {ends}; <J> {means}; {kinds}; "
-                f"largest basin fraction {share.max():.3f} (a = {a[share.argmax()]:g})"
+                f"{largest if dataset.attrs['fraction_samples'] else 'no states sampled for its basin'}"
             )
         undetermined = one["undetermined_count"].values
         empty = a[branch.max(axis=1) < 0]
