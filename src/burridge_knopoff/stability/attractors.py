@@ -86,7 +86,7 @@ class Search:
     motion_settings: MotionSettings = MOTION
     tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
-    vain: set[bytes] = field(default_factory=set)
+    vain: frozenset[bytes] = frozenset()
 
     @property
     def resolution(self) -> float:
@@ -175,7 +175,7 @@ class Search:
             self.reach(start)
             if len(self.attractors) > known:
                 return True
-            self.vain.add(state)
+            self.vain |= {state}
         return False
 
     def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:
