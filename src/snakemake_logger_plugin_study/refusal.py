@@ -21,7 +21,10 @@ _REWORDED = (
     (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
     # What a function of a rule raised: one line made for people, among the wildcards and the lines of code.
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
-    (re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE), r"\1: neither a rule nor a file of this study, or of a stage that it goes without"),
+    (
+        re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE),
+        r"\1: neither a rule nor a file of this study, or of a stage that it goes without",
+    ),
 )
 
 
