@@ -31,7 +31,7 @@ def scripted(monkeypatch):
         def labels(self, starts, check=True):
             if check:
                 self.attractors = [at(STILL)]
-                self.vain = frozenset([b"a state"])
+                self.vain = (b"a state",)
             else:
                 assert not self.vain
                 followed.append((self.model.a, [round(start.position[1]) for start in starts]))

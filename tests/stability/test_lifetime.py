@@ -49,15 +49,23 @@ def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
     assert not Lifetime(1, TUNING.exposure * 1e5).lasts(1e5)
 
 
-#: The exponent, radius and close returns of the other attractor, for the time in which it captures a trajectory.
-CAUGHT = {"exponent": np.array([0.0, -1.0, -2.0]), "radius": 0.02 / math.e, "close_returns": 4}
-#: Twice 1 / 1.0 for the way and 4 returns, of which a window of 10 shows two.
-LATE = 2.0 * (1.0 + 4 * SETTINGS.window / 2)
+#: Exponent, radius, close returns and stops of the other attractor, for the time in which it captures a trajectory.
+CAUGHT = {
+    "exponent": np.array([0.0, -1.0, -2.0]),
+    "radius": 0.2 / math.e,
+    "close_returns": 4,
+    "stop_rate": np.array([0.2, 0.2, 0.2]),
+}
+#: Twice 1 / 1.0 for the way and 4 returns.
+LATE = 2.0 * (1.0 + 4 / 0.2)
 
 
 @pytest.fixture
 def find(monkeypatch, tell):
-    """Return how lifetimes are found of trajectories whose labels and ends are told for each round."""
+    """Return how lifetimes are found of trajectories whose captures, and where the others end, are told for each round.
+
+    when : nan for who is not captured; nowhere : how many of them end nowhere; early : which of these had by LATE
+    """
 
     def found(attractors, *rounds):
         runs = []
@@ -68,9 +76,11 @@ def find(monkeypatch, tell):
 
         monkeypatch.setattr(lifetime, "moved", moved)
         labels = []
-        for reached, *ends in rounds:
-            labels.append((np.array(reached), np.zeros(len(reached))))
-            labels += [(np.where(np.isnan(when), -1, 0), np.array(when)) for when in ends]
+        for when, nowhere, early in rounds:
+            labels.append((np.where(np.isnan(when), -1, 0), np.nan_to_num(when)))
+            ends = np.zeros(int(np.isnan(when).sum()), int)
+            ends[:nowhere] = -1
+            labels += [(ends, None), (np.array(early, int), None)]
         asked = tell(lifetime, "label", labels)
         lives = lifetimes(MODEL, attractors, SETTINGS)
         return lives, runs + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
@@ -83,49 +93,49 @@ def chaos(partner=0):
 
 
 MANY = 32 * TUNING.undecided
+NEVER = math.nan
 #: More than enough to show that chaos lasts: none of so many trajectories leaves.
-ALL_STAY = ([0] * MANY,)
-STAY = [math.nan]
+ALL_STAY = ([NEVER] * MANY, 0, [])
 
 
 def test_trajectories_that_have_left_are_counted_with_their_times(find):
     """Six are captured by the other attractor, two of them too soon to tell; where seven went, and when, is unknown."""
-    ends = [LATE + 20.0] * 4 + [LATE, 0.5 * LATE] + STAY * 26
-    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], ([1] * 6 + [0] * 19 + [-1] * 7, ends))
-    assert found == [Lifetime(11, 19 * TIME + 4 * 20.0 + 7 * 0.5 * TIME), None]
+    when = [LATE + 20.0] * 4 + [LATE, 0.5 * LATE] + [NEVER] * 26
+    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 7, [-1, 0, 0, -1, 0, 0, 0]))
+    assert found == [Lifetime(9, 19 * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
     assert not found[0].lasts(SETTINGS.lifetime)
-    assert asked == [(32, LATE + TIME), (32, 50.0, 2), (32, LATE + TIME, 1)]
+    assert asked == [(26, LATE + TIME), (7, LATE), (32, LATE + TIME, 1), (26, 50.0, 2), (7, 50.0, 2)]
+
+
+def test_of_chaos_that_is_over_soon_all_captures_count(find):
+    when = [10.0] * 25 + [NEVER] * 7
+    found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 2, [0, -1]))
+    assert found == [Lifetime(27, 25 * 10.0 + 5 * (LATE + TIME) + 2 * 0.5 * LATE), None]
 
 
 def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
-    first = [1] + [0] * 31, [LATE + 20.0] + STAY * 31
-    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], first, ALL_STAY)
+    first = [LATE + 20.0] + [NEVER] * 31
+    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), ALL_STAY)
     assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
     assert found[0].lasts(SETTINGS.lifetime)
-    assert asked[:2] == [(32, LATE + TIME), (MANY, LATE + TIME)]
-
-
-def test_who_leaves_after_the_time_of_watching_has_not_left(find):
-    first = [1, 1, 1] + [0] * 29, [LATE + 20.0] + STAY * 31
-    found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], first, ALL_STAY)
-    assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
+    assert asked[:2] == [(31, LATE + TIME), (MANY, LATE + TIME)]
 
 
 def test_a_change_to_the_mirror_image_is_no_end(find):
-    found, asked = find([chaos(1), chaos(0)], ([0, 1] * 16,))
+    found, asked = find([chaos(1), chaos(0)], ([NEVER] * 32, 0, []))
     assert found == [Lifetime(0, 32 * TIME)] * 2
-    assert asked == [(32, TIME), (32, 50.0, 2)]
+    assert asked == [(32, TIME), (32, TIME, 0), (32, 50.0, 2), (0, 50.0, 2)]
 
 
 def test_motion_that_is_not_chaotic_has_no_lifetime(find):
     assert find([stand_in()]) == ([None], [])
 
 
-@pytest.mark.parametrize(("rate", "radius"), [(0.0, 0.005), (1e-9, 0.005), (-1e-4, 0.02)])
+@pytest.mark.parametrize(("rate", "radius"), [(0.0, 0.005), (1e-9, 0.005), (-1e-4, 0.2)])
 def test_an_attractor_that_hardly_attracts_is_waited_for_no_longer_than_any(find, rate, radius):
     slow = stand_in(partner=1, **{**CAUGHT, "exponent": np.array([0.0, -rate, -1.0]), "radius": radius})
-    _, asked = find([chaos(), slow], ([0] * 32,))
-    waited = TUNING.patient_time if radius < 0.02 else LATE - 2.0
+    _, asked = find([chaos(), slow], ([NEVER] * 32, 0, []))
+    waited = TUNING.patient_time if radius < 0.2 else LATE - 2.0
     assert asked[0] == (32, pytest.approx(waited + TIME))
 
 

@@ -28,7 +28,7 @@ the velocity that runs at the largest a reach. (b) The least friction on a slipp
 """
 
 # Velocities that runs may reach; all are drawn if the friction tells nothing.
-SPEEDS = np.linspace(0.0, 3.0, 3001)
+SPEEDS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 4001)])
 
 # Lines, and letters of each, that a law may take in the legend.
 LINES = 3
@@ -48,7 +48,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     last = mean_distance.sel(a=a_values[-1])["least_friction"].min("initial")
     # Where the friction has fallen to the least of the runs.
     reached = [SPEEDS[(law.at(a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws]
-    fastest = 1.1 * max(reached) or SPEEDS[-1]
+    fastest = 1.1 * max(reached) or 3.0
     speed = np.linspace(0.0, fastest, 301)
     left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, label="stuck")
     largest = 1.0

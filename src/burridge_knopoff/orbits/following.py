@@ -74,8 +74,8 @@ def follow(
     [0, 0, 0, 1, 1]
     """
     low, high = a_range
-    if not low < high:
-        raise ValueError(f"a_range: {a_range!r} is not allowed: (low, high) with low < high")
+    if not low <= high:
+        raise ValueError(f"a_range: {a_range!r} is not allowed: (low, high) with low ≤ high")
     points = [begin_branch(orbit, upward)]
     length = settings.first_step
     while len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points):

@@ -72,10 +72,11 @@ def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning:
     """
     generator = np.random.default_rng(settings.seed)
     clouds = [motion.returns, motion.mirror_returns]
+    blocks = motion.block, motion.mirror_block
     for k in generator.integers(len(motion.returns), size=tuning.slow_states):
         size = tuning.slow_push * settings.resolution * model.scale
         start = pushed(instant_of(motion.returns[k]), size, generator)
         found = visit(model, start, tuning.slow_time * settings.transient, settings.window, tuning)
-        if found is not None and found.block == motion.block:
+        if found is not None and (found.block, found.mirror_block) == blocks:
             clouds += [found.returns, found.mirror_returns]
     return motion.with_returns(np.concatenate(clouds), tuning)

@@ -52,8 +52,8 @@ def find_attractors(
 
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
     nothing that settles. What no state reaches is not found, nor is a motion on which no block ever stops: attractors
-    are known by the states at the stops of a block, of those that stop the nearest to an end. Raises ValueError if an
-    initial state does not fit the model.
+    are known by the states at the stops of the block nearest to an end that does not hardly ever stop. Raises
+    ValueError if an initial state does not fit the model.
 
     Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
 
@@ -86,7 +86,7 @@ class Search:
     motion_settings: MotionSettings = MOTION
     tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
-    vain: frozenset[bytes] = frozenset()
+    vain: tuple[bytes, ...] = ()
 
     @property
     def resolution(self) -> float:
@@ -175,7 +175,7 @@ class Search:
             self.reach(start)
             if len(self.attractors) > known:
                 return True
-            self.vain |= {state}
+            self.vain += (state,)
         return False
 
     def known_labels(self, starts: Sequence[Instant]) -> np.ndarray:

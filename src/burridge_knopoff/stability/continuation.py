@@ -159,7 +159,7 @@ def _handed_on(giver: Search, taker: Search) -> Search:
     if not lacking:
         return taker
     # Whatever states have led to nothing: what attracts next to it is worth looking for.
-    taker = replace(taker, attractors=list(taker.attractors), vain=frozenset())
+    taker = replace(taker, attractors=list(taker.attractors), vain=())
     taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
     return taker
 

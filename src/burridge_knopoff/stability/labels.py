@@ -11,10 +11,11 @@ import numpy as np
 from burridge_knopoff.kernel.clouds import Clouds
 from burridge_knopoff.kernel.ensemble import UNDETERMINED
 from burridge_knopoff.model.model import STARTS, Instant, Model
-from burridge_knopoff.model.ranges import OneOf, Whole
+from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor
-from burridge_knopoff.stability.settings import SEARCH, TIME
+from burridge_knopoff.stability.settings import SEARCH
 from burridge_knopoff.stability.steady import instant_of
 
 
@@ -125,7 +126,7 @@ def label_states(
             f"position, velocity: not allowed under {model.contact}: finite, and velocities of {slowest:g} or more"
         )
     OneOf(STARTS).form(start, "start")
-    time_limit = TIME.form(time_limit, "time_limit")
+    time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
     threads = Whole(1, 1024).form(threads, "threads")
     stuck = model.starts_stuck(position, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)

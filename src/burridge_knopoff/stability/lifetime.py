@@ -102,28 +102,41 @@ def _followed(
     size = tuning.parting_push * settings.resolution * model.scale
     chosen = generator.integers(len(returns), size=count)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
-    both = index, attractor.partner
-    others = [other for k, other in enumerate(attractors) if k not in both]
+    others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
     # Chaos is left at a constant rate, and so is, once the first have had the time for it, the state of not being
     # certain of another attractor: what comes before that time says nothing.
-    late = max((_capture_time(other, settings, tuning) for other in others), default=0.0)
-    reached, _ = label(model, attractors, moved(model, starts, late + time), settings.time_limit)
-    if np.isin(reached, both).all():
-        return Lifetime(0, time * count)
+    late = max((_capture_time(model, other, tuning) for other in others), default=0.0)
     gone, when = label(model, others, starts, late + time)
-    # Who gets nowhere that is known has left, at a time that nobody knows.
-    known, nowhere = gone != UNDETERMINED, (gone == UNDETERMINED) & (reached == UNDETERMINED)
-    spent = np.where(known, np.maximum(when - late, 0.0), np.where(nowhere, 0.5 * time, time))
-    return Lifetime(int((known & (when > late) | nowhere).sum()), float(spent.sum()))
+    known = gone != UNDETERMINED
+
+    def nowhere(chosen: np.ndarray, at: float) -> np.ndarray:
+        """Return which of the chosen trajectories come from where they are at a time to nothing that is known."""
+        there = moved(model, [starts[k] for k in chosen], at) if len(chosen) else []
+        return chosen[label(model, attractors, there, settings.time_limit)[0] == UNDETERMINED]
+
+    # Who gets nowhere that is known has left, at a time that nobody knows; some of them had by then already.
+    lost = nowhere(np.flatnonzero(~known), late + time)
+    early = nowhere(lost, late)
+    if count - np.count_nonzero(known & (when <= late)) - len(early) < tuning.fewest_left:
+        # Chaos that is as short as that: captures are all that is seen.
+        spent = np.where(known, when, late + time)
+        spent[lost] = 0.5 * late
+        return Lifetime(int(known.sum()) + len(lost), float(spent.sum()))
+    ends = known & (when > late)
+    ends[lost] = True
+    spent = np.where(known, np.maximum(when - late, 0.0), time)
+    spent[lost] = 0.5 * time
+    ends[early], spent[early] = False, 0.0
+    return Lifetime(int(ends.sum()), float(spent.sum()))
 
 
-def _capture_time(attractor: Attractor, settings: SearchSettings, tuning: Tuning) -> float:
+def _capture_time(model: Model, attractor: Attractor, tuning: Tuning) -> float:
     """Return a time within which trajectories that have left chaos are certain to be on an attractor.
 
-    By its weakest exponent they come from the largest radius to its own, and then so often close to it as they have to.
+    By its weakest exponent they come from afar to its radius, and then so often close to it as they have to.
     """
     motion = attractor.motion
     rate = max(-motion.exponent[1], 1.0 / tuning.patient_time)
-    nearer = math.log(max(tuning.largest_radius / attractor.radius, 1.0)) / rate
-    close = attractor.close_returns * settings.window / len(motion.returns)
-    return min(tuning.patient_time, tuning.lateness * (nearer + close))
+    nearer = math.log(tuning.far * tuning.largest_radius * model.scale / attractor.radius) / rate
+    close = attractor.close_returns / motion.stop_rate[motion.block - 1]
+    return min(tuning.patient_time, tuning.lateness * (max(nearer, 0.0) + close))

@@ -51,8 +51,8 @@ def same_result(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return (one == other) | (np.isin(one, REGULAR) & np.isin(other, REGULAR))
 
 
-# Largest standard error of an exponent with which exponents decide the kind.
-LARGEST_ERROR = 1e-3
+# Largest error of an exponent, in units of `chaotic_exponent`, with which exponents decide the kind.
+LARGEST_ERROR = 3.0
 
 # Points of a closed orbit of a long period are nearer to each other than this share of their even spacing.
 CLOSER = 0.1
@@ -185,8 +185,8 @@ def motion_kind(
     zero = zero_exponents(exponent, error, settings)
     if len(known) and not zero[0]:
         return MotionKind.UNDETERMINED
-    # Larger errors, as where chaos ends within the window, leave the kind open.
-    if len(known) and np.nanmax(error[:2]) > LARGEST_ERROR:
+    # Errors beyond the threshold of chaos, as where chaos ends within the window, leave the kind open.
+    if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
         return MotionKind.UNDETERMINED
     if len(known) > 1 and not zero[1]:
         return closed_kind(mean_distance, settings)

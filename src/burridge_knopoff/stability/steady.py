@@ -40,8 +40,8 @@ class Returns:
     mirror_returns : those of the mirrored motion; none, shape (0, 2 blocks), where the chain has no mirror image
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
-    block, mirror_block : the block of these returns, of those that stop the nearest to an end, and that of the mirrored
-        motion: the same if both ends do
+    block, mirror_block : the block of these returns, the nearest to an end that does not hardly ever stop, and that of
+        the mirrored motion: the same if both of the pair stop
     """
 
     returns: np.ndarray
@@ -143,17 +143,14 @@ def visit(model: Model, start: Instant, transient: float, window: float, tuning:
 
 def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning) -> Returns | None:
     """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
-    across = model.blocks + 1
-    stopping = sorted(set(block[kind == 0].astype(int).tolist()), key=lambda one: (min(one, across - one), one))
-    if not stopping:
-        return None
-    section = stopping[0]
-    mirror_section = section if across - section in stopping else across - section
+    section, mirror_section = _sections(
+        np.bincount(block[kind == 0].astype(int), minlength=model.blocks + 1)[1:], tuning
+    )
     stops = states[(block == section) & (kind == 0)]
     mirror_returns = stops[:0]
     fewest = len(stops)
     if model.chain.is_mirror_symmetric:
-        position, velocity = np.split(states[(block == across - mirror_section) & (kind == 0)], 2, axis=1)
+        position, velocity = np.split(states[(block == model.blocks + 1 - mirror_section) & (kind == 0)], 2, axis=1)
         mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
         fewest = min(fewest, len(mirror_returns))
     if fewest < tuning.fewest_returns:
@@ -167,6 +164,23 @@ def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarr
         block=section,
         mirror_block=mirror_section,
     )
+
+
+def _sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
+    """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
+
+    stops : of each block, shape (blocks,)
+
+    By shares, which do not depend on how long the motion is seen: of the pairs of mirror blocks that do not hardly ever
+    stop the outermost one, and of that the first block, or the one that stops if only one of them does.
+    """
+    pairs = stops + stops[::-1]
+    outer = int(np.argmax(pairs >= tuning.seldom * pairs.max()))
+    inner = len(stops) - 1 - outer
+    fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
+    if stops[fewer] >= tuning.seldom * stops[more]:
+        return outer + 1, outer + 1
+    return more + 1, fewer + 1
 
 
 def measure(
@@ -308,7 +322,7 @@ def lies_on(
     resolution : distance below which attractors are not told apart
     tolerance : distance within which the returns of closed orbits repeat
     """
-    if found.closed(tolerance) and attractor.kind == MotionKind.CHAOTIC:
+    if found.block != attractor.block or (found.closed(tolerance) and attractor.kind == MotionKind.CHAOTIC):
         return False
     return is_near(
         found.returns, attractor.returns, max(resolution, tuning.spacings * attractor.spacing), tuning.near_share

@@ -42,6 +42,9 @@ class Tuning:
     spacings: float = 3.0
     #: Fewer returns than this show no set.
     fewest_returns: int = 8
+    #: A block hardly ever stops if its stops, and those of its mirror image, are less than this share of those of the
+    #: blocks that stop the most: what is seen only then is not seen in every window.
+    seldom: float = 0.1
     #: ⟨J⟩ of an attractor that is followed once more may differ by this beyond its errors.
     same_mean: float = 1e-3
 
@@ -102,6 +105,9 @@ class Tuning:
     #: Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are
     #: not yet captured no longer make chaos seem to last.
     lateness: float = 2.0
+    #: Largest radii from which they come, and how few that are left by then make the captures before count instead.
+    far: float = 10.0
+    fewest_left: int = 8
     #: Push, in resolutions, that parts trajectories which begin at different times of one and the same.
     parting_push: float = 0.1
 

@@ -44,7 +44,7 @@ def judge(values: dict[str, np.ndarray], a: np.ndarray, threshold: float, agreem
     )
     apart = np.abs(values["difference"]) > tolerance
     disagrees = apart | (values["same_kind"] == Answer.NO)
-    open_kind = ~determined | np.isnan(values["difference"])
+    open_kind = ~determined | np.isnan(values["difference"]) | np.isnan(tolerance)
     values["agrees"][...] = np.where(disagrees, Answer.NO, np.where(open_kind, Answer.UNDETERMINED, Answer.YES))
     for j, agrees in enumerate(values["agrees"]):
         apart = a[agrees == Answer.NO]
