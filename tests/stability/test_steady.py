@@ -76,6 +76,24 @@ def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mi
     assert (found.mirror_returns == mirrored.returns).all()
 
 
+@pytest.mark.parametrize(
+    ("stops", "expected"),
+    [
+        ((7, 843, 332, 362, 795, 5), (2, 2)),
+        ((28, 3372, 1328, 1448, 3180, 20), (2, 2)),
+        ((100, 900, 900, 100), (1, 1)),
+        ((300, 900, 900, 5), (1, 4)),
+        ((5, 900, 900, 300), (4, 1)),
+        ((0, 40, 0), (2, 2)),
+        ((0, 0, 0), (1, 1)),
+    ],
+)
+def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
+    """In a window four times as long as well; the mirror image is seen at the mirror block."""
+    assert steady._sections(np.array(stops), TUNING) == expected
+    assert steady._sections(np.array(stops[::-1]), TUNING) == expected[::-1]
+
+
 def test_attractors_whose_ends_never_stop_are_known():
     """In four blocks at a = 0.02 some states come to motion in which only the middle blocks stop."""
     settings = SearchSettings(samples=40)

@@ -195,7 +195,7 @@ def _side(outline: Outline, before: tuple[float, Outline, int] | None, tuning: T
 
 
 def _orientation(attractor: Attractor) -> int:
-    """Return 1 where the first block, at its stops, is ahead of the last one by more than in the mirrored motion."""
+    """Return 1 where the first block, at the returns, is ahead of the last one by more than in the mirrored motion."""
     last = len(attractor.motion.stop_rate) - 1
     own, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
     return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1

@@ -67,7 +67,7 @@ def slot_variables(place: str) -> dict[str, Variable]:
         "lyapunov_exponent": ("exponent", "Lyapunov exponents, the largest first", {}),
         "position": (
             "block",
-            "positions of one state on the attractor, at a stop of the block nearest to an end that stops",
+            "positions of one state on the attractor, at a stop of the block nearest to an end that stops often",
             {"comment": "relative to the driver: U - v*tau, U the position of the paper"},
         ),
         "velocity": ("block", "velocities U' of that state", {}),
