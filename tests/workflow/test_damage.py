@@ -162,8 +162,8 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     study = copied(limited.folder, tmp_path / "study")
     results = study.folder / "results" / "limits"
     spoiled = {
-        "points/linearized/minus/a0.0500.nc": lambda path: shutil.copy(path.with_name("a0.2000.nc"), path),
-        "solvers/rk4/nonlinear/plus/a0.2000.nc": lambda path: rewrite(path, cut),
+        "points/linearized/minus/a0.0500.nc": lambda path: shutil.copy(path.with_name("a2.5000.nc"), path),
+        "solvers/rk4/nonlinear/plus/a2.5000.nc": lambda path: rewrite(path, cut),
         "attractors/nonlinear.nc": lambda path: rewrite(path, noise_inside),
     }
     for path, spoil in spoiled.items():

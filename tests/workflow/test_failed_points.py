@@ -34,8 +34,8 @@ def test_summaries_carry_the_status_and_have_no_value(summary):
     kind = summary("lyapunov")["kind"]
     assert (kind.where(failed, -1) == kind.attrs["flag_meanings"].split().index("undetermined") - 1).all()
     agreement = summary("agreement")
-    assert (agreement["agrees"].sel(a=0.2) == -1).all()
-    assert np.isnan(agreement["difference"].sel(a=0.2)).all()
+    assert (agreement["agrees"].sel(a=2.5) == -1).all()
+    assert np.isnan(agreement["difference"].sel(a=2.5)).all()
 
 
 def test_a_figure_leaves_a_gap(summary):
@@ -49,9 +49,9 @@ def test_the_check_tells_them_from_errors(limited):
     run = subprocess.run(command, cwd=limited.folder, capture_output=True, text=True)
     lines = run.stdout.splitlines()
     assert run.returncode == 3
-    assert [line.split()[0] for line in lines[:-1]] == ["failed"] * 2
-    assert lines[0].endswith("points/linearized/minus/a0.2000.nc: ended with status diverged")
-    assert lines[-1].endswith("0 missing, 0 corrupt, 0 stale, 2 failed")
+    assert [line.split()[0] for line in lines[:-1]] == ["failed"] * 4
+    assert lines[0].endswith("points/linearized/minus/a2.5000.nc: ended with status diverged")
+    assert lines[-1].endswith("0 missing, 0 corrupt, 0 stale, 4 failed")
 
 
 def test_the_report_shows_them(limited):
