@@ -120,6 +120,10 @@ def test_the_numbers_of_the_kinds():
         (0.1, 0, (np.nan, np.nan), np.nan, MotionKind.UNDETERMINED),
         (1e-9, 1, (np.nan, np.nan), np.nan, MotionKind.SYNCHRONIZED),
         (0.1, 0, (0.0,), 1e-5, MotionKind.UNDETERMINED),
+        # An error that is not known decides nothing, neither chaos nor rest.
+        (0.1, 0, (0.0079, -0.0009), np.nan, MotionKind.UNDETERMINED),
+        (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
+        (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
     ],
 )
 def test_kinds(mean_distance, period, exponents, error, kind):

@@ -8,7 +8,6 @@ import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.style import (
     color,
@@ -21,6 +20,7 @@ from burridge_knopoff.figures.style import (
     say,
     say_nothing,
     shade,
+    shade_entry,
     styled,
 )
 
@@ -67,7 +67,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
         titles += [f"{initial}: {name}" for name in names for initial in states]
     handles, _ = legend_entries(panels)
     if (agreement["agrees"] == 0).any():
-        handles.append(Patch(facecolor="0.9", edgecolor="0.6", label="the laws disagree"))
+        handles.append(shade_entry("the laws disagree"))
     legend_below(figure, handles)
     label_panels(panels, titles)
     return figure

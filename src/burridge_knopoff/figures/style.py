@@ -16,6 +16,7 @@ from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.patches import Patch
 
 from burridge_knopoff.provenance.files import write_whole
 
@@ -23,6 +24,9 @@ Arguments = ParamSpec("Arguments")
 
 #: Width of two journal columns, in inches.
 PAGE = 7.0
+
+# Of the cells of which something is true.
+SHADE = "0.9"
 
 # Panels side by side, at most, where there is one for each initial state.
 ACROSS = 3
@@ -192,7 +196,12 @@ def shade(panel: Axes, values: np.ndarray, where: np.ndarray) -> None:
     edges = cells(values)
     panel.set_xlim(edges[0], edges[-1])
     for k in np.flatnonzero(where):
-        panel.axvspan(edges[k], edges[k + 1], color="0.9", linewidth=0, zorder=0)
+        panel.axvspan(edges[k], edges[k + 1], color=SHADE, linewidth=0, zorder=0)
+
+
+def shade_entry(words: str) -> Patch:
+    """Return the entry of a legend that says of what `shade` tells."""
+    return Patch(facecolor=SHADE, edgecolor="0.6", label=words)
 
 
 def color(index: int) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
-from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.style import (
     PAGE,
@@ -15,6 +14,7 @@ from burridge_knopoff.figures.style import (
     marker,
     new_figure,
     shade,
+    shade_entry,
     styled,
 )
 
@@ -53,5 +53,5 @@ def draw_panel(figure: Figure | SubFigure, panel: Axes, two_blocks: xarray.Datas
     handles, _ = legend_entries([panel])
     if disagree.any():
         words = "the laws disagree" if len(laws) == 2 else f"one disagrees with the {laws[0]} law"
-        handles.append(Patch(facecolor="0.9", edgecolor="0.6", label=words))
+        handles.append(shade_entry(words))
     legend_below(figure, handles)

@@ -66,10 +66,11 @@ class Law:
         for key in ("formula", "text"):
             if key not in vars(self) and not hasattr(type(self), key):
                 raise ValueError(f"{self.name}.{key}: missing; needed: a text")
+        known = names_of(self.formula)
         for key in numbers:
             if key in ("a", "u"):
                 raise ValueError(f"{self.name}.{key}: not allowed as the name of a number: it has its meaning already")
-            if key not in names_of(self.formula):
+            if key not in known:
                 raise ValueError(f"{self.name}.{key}: not in the formula {self.formula!r}")
         for key, value in {"a": a, **numbers}.items():
             if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(value) < 1e300:

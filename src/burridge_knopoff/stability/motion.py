@@ -209,14 +209,17 @@ def is_unstable(period: int, exponent: np.ndarray, error: np.ndarray, settings: 
 
 def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
     """Tell whether the largest exponent, if there is one, is certain to be positive."""
-    error = _certain(exponent, error)
-    return bool(len(exponent) and exponent[0] > max(settings.chaotic_exponent, settings.standard_errors * error[0]))
+    # An error that is not known makes nothing certain: unlike max, maximum keeps it.
+    return bool(
+        len(exponent) and exponent[0] > np.maximum(settings.chaotic_exponent, settings.standard_errors * error[0])
+    )
 
 
 def _is_at_rest(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
     """Tell whether the largest exponent, if there is one, is certain to be negative: the flow has none that is 0."""
-    error = _certain(exponent, error)
-    return bool(len(exponent) and exponent[0] < -max(settings.zero_exponent, settings.standard_errors * error[0]))
+    return bool(
+        len(exponent) and exponent[0] < -np.maximum(settings.zero_exponent, settings.standard_errors * error[0])
+    )
 
 
 @dataclass(frozen=True)
