@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from burridge_knopoff.claims.ledger import as_json, as_markdown
+from burridge_knopoff.claims.formats import as_json, as_markdown
 from burridge_knopoff.provenance.files import write_text
 
 DOCS = Path(__file__).parent

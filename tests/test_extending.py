@@ -95,7 +95,8 @@ for panel, law in zip(panels, laws):
 CLAIM = """
 import numpy as np
 import xarray as xr
-from burridge_knopoff.claims.ledger import judge, read_claims
+from burridge_knopoff.claims.claim import read_claims
+from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.figures.description import picture_names
 from tests.claims.worlds import evidence
 claims = read_claims("config/claims.yaml", picture_names(["minus", "plus"]))

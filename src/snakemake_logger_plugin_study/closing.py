@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, untestable
+from burridge_knopoff.claims.formats import untestable
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS
 from burridge_knopoff.study.job_log import failure, interrupted
 from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.display import elapsed

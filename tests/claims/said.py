@@ -9,8 +9,9 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+from burridge_knopoff.claims.claim import Claim, read_claims
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.ledger import Claim, judge, read_claims
+from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import Verdict
 from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.model.initial import PAPER_STATES

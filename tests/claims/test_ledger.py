@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, ledger, read_claims
+from burridge_knopoff.claims.claim import read_claims
+from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
+from burridge_knopoff.claims.formats import content_digest as digest_of
+from burridge_knopoff.claims.ledger import ledger
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Range, at_values, by_interval, by_value
-from burridge_knopoff.claims.verdict import content_digest as digest_of
 from burridge_knopoff.claims.verdict import with_error as shown
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.claims.said import CLAIMS, PICTURES

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from burridge_knopoff.claims.ledger import as_json
+from burridge_knopoff.claims.formats import as_json
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources
 from burridge_knopoff.running.status import Status
@@ -54,9 +54,9 @@ def poor(tmp_path_factory) -> Poor:
     content = json.loads(
         '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"fails": 1},'
         ' "claims": [{"name": "none", "topic": "chaos", "statement": "It </script><img src=x onerror=alert(1)>.",'
-        ' "place": "Sec. <b onclick=x>1</b>", "verdict": "fails", "reason": "No run.",'
-        ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null}],'
-        ' "conventions": {"<u onfocus=x>any</u>": "not testable"}}]}'
+        ' "place": "Sec. <b onclick=x>1</b>", "verdict": "fails", "own": "fails", "reason": "No run.", "changes": "",'
+        ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null, "proved": false}],'
+        ' "conventions": {"<u onfocus=x>any</u>": "not testable"}, "figure": ""}]}'
     )
     claims.write_text(as_json(content))
     files = (folder.glob(f"{place}/*.{suffix}") for place, suffix in (("summary", "nc"), ("figures", "png")))

@@ -18,7 +18,7 @@ try:
 except KernelError as error:
     sys.exit(f"{error}")
 
-from burridge_knopoff.claims.ledger import read_claims
+from burridge_knopoff.claims.claim import read_claims
 from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V

@@ -5,8 +5,10 @@ from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
+from burridge_knopoff.claims.claim import claims_of
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.ledger import as_csv, as_json, as_markdown, claims_of, ledger
+from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
+from burridge_knopoff.claims.ledger import ledger
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.files import write_text
 

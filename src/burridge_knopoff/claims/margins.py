@@ -24,9 +24,6 @@ SHARES = ("share", "loose_share", "correlation")
 # Halvings of the factor at which a verdict turns: it is then known to 2 %.
 HALVINGS = 5
 
-#: Said of a verdict that nothing turns.
-NOTHING = "nothing that was tried"
-
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
 
 

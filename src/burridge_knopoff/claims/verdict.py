@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -25,12 +22,6 @@ MOST_SPANS = 8
 
 # From the best to the worst of those that a rule gives.
 _RANK = (HOLDS, LOOSELY, FAILS)
-
-
-def content_digest(content: Mapping[str, Any]) -> str:
-    """Return 16 hexadecimal digits of the SHA-256 of a ledger, by which a damaged claims.json is known."""
-    text = json.dumps({key: value for key, value in content.items() if key != "digest"}, sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 class NotTestableError(Exception):
@@ -106,15 +97,6 @@ class Range:
         if self.below is not None:
             chosen &= a < self.below
         return chosen
-
-
-def untestable(claims: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Return {reason: claims of a ledger that cannot be judged for it}."""
-    found: dict[str, list[dict[str, Any]]] = {}
-    for claim in claims:
-        if claim["verdict"] == NOT_TESTABLE:
-            found.setdefault(claim["reason"], []).append(claim)
-    return found
 
 
 def worst(verdicts: Iterable[str]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -69,6 +70,6 @@ def summarize(
         VARIABLES,
         values,
         axes(list(grid.initial), list(grid.a.values()), grid.laws),
-        {"synchronization_threshold": synchronization_threshold, **motion},
+        asdict(settings),
         module=__name__,
     )

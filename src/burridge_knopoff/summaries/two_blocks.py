@@ -88,12 +88,13 @@ def summarize(
         name: np.zeros([sizes[dimension] for dimension in item.dimensions], dtype=item.dtype)
         for name, item in VARIABLES.items()
     }
+    judging = motion.at_speed(models[0].v)
     for j, state in enumerate(initial):
         values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
         for k, a in enumerate(grid):
             runs = [run(model.at(a), state, settings) for model in models]
             for i, (model, trajectory) in enumerate(zip(models, runs, strict=True)):
-                found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion.at_speed(model.v))
+                found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, judging)
                 values["mean_distance"][i, j, k] = trajectory.mean_distance
                 values["mean_distance_error"][i, j, k] = trajectory.mean_distance_error
                 values["kind"][i, j, k], values["section_period"][i, j, k] = found.kind, found.section_period
@@ -111,7 +112,7 @@ def summarize(
                 compared[name][k] = value
     shared = axes([], grid, laws)
     about = {**shared["law"][2], "long_name": "friction law that is compared with the first one"}
-    judged = asdict(motion)
+    judged = asdict(judging)
     threshold = judged.pop("synchronization_threshold")
     return summary(
         "Two blocks under each friction law",

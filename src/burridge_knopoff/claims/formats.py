@@ -1,0 +1,90 @@
+"""The ledger as files: claims.json with a digest of itself, claims.csv and claims.md; docs/data.md describes them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from burridge_knopoff.claims.verdict import NOT_TESTABLE
+from burridge_knopoff.provenance.seal import identity
+
+
+def content_digest(content: Mapping[str, Any]) -> str:
+    """Return 16 hexadecimal digits of the SHA-256 of a ledger, by which a damaged claims.json is known."""
+    return identity(json.dumps({key: value for key, value in content.items() if key != "digest"}, sort_keys=True))
+
+
+def untestable(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Return {reason: claims of a ledger that cannot be judged for it}."""
+    return _grouped("reason", (claim for claim in claims if claim["verdict"] == NOT_TESTABLE))
+
+
+def by_topic(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Return {topic: claims of a ledger that could be judged}."""
+    return _grouped("topic", (claim for claim in claims if claim["verdict"] != NOT_TESTABLE))
+
+
+def _grouped(key: str, claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    found: dict[str, list[dict[str, Any]]] = {}
+    for claim in claims:
+        found.setdefault(claim[key], []).append(claim)
+    return found
+
+
+def as_json(content: Mapping[str, Any]) -> str:
+    """Return the ledger as JSON, with a digest of itself."""
+    return json.dumps({**content, "digest": content_digest(content)}, ensure_ascii=False, indent=1) + "\n"
+
+
+def as_csv(content: Mapping[str, Any]) -> str:
+    """Return the ledger as CSV, a line for each measured number; a claim without numbers has one line."""
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    texts = ("name", "topic", "statement", "place", "verdict", "own")
+    head = ["claim", *texts[1:], "quantity", "value", "error", "proved", "reason", "changes", "turns", "figure"]
+    writer.writerow(head)
+    for claim in content["claims"]:
+        for item in claim["measured"] or [{"quantity": "", "value": None, "error": None, "proved": False}]:
+            writer.writerow(
+                [
+                    *(claim[key] for key in texts),
+                    *(item["quantity"], _text(item["value"]), _text(item["error"]), "proved" if item["proved"] else ""),
+                    *(claim["reason"], claim["changes"], "; ".join(claim["turns"]), claim["figure"]),
+                ]
+            )
+    return lines.getvalue()
+
+
+def as_markdown(content: Mapping[str, Any], figures: str) -> str:
+    """Return the ledger as Markdown tables, one for each topic, and in a line for each reason what cannot be judged.
+
+    figures : folder of the figures that a table links to, relative to the file that it goes into
+    """
+    lines = ["; ".join(f"{name}: {count}" for name, count in content["counts"].items()) + "."]
+    for topic, claims in by_topic(content["claims"]).items():
+        lines += [
+            "",
+            f"### {topic.capitalize()}",
+            "",
+            "| claim | verdict | why | where it changes | what would turn it | figure |",
+            "|---|---|---|---|---|---|",
+        ]
+        for claim in claims:
+            figure = f"[{claim['figure']}]({figures}/{claim['figure']}.png)" if claim["figure"] else ""
+            own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
+            judged = f"**{claim['verdict']}**{own}"
+            turning = "; ".join(claim["turns"]) or "nothing that was tried"
+            cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"], turning]
+            lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
+    if reasons := untestable(content["claims"]):
+        lines += ["", "### Not testable", ""]
+    for reason, claims in reasons.items():
+        lines.append(f"- {reason} ({len(claims)}: {', '.join(claim['name'] for claim in claims)})")
+    return "\n".join(lines) + "\n"
+
+
+def _text(value: float | None) -> str:
+    return "" if value is None else repr(value)
