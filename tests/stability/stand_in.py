@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff import Attractor, MotionKind, SteadyMotion, Symmetry
+from burridge_knopoff.stability.steady import Returns
 
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
 
@@ -27,6 +28,17 @@ def stand_in(
         "exponent": np.array([0.0, -0.1, -0.2]),
     }
     return Attractor(SteadyMotion(**{**motion, **told}), symmetry, partner, **{"radius": 0.01, **of_attractor})
+
+
+def shown(
+    returns: np.ndarray,
+    mirror_returns: np.ndarray,
+    spacing: float,
+    drift: float,
+    stop_count: tuple[int, ...] = (1, 2, 1),
+) -> Returns:
+    """Return what a window is told to have shown."""
+    return Returns(returns, mirror_returns, spacing, drift, np.array(stop_count))
 
 
 def at(*places: float, ahead: float = 0.0, **told: Any) -> Attractor:

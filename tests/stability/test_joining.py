@@ -6,8 +6,9 @@ import pytest
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
 from burridge_knopoff.stability import joining
 from burridge_knopoff.stability.joining import follow_law, joined
-from burridge_knopoff.stability.steady import Returns, least_distance
+from burridge_knopoff.stability.steady import least_distance
 from burridge_knopoff.stability.tuning import TUNING
+from tests.stability.stand_in import shown
 
 SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, pushes=4)
 A = 0.06
@@ -57,7 +58,7 @@ def test_mirror_images_are_one_branch_in_a_mirror_symmetric_chain_only(threshold
     chain = Chain(3, threshold=threshold)
     models = [Model(chain, law_of(law, A)) for law in ("linearized", "nonlinear")]
     returns = found[1][1].motion.returns
-    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: Returns(returns, returns, 0.0, 0.0))
+    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(returns, returns, 0.0, 0.0))
     start = found[0][1].motion.instant()
     there = {3: {0: found[1][1].motion.instant().mirrored()}}
     assert joined([models[0]], [models[1]], {1: {0: start}}, there, SETTINGS) == expected
@@ -68,7 +69,7 @@ def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monk
     models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
     one, other = (part[1].motion.instant() for part in found)
     near = other.vector()[None] + 1.5 * TUNING.same_set
-    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: Returns(near, near, 0.0, 0.0))
+    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
     assert joined([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
 
 
@@ -78,9 +79,9 @@ def follow(tell):
 
     def found(places):
         sets = [None if place is None else np.full((10, 6), place) for place in places]
-        asked = tell(joining, "visit", [None if one is None else Returns(one, one, 0.0, 0.0) for one in sets])
+        asked = tell(joining, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
         pair = [Model(Chain(3), law_of(law, 0.5), 0.2) for law in ("linearized", "nonlinear")]
-        start = Returns(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).instant()
+        start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).instant()
         return follow_law(*pair, start, SETTINGS), asked
 
     return found

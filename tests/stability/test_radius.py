@@ -1,5 +1,7 @@
 """Radii and captures: hand-made sets, pushes whose fate is scripted, and what a label asks for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,8 +10,7 @@ from burridge_knopoff.stability import attractor, radius
 from burridge_knopoff.stability.attractor import close_returns, pushed, spread
 from burridge_knopoff.stability.labels import label
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
-from burridge_knopoff.stability.steady import Returns
-from tests.stability.stand_in import ASYMMETRIC, at, stand_in
+from tests.stability.stand_in import ASYMMETRIC, at, shown, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
 SETTINGS = SearchSettings(transient=100.0, window=70.0, time_limit=900.0, seed=3, pushes=10)
@@ -120,16 +121,18 @@ def test_a_closed_orbit_is_gone_round_twice(length, spacing, expected):
     orbit = np.tile(np.random.default_rng(1).uniform(size=(length, 6)), (-(-600 // length), 1))
     # Within ten tolerances.
     orbit[::2] += 9e-6
-    assert close_returns(Returns(orbit, orbit, spacing, 0.0), 1e-6) == expected
+    assert close_returns(shown(orbit, orbit, spacing, 0.0), 1e-6) == expected
 
 
 def test_a_slow_set_is_shown_by_pushed_states(tell):
-    shown = [Returns(np.full((1, 6), float(n)), np.full((1, 6), float(-n)), 0.0, 0.0) for n in range(1, 13)]
-    shown[4] = None
-    asked = tell(attractor, "visit", shown)
+    seen = [shown(np.full((1, 6), float(n)), np.full((1, 6), float(-n)), 0.0, 0.0) for n in range(1, 13)]
+    seen[4] = None
+    # One has left for another motion, on which the middle block stops less often.
+    seen[6] = replace(seen[6], stop_count=np.array([10, 18, 10]))
+    asked = tell(attractor, "visit", seen)
     found = spread(MODEL, at(1.0).motion, SETTINGS)
-    numbers = [n for n in range(1, 13) if n != 5]
-    assert found.returns[:, 0].tolist() == [1.0, 1.0, *(sign * n for n in numbers for sign in (1.0, -1.0))]
+    numbers = [n for n in range(1, 13) if n not in (5, 7)]
+    assert found.returns[:, 0].tolist() == [*(sign * n for n in numbers for sign in (1.0, -1.0)), 1.0, 1.0]
     assert {(transient, window) for _, _, transient, window, *_ in asked} == {(30.0, 70.0)}
     # By five resolutions at the scale 2, and that in all directions.
     sizes = np.abs([start.position - 1.0 for _, start, *_ in asked])

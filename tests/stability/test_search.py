@@ -8,9 +8,9 @@ import pytest
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, law_of
 from burridge_knopoff.stability import attractors
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.steady import Returns, instant_of
+from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, stand_in
+from tests.stability.stand_in import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, shown, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 #: So that times tell of how many transients, or windows, they are.
@@ -36,7 +36,7 @@ ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.
 )
 def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, windows, transients, found):
     mirror = ONE if symmetric else -ONE
-    answers = [None if drift is None else Returns(ONE, mirror, spacing, drift) for drift in drifts]
+    answers = [None if drift is None else shown(ONE, mirror, spacing, drift) for drift in drifts]
     asked = tell(attractors, "visit", answers)
     assert (Search(MODEL, SETTINGS)._settle(instant_of(ONE[0])) is not None) == found
     assert [arguments[2:4] for arguments in asked] == [(x, 100 * y) for x, y in zip(transients, windows, strict=True)]
@@ -66,7 +66,7 @@ def add(monkeypatch):
         monkeypatch.setattr(attractors, "midst", lambda *_: [])
         monkeypatch.setattr(attractors, "spread", lambda _, motion, *__: replace(motion, returns=ONE))
         search = Search(model, SETTINGS)
-        assert search._add(Returns(ONE, mirror, spacing, 0.0)) == bool(search.attractors)
+        assert search._add(shown(ONE, mirror, spacing, 0.0)) == bool(search.attractors)
         names = [name for name, *_ in asked]
         assert (names.count("measure"), names.count("captured")) == (len(measured), len(radii))
         return search.attractors, asked
@@ -96,7 +96,7 @@ def test_a_motion_is_added_with_its_mirror_image(add):
 
 def test_chaos_has_to_last(add):
     chaos, orbit = motion(kind=MotionKind.CHAOTIC), motion()
-    closed, open_still = (Returns(OTHER, ONE, spacing, 0.0) for spacing in (CLOSED, WIDE))
+    closed, open_still = (shown(OTHER, ONE, spacing, 0.0) for spacing in (CLOSED, WIDE))
     (first, _), asked = add([chaos], open_still, [0.02], spacing=WIDE)
     assert first.motion is chaos
     assert asked == [("measure", 1, 400), ("visit", SETTINGS.time_limit, 100), ("captured", 0, TUNING.smallest_radius)]
@@ -107,7 +107,52 @@ def test_chaos_has_to_last(add):
     assert add([None], None, [])[0] == []
 
 
-@pytest.mark.parametrize("kind", [MotionKind.CHAOTIC, MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
+def test_thin_chaos_may_look_closed(add):
+    chaos, orbit = motion(kind=MotionKind.CHAOTIC), motion()
+    elsewhere, there = (shown(ONE, OTHER, CLOSED, drift) for drift in (1.1e-5, 0.9e-5))
+    (first, _), asked = add([chaos], elsewhere, [0.02])
+    assert first.motion is chaos
+    assert [name for name, *_ in asked] == ["measure", "visit", "captured"]
+    assert add([chaos, orbit], there, [0.02])[0][0].motion.exponent is orbit.exponent
+
+
+@pytest.mark.parametrize(
+    ("error", "stops", "measured", "captured"),
+    [
+        (0.02, (9, 9, 9), 1, True),
+        (0.0201, (9, 9, 9), 2, True),  # it has left for another motion
+        (0.0201, (50, 101, 49), 1, True),
+        (0.0201, None, 1, False),
+    ],
+)
+def test_what_is_no_chaos_has_to_be_steady(add, error, stops, measured, captured):
+    """By the error of ⟨J⟩, and then by how often its blocks stop later."""
+    first = motion(1.0, kind=MotionKind.QUASIPERIODIC, mean_distance_error=error)
+    later = None if stops is None else shown(OTHER, ONE, WIDE, 0.0, stops)
+    steady = replace(first, mean_distance_error=0.0)
+    pair, asked = add([first, steady][:measured], later, [0.02][:captured], spacing=WIDE)
+    assert [name for name, *_ in asked].count("visit") == (error > 0.02)
+    assert [item.motion.mean_distance_error for item in pair] == [error if measured == 1 else 0.0] * 2 * captured
+
+
+def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
+    """In its window or, where it touches its mirror image, in a longer time."""
+    search, rows = Search(MODEL, SETTINGS), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
+    touching = rows - 0.9995
+    for mirror, symmetric in ((rows + 0.01, True), (touching, False), (rows + 3.0, False)):
+        assert search._symmetric(shown(rows, mirror, WIDE, 0.0)) == symmetric
+    both = np.concatenate([rows, touching])
+    for later, changes in ((both, True), (rows, False)):
+        asked = tell(attractors, "visit", [shown(later, later, WIDE, 0.0)])
+        assert search._changes_sides(shown(rows, touching, WIDE, 0.0)) == changes
+        assert asked[0][2:4] == (0.0, TUNING.lasting * SETTINGS.transient)
+    for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
+        assert not search._changes_sides(apart)
+    # Where only one block of a mirror pair stops again and again, the two show different sets.
+    assert not search._symmetric(replace(shown(rows, rows, WIDE, 0.0), mirror_block=3))
+
+
+@pytest.mark.parametrize("kind", [MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
 def test_what_repeats_is_a_closed_orbit_whatever_its_exponents(add, kind):
     pair, asked = add([motion(kind=kind)], None, [0.02])
     assert [item.motion.kind for item in pair] == [MotionKind.PERIODIC] * 2
@@ -165,7 +210,7 @@ def search(monkeypatch):
 def test_what_a_state_reaches(search, monkeypatch, place, spacing, expected):
     sizes = []
     monkeypatch.setattr(attractors, "pushed", lambda start, size, generator: sizes.append(size) or start)
-    monkeypatch.setattr(search, "_settle", lambda start: Returns(place, -place, spacing, 0.0))
+    monkeypatch.setattr(search, "_settle", lambda start: shown(place, -place, spacing, 0.0))
     monkeypatch.setattr(search, "_add", lambda found: False)
     assert Search.reach(search, None) == expected
     # Off a motion that is none it is pushed twice, by a tenth of the resolution.
@@ -219,8 +264,8 @@ def test_states_that_are_ascribed_to_chaos_are_followed(search):
 )
 def test_what_surrounds_an_orbit_is_seen_from_a_push(tell, kind, later, in_chaos):
     measured = tell(attractors, "measure", [None if kind is None else motion(kind=kind)])
-    visited = tell(attractors, "visit", [None if later is None else Returns(ONE, OTHER, later, 0.0)])
-    assert Search(MODEL, SETTINGS)._lies_in_chaos(Returns(ONE, OTHER, CLOSED, 0.0)) == in_chaos
+    visited = tell(attractors, "visit", [None if later is None else shown(ONE, OTHER, later, 0.0)])
+    assert Search(MODEL, SETTINGS)._lies_in_chaos(shown(ONE, OTHER, CLOSED, 0.0)) == in_chaos
     ((_, start, *times, _),) = (arguments[:5] for arguments in measured)
     assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
     assert times == [TUNING.slow_time, 100 * TUNING.filling]

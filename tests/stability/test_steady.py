@@ -10,9 +10,9 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
-from burridge_knopoff.stability.steady import Returns, instant_of, lies_on, measure, visit
+from burridge_knopoff.stability.steady import instant_of, lies_on, measure, visit
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import stand_in
+from tests.stability.stand_in import shown, stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 
@@ -144,7 +144,7 @@ def test_a_block_without_velocity_sticks():
     ],
 )
 def test_what_has_settled(spacing, drift, closed, settled):
-    found = Returns(ROWS, ROWS, spacing, drift)
+    found = shown(ROWS, ROWS, spacing, drift)
     assert found.closed(1e-6) == closed
     assert found.settled(1e-6, 1e-3) == settled
 
@@ -162,7 +162,7 @@ def test_what_has_settled(spacing, drift, closed, settled):
 )
 def test_what_lies_on_an_attractor(away, kind, spacing, own_spacing, expected):
     attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
-    assert lies_on(Returns(ROWS + away, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
+    assert lies_on(shown(ROWS + away, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
 
 
 @pytest.mark.parametrize(
@@ -193,11 +193,11 @@ def test_a_bound_changes_no_distance_within_it():
 @pytest.mark.parametrize(
     ("kind", "exponent", "longer", "expected"),
     [
-        (MotionKind.QUASIPERIODIC, 6e-4, MotionKind.CHAOTIC, MotionKind.CHAOTIC),
+        (MotionKind.QUASIPERIODIC, 1e-9, MotionKind.CHAOTIC, MotionKind.CHAOTIC),
         (MotionKind.UNDETERMINED, 6e-4, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
         (MotionKind.UNDETERMINED, 0.0, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
         (MotionKind.QUASIPERIODIC, 6e-4, None, MotionKind.QUASIPERIODIC),
-        (MotionKind.QUASIPERIODIC, 5e-4, "not asked", MotionKind.QUASIPERIODIC),  # no more than what counts as 0
+        (MotionKind.QUASIPERIODIC, 0.0, "not asked", MotionKind.QUASIPERIODIC),
         (MotionKind.PERIODIC, 6e-4, "not asked", MotionKind.PERIODIC),
     ],
 )
@@ -209,6 +209,11 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == expected
     assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
+    if longer != "not asked":
+        # Twenty times as long a window shows exponents smaller by √20.
+        names = ("zero_exponent", "chaotic_exponent", "period_tolerance")
+        ratios = [getattr(asked[1][4], name) / getattr(MOTION, name) for name in names]
+        assert ratios == pytest.approx([0.2236068, 0.2236068, 1.0])
     taken = longer not in (None, "not asked")
     assert (found.section_period, found.exponent.tolist()) == ((9, [0.5]) if taken else (1, [exponent]))
     # The returns and the mean distance stay those of the usual window.
@@ -230,7 +235,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
 def test_what_closes_when_it_is_followed_on_is_no_torus(tell, kind, threshold, mean, closes, expected):
     first = stand_in(kind=kind, mean_distance=mean, exponent=np.zeros(3)).motion
     tell(steady, "_measure", [first, None])
-    late = None if closes is None else Returns(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
+    late = None if closes is None else shown(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
     asked = tell(steady, "visit", [late])
     found = measure(model(threshold), None, 50.0, 30.0, MOTION)
     assert found.kind == (kind if expected is None else expected)

@@ -9,7 +9,7 @@ import numpy as np
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import Returns, SteadyMotion, instant_of, orbit_length, visit
+from burridge_knopoff.stability.steady import Returns, SteadyMotion, instant_of, orbit_length, stops_alike, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 
@@ -71,12 +71,18 @@ def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning:
     itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
     """
     generator = np.random.default_rng(settings.seed)
-    clouds = [motion.returns, motion.mirror_returns]
+    clouds = []
     blocks = motion.block, motion.mirror_block
     for k in generator.integers(len(motion.returns), size=tuning.slow_states):
         size = tuning.slow_push * settings.resolution * model.scale
         start = pushed(instant_of(motion.returns[k]), size, generator)
         found = visit(model, start, tuning.slow_time * settings.transient, settings.window, tuning)
-        if found is not None and (found.block, found.mirror_block) == blocks:
+        # A state that has left for another motion shows nothing of this one.
+        if (
+            found is not None
+            and (found.block, found.mirror_block) == blocks
+            and stops_alike(found.stop_count, motion.stop_rate, tuning)
+        ):
             clouds += [found.returns, found.mirror_returns]
-    return motion.with_returns(np.concatenate(clouds), tuning)
+    # The last return, from which the motion is followed on, is its own.
+    return motion.with_returns(np.concatenate([*clouds, motion.mirror_returns, motion.returns]), tuning)

@@ -24,10 +24,12 @@ from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import (
     Returns,
+    SteadyMotion,
     is_near,
     least_distance,
     lies_on,
     measure,
+    stops_alike,
     visit,
 )
 from burridge_knopoff.stability.tuning import TUNING, Tuning
@@ -211,21 +213,12 @@ class Search:
     def _add(self, found: Returns) -> bool:
         """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
         settings, tuning = self.settings, self.tuning
-        closed = found.closed(self.tolerance)
-        window = settings.window * (1 if closed else tuning.filling)
-        motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, self.tuning)
-        if motion is None:
+        measured = self._measured(found)
+        if measured is None:
             return False
+        found, motion = measured
+        closed = found.closed(self.tolerance)
         mirror = self.model.chain.is_mirror_symmetric
-        if closed:
-            # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
-            mean = judged_distance(motion.mean_distance, mirror)
-            motion = replace(motion, kind=closed_kind(mean, self.motion_settings))
-        elif motion.kind == MotionKind.CHAOTIC:
-            # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
-            later = visit(self.model, found.instant(), settings.time_limit, settings.window, tuning)
-            if later is None or later.closed(self.tolerance):
-                return later is not None and self._add(later)
         index = len(self.attractors)
         synchronization_threshold = self.motion_settings.synchronization_threshold
         if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
@@ -234,7 +227,7 @@ class Search:
             new = [Attractor(motion, Symmetry.ASYMMETRIC, index)]
         elif motion.mean_distance < synchronization_threshold:
             new = [Attractor(motion, Symmetry.SYNCHRONIZED, index)]
-        elif self._symmetric(found):
+        elif self._symmetric(found) or self._changes_sides(found):
             new = [Attractor(motion.symmetrized(tuning), Symmetry.SYMMETRIC, index)]
         else:
             new = [
@@ -257,6 +250,30 @@ class Search:
             if self._accept([slow], tuning.smallest_radius):
                 return True
         return closed and self._accept(new, tuning.tiny_radius)
+
+    def _measured(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
+        """Measure a settled motion; where it turns out to be on its way to another one, return that one instead."""
+        settings, tuning = self.settings, self.tuning
+        closed = found.closed(self.tolerance)
+        window = settings.window * (1 if closed else tuning.filling)
+        motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, tuning)
+        if motion is None:
+            return None
+        chaotic = motion.kind == MotionKind.CHAOTIC
+        if closed and not chaotic:
+            # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
+            mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
+            return found, replace(motion, kind=closed_kind(mean, self.motion_settings))
+        if not chaotic and motion.mean_distance_error <= tuning.unsteady * motion.mean_distance:
+            return found, motion
+        # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
+        later = visit(self.model, found.instant(), settings.time_limit, settings.window, tuning)
+        if later is None:
+            return None
+        # Thin chaos may look closed in a window, but hardly twice in the same place.
+        ended = later.closed(self.tolerance) and later.settled(self.tolerance, self.resolution, tuning)
+        stays = not ended and (chaotic or stops_alike(later.stop_count, found.stop_count, tuning))
+        return (found, motion) if stays or again == tuning.trials else self._measured(later, again + 1)
 
     def _lies_in_chaos(self, found: Returns) -> bool:
         """Tell whether a state pushed off a motion moves in chaos that lasts."""
@@ -333,7 +350,26 @@ class Search:
         return found if found is not None and found.drift <= tuning.loose_drift * resolution else None
 
     def _symmetric(self, found: Returns) -> bool:
-        """Tell whether a motion cannot be told apart from its mirror image."""
-        if not len(found.mirror_returns):
+        """Tell whether a motion cannot be told apart from its mirror image, in the window in which it was seen."""
+        if not len(found.mirror_returns) or found.block != found.mirror_block:
             return False
-        return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
+        return is_near(found.mirror_returns, found.returns, self._reach(found), self.tuning.near_share)
+
+    def _changes_sides(self, found: Returns) -> bool:
+        """Tell whether a motion that touches its mirror image comes to cover it in a longer time."""
+        touches = (
+            len(found.mirror_returns)
+            and found.block == found.mirror_block
+            and not found.closed(self.tolerance)
+            and least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
+        )
+        if not touches:
+            return False
+        longer = visit(self.model, found.instant(), 0.0, self.tuning.lasting * self.settings.transient, self.tuning)
+        if longer is None or longer.block != found.block:
+            return False
+        return is_near(found.mirror_returns, longer.returns, self._reach(found), self.tuning.near_share)
+
+    def _reach(self, found: Returns) -> float:
+        """Return how far from a motion a return that belongs to it may lie."""
+        return max(self.resolution, 0.0 if found.closed(self.tolerance) else self.tuning.spacings * found.spacing)

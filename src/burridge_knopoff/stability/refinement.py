@@ -80,8 +80,15 @@ def _between(left: Search, right: Search) -> Differing:
 def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int]) -> Gap:
     """Return the gap between two neighbours of the grid, from what differs."""
     # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
-    # that few pushes show whether it attracts; and an ensemble shows whether chaos lasts.
-    tuning = replace(left.tuning, patience=left.tuning.patience // 4, trials=1, shrinking=16.0)
+    # that few pushes, but from near by, show whether it attracts; and an ensemble shows whether chaos lasts.
+    tuning = replace(
+        left.tuning,
+        patience=left.tuning.patience // 4,
+        trials=1,
+        shrinking=16.0,
+        largest_radius=left.tuning.largest_radius / 16.0,
+        far=left.tuning.far * 16.0,
+    )
     settings = replace(left.settings, pushes=min(left.settings.pushes, tuning.push_group))
     search = Search(left.model, settings, left.motion_settings, tuning)
     still = [k for k in outlines(left.attractors) if k not in before]

@@ -65,12 +65,11 @@ class MotionSettings:
     def at_speed(self, v: float) -> MotionSettings:
         """Return the settings that a driver of speed v asks for: slower motion is smaller, and takes longer."""
         share = min(1.0, v / 0.1)
-        return replace(
-            self,
-            zero_exponent=share * self.zero_exponent,
-            chaotic_exponent=share * self.chaotic_exponent,
-            period_tolerance=share * self.period_tolerance,
-        )
+        return replace(self.scaled(share), period_tolerance=share * self.period_tolerance)
+
+    def scaled(self, share: float) -> MotionSettings:
+        """Return settings whose thresholds of exponents are that share of these."""
+        return replace(self, zero_exponent=share * self.zero_exponent, chaotic_exponent=share * self.chaotic_exponent)
 
 
 #: The defaults of a study.

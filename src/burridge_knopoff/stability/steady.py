@@ -40,6 +40,7 @@ class Returns:
     mirror_returns : those of the mirrored motion; none, shape (0, 2 blocks), where the chain has no mirror image
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
+    stop_count : stops of each block in the window, shape (blocks,)
     block, mirror_block : the block of these returns, the nearest to an end that does not hardly ever stop, and that of
         the mirrored motion: the same if both of the pair stop
     """
@@ -48,6 +49,7 @@ class Returns:
     mirror_returns: np.ndarray
     spacing: float
     drift: float
+    stop_count: np.ndarray
     block: int = 1
     mirror_block: int = 1
 
@@ -143,9 +145,8 @@ def visit(model: Model, start: Instant, transient: float, window: float, tuning:
 
 def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning) -> Returns | None:
     """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
-    section, mirror_section = _sections(
-        np.bincount(block[kind == 0].astype(int), minlength=model.blocks + 1)[1:], tuning
-    )
+    stop_count = np.bincount(block[kind == 0].astype(int), minlength=model.blocks + 1)[1:]
+    section, mirror_section = _sections(stop_count, tuning)
     stops = states[(block == section) & (kind == 0)]
     mirror_returns = stops[:0]
     fewest = len(stops)
@@ -161,6 +162,7 @@ def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarr
         mirror_returns=mirror_returns,
         spacing=_spacing(second, tuning.near_share),
         drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),
+        stop_count=stop_count,
         block=section,
         mirror_block=mirror_section,
     )
@@ -195,16 +197,18 @@ def measure(
 
     transient : in which the perturbations turn into the directions of the exponents
 
-    Where only the errors of the exponents leave open which kind it is, it is measured in a longer window. What may be a
-    torus is followed on for `lasting` transients: closed orbits that attract so weakly that no exponent shows it have
-    closed by then.
+    Where only the errors of the exponents leave open which kind it is, or may hide weak chaos, it is measured in a
+    longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
+    windows. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
+    exponent shows it have closed by then.
     """
     settings = settings.at_speed(model.v)
     found = _measure(model, start, transient, window, settings, tuning)
     if found is None or found.kind not in OPEN:
         return found
-    if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > settings.zero_exponent:
-        longer = _measure(model, start, transient, tuning.longer_window * window, settings, tuning)
+    if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > 0.0:
+        finer = settings.scaled(tuning.longer_window**-0.5)
+        longer = _measure(model, start, transient, tuning.longer_window * window, finer, tuning)
         if longer is not None:
             # The returns stay those of the usual window: their number decides how attractors are told apart.
             found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
@@ -278,6 +282,15 @@ def distance(
     if near < below:
         return np.inf
     return float(np.quantile(_nearest(first, tree, np.inf) if near == below < len(first) else nearest, share))
+
+
+def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) -> bool:
+    """Tell whether each pair of mirror blocks has the same share of all stops in two motions.
+
+    first, second : stops of each block, in any time, shape (blocks,)
+    """
+    shares = [(stops + stops[::-1]) / stops.sum() for stops in (first, second)]
+    return bool(np.abs(np.subtract(*shares)).max() <= tuning.same_stops)
 
 
 def _spacing(returns: np.ndarray, share: float) -> float:

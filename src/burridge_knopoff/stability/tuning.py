@@ -40,6 +40,10 @@ class Tuning:
     #: Sets are one if they are no farther apart than this many times the distance between neighbours within them, which
     #: varies from place to place.
     spacings: float = 3.0
+    #: Share in all stops by which a pair of mirror blocks differs at most between two parts of one motion.
+    same_stops: float = 0.03
+    #: Error of ⟨J⟩, as a share of it, above which what is no chaos may be on its way to another motion.
+    unsteady: float = 0.02
     #: Fewer returns than this show no set.
     fewest_returns: int = 8
     #: A block hardly ever stops if its stops, and those of its mirror image, are less than this share of those of the
