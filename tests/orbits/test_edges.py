@@ -1,12 +1,14 @@
 """Edges along followed branches against those of the synchronized orbit, orbits found alone, and runs beside orbits."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
 from burridge_knopoff.orbits import edges, following
 from burridge_knopoff.orbits.edge_kind import EdgeKind
-from burridge_knopoff.orbits.edges import locate_edges
+from burridge_knopoff.orbits.edges import Edge, locate_edges
 from burridge_knopoff.orbits.following import Following, follow
 from burridge_knopoff.orbits.periodic import find_periodic_orbit
 from burridge_knopoff.orbits.stretch import stretch
@@ -56,8 +58,18 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
     assert edge.kind == EdgeKind.PITCHFORK
     assert edge.a == pytest.approx(critical_a(families[law]), abs=1e-10)
     assert edge.a_error <= 1e-10
-    assert edge.loses_stability
+    assert edge.loses_stability and not edge.keeps_stability
     assert not edge.turns
+
+
+@pytest.mark.parametrize(
+    ("unstable", "loses", "keeps"),
+    [((0, 0), False, True), ((0, 1), True, False), ((0, None), True, False), ((1, 0), False, False)],
+)
+def test_stability_on_both_sides_of_an_edge(unstable, loses, keeps):
+    sides = [None if n is None else SimpleNamespace(multipliers=SimpleNamespace(unstable=n)) for n in unstable]
+    edge = Edge(0.1, 1e-9, EdgeKind.GRAZING, sides[0], *sides, turns=False)
+    assert (edge.loses_stability, edge.keeps_stability) == (loses, keeps)
 
 
 def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
@@ -68,7 +80,7 @@ def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
         assert edge.kind == EdgeKind.GRAZING
         assert edge.a == pytest.approx(grazing_a(families[law]), abs=1e-9)
         assert {edge.before.orbit.signature, edge.after.orbit.signature} == {(1, 0, 1), (1, 1, 1)}
-        assert not edge.loses_stability
+        assert edge.keeps_stability and not edge.loses_stability
     near = [point for point in points if 1e-7 < point.orbit.a - edge.a < 1e-4 and point.orbit.signature == (1, 1, 1)]
     slope = [float(point.contacts.stick[1]) ** 2 / (point.orbit.a - edge.a) for point in near]
     assert len(slope) > 2

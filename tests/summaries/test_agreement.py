@@ -131,7 +131,8 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
         (0.2021, 0.0, 4, 0),
         (0.1981, 0.0, 4, 1),
         (0.1979, 0.0, 4, 0),
-        (0.23, 0.011, 4, 1),
+        (0.213, 0.005, 4, 1),
+        (0.23, 0.011, 4, -1),  # with errors as wide as that nobody knows
         (0.23, 0.009, 4, 0),
         # What the state reaches is not known.
         (0.2, 0.0, -1, -1),
@@ -151,10 +152,11 @@ def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error
         (-1, {"kind": 2, "branch": 4, "mean": 0.2}, 0.2, 2),
         (2, {"kind": 1, "branch": 4, "mean": 0.3}, 0.2, 2),
         (2, {"kind": 1, "branch": -1, "mean": 0.2}, 0.2, 2),
-        # What it tells stands, and chaos of an attractor is no word on a run.
+        (2, {"kind": 3, "branch": 4, "mean": 0.2}, 0.2, 3),
+        (2, {"kind": 4, "branch": 4, "mean": 0.2}, 0.2, 3),
+        # What it tells stands.
         (1, {"kind": 2, "branch": 4, "mean": 0.2}, 0.2, 1),
         (3, {"kind": 1, "branch": 4, "mean": 0.2}, 0.2, 3),
-        (2, {"kind": 3, "branch": 4, "mean": 0.2}, 0.2, 2),
         # On its way to synchrony, and not there.
         (1, {"kind": 0}, 9e-4, 0),
         (1, {"kind": 0}, 1.1e-3, 1),
@@ -171,6 +173,18 @@ def test_the_kind_of_a_run_is_that_of_its_attractor_where_it_is_open(runs, compa
     about = {"synchronization_threshold": 1e-6, "agreement": AGREEMENT}
     found = agreement.summarize(grid, kinds, attractors_of(grid, **of_attractor), **about)
     assert (found["kind"] == kind).all()
+
+
+@pytest.mark.parametrize(
+    ("own", "of_attractor", "settled"), [(1, 2, 1), (3, 3, 1), (3, 4, 1), (3, 1, 0), (1, 3, 0), (1, -1, 1)]
+)
+def test_a_run_of_another_kind_is_not_on_the_attractor(runs, compare, own, of_attractor, settled):
+    grid, _ = compare({key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs})
+    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
+    kinds["kind"][...] = own
+    there = attractors_of(grid, kind=of_attractor, branch=4, mean=0.2)
+    found = agreement.summarize(grid, kinds, there, synchronization_threshold=1e-6, agreement=AGREEMENT)
+    assert (found["settled"] == settled).all()
 
 
 def test_a_run_without_result_agrees_with_nothing(compare):

@@ -21,6 +21,7 @@ from burridge_knopoff.model.model import Instant
 from burridge_knopoff.orbits.orbit import OrbitError, model_at
 from burridge_knopoff.orbits.periodic import orbit_of
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
+from burridge_knopoff.orbits.simpler import simpler_orbit
 
 # A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
 REACHED = 1e-10
@@ -100,7 +101,9 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                     found = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0.
-                if found.orbit.signature != orbit.signature and any(found.orbit.signature):
+                # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0. Several turns of
+                # a simpler orbit, somewhere beside the corner, do not go on from it.
+                signature = found.orbit.signature
+                if signature != orbit.signature and any(signature) and simpler_orbit(found.orbit) is None:
                     return found
     return None

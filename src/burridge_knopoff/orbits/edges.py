@@ -82,7 +82,13 @@ class Edge:
     @property
     def loses_stability(self) -> bool:
         """Whether the orbits before it are stable, and those after are not or do not exist."""
-        return self.before.multipliers.unstable == 0 and (self.after is None or self.after.multipliers.unstable > 0)
+        return self.before.multipliers.unstable == 0 and not self.keeps_stability
+
+    @property
+    def keeps_stability(self) -> bool:
+        """Whether the orbits on both sides of it are stable."""
+        sides = (self.before, self.after)
+        return all(point is not None and point.multipliers.unstable == 0 for point in sides)
 
 
 def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import gcd
 
 from burridge_knopoff.orbits.corner import come_to_corner, turn_corner
 from burridge_knopoff.orbits.edge_kind import EdgeKind
@@ -12,12 +11,10 @@ from burridge_knopoff.orbits.floquet import critical_values
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch, step_along
-from burridge_knopoff.orbits.simpler import simplest
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.orbits.simpler import simpler_orbit, simplest
 
-# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of half the period, and within which one that
-# is about to become one comes back to itself in a mirror, or after half its period.
-SAME = 1e-8
+# Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
+# comes back to itself in a mirror, or after half its period.
 JOINED = 3e-2
 
 # Growth of a step after one that was made.
@@ -104,15 +101,6 @@ def follow(
         elif length < settings.least_step:
             break
     return points
-
-
-def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
-    """Return the orbit of more symmetry, or of half the period, that an orbit is to rounding; None if it is its own."""
-    mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.signature == orbit.signature[::-1]
-    if not mirrored and gcd(*orbit.signature) == 1:
-        return None
-    found = simplest(orbit, SAME)
-    return None if found is orbit else found
 
 
 def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import gcd
 
 import numpy as np
 
@@ -11,9 +12,8 @@ from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.orbits.return_map import ReturnMap
 from burridge_knopoff.orbits.symmetry import Symmetry
 
-# Parts of a period after which an orbit may already have closed.
-PARTS = (2, 3, 5)
-
+# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of a shorter period.
+SAME = 1e-8
 
 # Share of the time within which the simpler orbit has to return; else Newton's method has come to another one.
 SAME_TIME = 0.05
@@ -47,12 +47,27 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
     return orbit
 
 
+def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
+    """Return the orbit of more symmetry, or of a shorter period, that one is to rounding; None if it is its own."""
+    mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.signature == orbit.signature[::-1]
+    if not mirrored and gcd(*orbit.signature) == 1:
+        return None
+    found = simplest(orbit, SAME)
+    return None if found is orbit else found
+
+
 def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
     """Yield times after which a simpler orbit would have returned, and its symmetry; 0 if it is the state itself."""
     if orbit.symmetry != Symmetry.SYNCHRONIZED and orbit.model.chain.is_mirror_symmetric:
         yield 0.0, Symmetry.SYNCHRONIZED
-    for part in PARTS:
+    for part in _prime_factors(gcd(*orbit.signature)):
         if orbit.symmetry != Symmetry.SYMMETRIC or part % 2:
             yield orbit.return_time / part, orbit.symmetry
     if orbit.symmetry == Symmetry.ASYMMETRIC and orbit.model.chain.is_mirror_symmetric:
         yield orbit.period / 2, Symmetry.SYMMETRIC
+
+
+def _prime_factors(number: int) -> list[int]:
+    """Return the primes that divide a number of turns, each once."""
+    divisors = [part for part in range(2, number + 1) if number % part == 0]
+    return [part for part in divisors if all(part % other for other in divisors if other < part)]

@@ -12,7 +12,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.stability.motion import OPEN, REGULAR, MotionKind
+from burridge_knopoff.stability.motion import OPEN, REGULAR, MotionKind, same_result
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import Answer, judge
@@ -28,8 +28,8 @@ _ANSWER = flag("i1", Answer)
 # ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
 SAME_MEAN = 0.01
 KIND_COMMENT = (
-    "of the attractor that the run has come to, where the run alone does not tell a torus from a closed orbit that "
-    "hardly attracts; a run on its way to synchrony counts as synchronized"
+    "of the attractor that the run has come to, where the run alone does not tell a torus from weak chaos or from a "
+    "closed orbit that hardly attracts; a run on its way to synchrony counts as synchronized"
 )
 POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
@@ -94,7 +94,7 @@ def summarize(
     values["kind"][...] = lyapunov["kind"].sel(law=list(grid.laws)).values
     values["settled"][...] = Answer.UNDETERMINED
     if attractors is not None:
-        _fill_settled(values, attractors, agreement["standard_errors"], synchronization_threshold)
+        _fill_settled(values, attractors, agreement, synchronization_threshold)
     for i in range(sizes["other_law"]):
         pair = {name: values[name][[0, i + 1]] for name in POINT_VARIABLES}
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
@@ -112,12 +112,13 @@ def summarize(
 
 
 def _fill_settled(
-    values: Mapping[str, np.ndarray], attractors: xarray.Dataset, standard_errors: float, threshold: float
+    values: Mapping[str, np.ndarray], attractors: xarray.Dataset, agreement: Mapping[str, Any], threshold: float
 ) -> None:
-    """Fill in whether each run has the ⟨J⟩ of the attractor that its initial state reaches.
+    """Fill in whether each run has the ⟨J⟩ and the kind of motion of the attractor that its initial state reaches.
 
-    If so the kind is that of the attractor where the run alone leaves it open: attractors are watched for longer.
+    Where the run alone leaves the kind open it is that of the attractor, if ⟨J⟩ is: attractors are watched for longer.
     """
+    relative_tolerance, standard_errors = agreement["relative_tolerance"], agreement["standard_errors"]
     own = attractors.sel(contact=attractors.attrs["contact_convention"], start=attractors.attrs["start_convention"])
     for law, initial in np.ndindex(values["settled"].shape[:2]):
         names = str(own["initial"].values[initial]), str(own["law"].values[law])
@@ -129,14 +130,19 @@ def _fill_settled(
         )
         there = known & (np.abs(mean - mine) <= allowed)
         kind, (_, finer) = values["kind"][law, initial], reached(own, *names, "kind")
-        told = there & np.isin(finer, REGULAR) & np.isin(kind, OPEN)
+        # Chaos that ends long after the run is chaos in the run.
+        finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, MotionKind.CHAOTIC, finer)
+        told = there & np.isin(finer, (*REGULAR, MotionKind.CHAOTIC)) & np.isin(kind, OPEN)
         told |= (
             known
             & (finer == MotionKind.SYNCHRONIZED)
             & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
         )
         kind[...] = np.where(told, finer, kind)
-        known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED)
+        there &= (finer == MotionKind.UNDETERMINED) | same_result(kind, finer)
+        # Errors as wide as what two laws may differ by hide whether two motions are one.
+        telling = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)
+        known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED) & (telling | ~there)
         values["settled"][law, initial] = np.where(known, there, Answer.UNDETERMINED)
 
 

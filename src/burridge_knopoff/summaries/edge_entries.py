@@ -192,7 +192,7 @@ def entries(
         n, own_kind = int(branch[slot]), int(kind[slot])
         values = np.array([a[k] for k, row in enumerate(slots) if n in row])
         for edge in one_stretch.downward.edges + one_stretch.upward.edges:
-            if not edge.loses_stability and not edge.turns:
+            if edge.keeps_stability and not edge.turns:
                 beside = max(values[values <= edge.a], default=np.nan), min(values[values >= edge.a], default=np.nan)
                 own = Change.PASSED, n, n, *beside, (own_kind, own_kind), (np.nan, np.nan)
                 found.append(Entry(*own, edge.kind, edge))
