@@ -58,7 +58,8 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
     assert edge.kind == EdgeKind.PITCHFORK
     assert edge.a == pytest.approx(critical_a(families[law]), abs=1e-10)
     assert edge.a_error <= 1e-10
-    assert edge.loses_stability and not edge.keeps_stability
+    assert edge.loses_stability
+    assert not edge.keeps_stability
     assert not edge.turns
 
 
@@ -80,7 +81,8 @@ def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
         assert edge.kind == EdgeKind.GRAZING
         assert edge.a == pytest.approx(grazing_a(families[law]), abs=1e-9)
         assert {edge.before.orbit.signature, edge.after.orbit.signature} == {(1, 0, 1), (1, 1, 1)}
-        assert edge.keeps_stability and not edge.loses_stability
+        assert edge.keeps_stability
+        assert not edge.loses_stability
     near = [point for point in points if 1e-7 < point.orbit.a - edge.a < 1e-4 and point.orbit.signature == (1, 1, 1)]
     slope = [float(point.contacts.stick[1]) ** 2 / (point.orbit.a - edge.a) for point in near]
     assert len(slope) > 2

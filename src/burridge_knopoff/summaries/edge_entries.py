@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -139,7 +139,9 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
 def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitError:
     """Follow an orbit one way, and find the edges that it meets, or return why it cannot be followed."""
     try:
-        found = half(orbit, upward, (LEAST_A, largest), BEYOND, FOLLOWING)
+        # From one end of a wide grid to the other as well.
+        step = max(FOLLOWING.largest_step, largest / FOLLOWING.most_orbits)
+        found = half(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
         # Found here, these go with the orbits to the process that asks for them.
         _ = [edge.stick_time for edge in found.edges], [point.multipliers for point in found.orbits]
         _ = [point.orbit.mean_distance for point in found.shown]
