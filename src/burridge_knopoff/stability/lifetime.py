@@ -75,12 +75,12 @@ def lifetimes(
 def _lifetime(
     model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings, tuning: Tuning
 ) -> Lifetime:
-    """Follow trajectories from states on a chaotic set, and more of them where these do not decide whether it lasts."""
+    """Follow trajectories from states on a chaotic set, and more where few left it or where it is open if it lasts."""
     generator = np.random.default_rng(settings.seed)
     follow = partial(_followed, model, attractors, index, settings, tuning, generator)
     first = follow(tuning.followed)
     low, high = first.interval
-    if not low <= settings.lifetime < high:
+    if (not first.ends or first.ends >= tuning.fewest_ends) and not low <= settings.lifetime < high:
         return first
     more = follow(tuning.followed * tuning.undecided)
     return Lifetime(first.ends + more.ends, first.time + more.time)
