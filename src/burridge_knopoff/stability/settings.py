@@ -45,7 +45,7 @@ class MotionSettings:
         float,
         SHARE,
         "a motion is chaotic if its largest exponent is above this and not 0 within its errors; below v = 0.1 it "
-        "scales with v",
+        "scales with v; in the longer window of what may be a torus it is smaller by the root of the ratio",
     ] = 1e-3
     standard_errors: Annotated[
         float, ERRORS, "an exponent of this many standard errors at most counts as 0 as well"

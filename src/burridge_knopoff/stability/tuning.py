@@ -104,8 +104,8 @@ class Tuning:
     #: which it counts as lasting. If none of them leaves it, its lifetime is beyond that with 97.5 % certainty.
     followed: int = 32
     exposure: float = 4.0
-    #: Where these leave open whether the lifetime is below or beyond, or where fewer than these leave, so many times more
-    #: are followed: who stops at few ends stops where by chance they were many.
+    #: Where these leave open whether the lifetime is below or beyond, or where fewer than `fewest_ends` leave, so many
+    #: times more are followed: who stops at few ends stops where by chance they were many.
     undecided: int = 10
     fewest_ends: int = 30
     #: Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are
