@@ -6,6 +6,7 @@ import pickle
 import mpmath
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,6 +15,7 @@ from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import SERIES_ORDER, new_friction
 from tests.flows import carry, check_events, differences, directions
+from tests.refused import refused
 from tests.scipy_flow import model_events
 
 #: Every operation and function of a formula, and a drop at the start.
@@ -124,10 +126,37 @@ def test_the_papers_laws_touch_at_rest(a, speed):
     assert linearized.slope(0.0) == nonlinear.slope(0.0) == -a
 
 
-@pytest.mark.parametrize("a", [-0.1, float("nan"), float("inf"), "x", True, None])
+@pytest.mark.parametrize(
+    "a",
+    [
+        *(-0.1, float("nan"), float("inf"), "x", True, None, 10**400, np.complex128(0.08 + 1j), np.timedelta64(1, "s")),
+        *(np.ma.masked, np.array([0.08]), xr.DataArray([0.08])),
+    ],
+)
 def test_bad_a(a):
-    with pytest.raises(ValueError, match="a: "):
+    with refused("a: ", "is not allowed"):
         law_of("linearized", a)
+
+
+@pytest.mark.parametrize(
+    "a", [np.float32(0.25), np.float16(0.25), np.array(0.25), xr.DataArray(0.25), np.float64(0.25)]
+)
+def test_every_kind_of_number(a):
+    assert law_of("linearized", a) == law_of("linearized", 0.25)
+    assert type(law_of("linearized", a).a) is float
+
+
+@pytest.mark.parametrize("law", [law_of("stribeck", 0.2), FormulaLaw(0.2, "1 - c*a*u", c=0.5)])
+def test_a_law_does_not_change(law):
+    for same in (law, copy.copy(law), copy.deepcopy(law), pickle.loads(pickle.dumps(law)), law.at(0.2)):
+        assert same == law
+        for name in ("a", "formula", "numbers"):
+            with pytest.raises(AttributeError, match=f"{name}: a law does not change once it is made"):
+                setattr(same, name, 0.3)
+        with pytest.raises(TypeError):
+            same.numbers["c"] = 0.1
+        for array in same.tape.table:
+            assert not array.flags.writeable
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -104,3 +104,20 @@ def test_a_study_that_snakemake_has_made(finished):
     study = open_study(results)
     assert set(study["summary"].children) == {path.stem for path in (results / "summary").glob("*.nc")}
     assert study["grid"].mean_distance.equals(study["summary/mean_distance"].mean_distance)
+
+
+def test_threads_may_open_studies(results):
+    """In a process of its own, which HDF5 may crash."""
+    script = (
+        "from concurrent.futures import ThreadPoolExecutor; from burridge_knopoff import open_study\n"
+        f"with ThreadPoolExecutor(8) as pool: print(len([*pool.map(open_study, [{str(results)!r}] * 24)]))"
+    )
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert (run.returncode, run.stdout) == (0, "24\n")
+
+
+def test_without_its_attributes_a_tree_is_one_file(results, tmp_path):
+    study = open_study(results)
+    study.attrs.clear()
+    study.to_netcdf(tmp_path / "all.nc")
+    assert (tmp_path / "all.nc").stat().st_size > 10_000

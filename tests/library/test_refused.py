@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from burridge_knopoff import (
     Chain,
@@ -18,8 +19,13 @@ from burridge_knopoff import (
     follow,
     label_states,
     law_of,
+    multipliers,
+    open_study,
     simulate,
+    sweep,
+    synchronized_orbit,
     transverse_exponent,
+    transverse_multiplier,
 )
 from burridge_knopoff.kernel.ensemble import Ensemble
 from burridge_knopoff.running.together import new_ensemble
@@ -46,12 +52,17 @@ def attractors():
         ({"time_limit": -1.0}, "time_limit: -1.0 is not allowed"),
         ({"time_limit": float("nan")}, "time_limit: nan is not allowed"),
         ({"threads": 0}, "threads: 0 is not allowed"),
+        ({"position": POSITION + 1j}, "position: .* is not allowed: an array of numbers"),
+        ({"position": [[1.0], [1.0, 2.0]]}, "position: .* is not allowed: an array of numbers"),
+        ({"position": np.ma.array(POSITION, mask=POSITION < 0.0)}, "finite"),
+        ({"model": "linearized"}, "model: 'linearized' is not allowed: a Model"),
+        ({"attractors": ([], np.zeros(3))}, r"attractors\[0\]: \[\] is not allowed: an Attractor"),
     ],
 )
 def test_states_that_cannot_be_labelled(attractors, given, message):
-    states = {"position": POSITION, "velocity": VELOCITY, **given}
+    states = {"model": MODEL, "attractors": attractors, "position": POSITION, "velocity": VELOCITY, **given}
     with pytest.raises(ValueError, match=message) as refused:
-        label_states(MODEL, attractors, **states)
+        label_states(**states)
     assert "\n" not in str(refused.value)
 
 
@@ -70,6 +81,19 @@ def test_states_that_cannot_be_labelled(attractors, given, message):
         lambda: follow(None, (0.1, 0.05)),
         lambda: follow(None, (float("nan"), 0.6)),
         lambda: simulate("linearized", 0.08, np.zeros((3, 2))),
+        lambda: simulate("linearized", 0.08, np.ma.array([[-1.0, -1.0], [0.1, 0.1]], mask=[[0, 1], [0, 0]])),
+        lambda: simulate({"law": ["linearized"]}, 0.08),
+        lambda: simulate({"formula": 1.0}, 0.08),
+        lambda: simulate("linearized", 0.08, settings={"window": 5}),
+        lambda: sweep("linearized", np.ma.array([0.05, 0.08], mask=[0, 1])),
+        lambda: synchronized_orbit("linearized"),
+        lambda: synchronized_orbit(Model(Chain(3, threshold=[1, 2, 3]), MODEL.law)),
+        lambda: transverse_multiplier(MODEL),
+        lambda: multipliers(MODEL),
+        lambda: find_attractors("linearized"),
+        lambda: find_attractors(MODEL, {"samples": 3}),
+        lambda: open_study(None),
+        lambda: Chain(3, coupling=xr.DataArray([0.08])),
     ],
 )
 def test_calls_that_have_no_answer(call):
@@ -88,6 +112,14 @@ def test_a_law_has_the_a_that_it_was_given():
     assert simulate(law_of("nonlinear", 0.3), transient=0, window=5).model.a == 0.3
     assert simulate(law_of("nonlinear", 0.3), 0.1, transient=0, window=5).model.a == 0.1
     assert simulate("nonlinear", transient=0, window=5).model.a == 0.08
+
+
+def test_a_law_as_in_a_config():
+    for law, same in (
+        ({"formula": "1 - c*a*u", "c": 0.5}, FormulaLaw(0.1, "1 - c*a*u", c=0.5)),
+        ({"law": "stribeck", "eta": 0.02}, law_of("stribeck", 0.1, {"eta": 0.02})),
+    ):
+        assert simulate(law, 0.1, transient=0, window=5).model.law == same
 
 
 @pytest.mark.parametrize("missing", ["formula", "text"])

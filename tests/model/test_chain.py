@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, law_of
+from burridge_knopoff import Chain, Model, law_of
 
 strength = st.floats(0.1, 5.0)
 
@@ -95,3 +95,11 @@ def test_refused(options, message):
     with pytest.raises(ValueError, match=message) as caught:
         Chain(**options)
     assert "\n" not in str(caught.value)
+
+
+def test_what_is_computed_once_is_not_written_to():
+    chain = Chain(3, coupling=np.array(0.5), pulling=2.0)
+    arrays = [chain.thresholds, chain.before, chain.after, chain.driving, Chain(3).driving]
+    for array in (*arrays, Model(chain, law_of("linearized", 0.1)).sliding_offset):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 2.0

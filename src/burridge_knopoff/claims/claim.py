@@ -15,10 +15,11 @@ from burridge_knopoff.claims.verdict import Range, Verdict
 from burridge_knopoff.model import ranges
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, unknown_key
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text, Whole, refusal
+from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text, Whole
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
+from burridge_knopoff.values import refusal
 
 TOPICS = {
     "synchronization": synchronization,

@@ -11,6 +11,7 @@ from burridge_knopoff.laws.law import FormulaLaw, Law
 from burridge_knopoff.laws.linearized import Linearized
 from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.laws.stribeck import Stribeck
+from burridge_knopoff.values import refusal
 
 __all__ = ["LAWS", "FormulaLaw", "Law", "law_of"]
 
@@ -47,6 +48,6 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
     if "formula" in values:
         return FormulaLaw(a, values.pop("formula"), name=name, **values)
     kind = values.pop("law", name)
-    if kind not in LAWS:
-        raise ValueError(f"law: {kind!r} is not allowed: {' | '.join(LAWS)}, or a formula")
+    if not isinstance(kind, str) or kind not in LAWS:
+        raise refusal("law", kind, f"{' | '.join(LAWS)}, or a formula")
     return LAWS[kind](a, name=name, **values)

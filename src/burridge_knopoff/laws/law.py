@@ -9,6 +9,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Mapping
 from functools import cached_property
+from types import MappingProxyType
 from typing import ClassVar, Self
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.laws.formula import FormulaError, names_of, tape_of
 from burridge_knopoff.laws.tape import Tape
+from burridge_knopoff.values import instance_of, real_number, refusal
 
 #: Speeds up to which a law has to be analytic; no block of a chain with springs and thresholds of about 1 comes there.
 FASTEST = 10.0
@@ -73,13 +75,13 @@ class Law:
             if key not in known:
                 raise ValueError(f"{self.name}.{key}: not in the formula {self.formula!r}")
         for key, value in {"a": a, **numbers}.items():
-            if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(value) < 1e300:
-                raise ValueError(f"{key}: {value!r} is not allowed: a finite number")
-        if a < 0.0:
-            raise ValueError(f"a: {a!r} is not allowed: 0 or more")
+            if not abs(real_number(value)) < 1e300:
+                raise refusal(key, value, "a finite number")
+        if real_number(a) < 0.0:
+            raise refusal("a", a, "0 or more")
         # Adding 0 turns -0.0 into 0.0: the same number must not make two different files.
-        self.a = float(a) + 0.0
-        self.numbers = {key: float(value) + 0.0 for key, value in numbers.items()}
+        self.a = real_number(a) + 0.0
+        self._numbers = {key: real_number(value) + 0.0 for key, value in numbers.items()}
         try:
             self._check()
         except FormulaError as error:
@@ -94,6 +96,12 @@ class Law:
         if not 0.0 < start <= 1.0 + ROUNDING:
             raise FormulaError(f"at u = 0 it is {start:g}: above 0 and at most 1, the static friction")
 
+    def __setattr__(self, name: str, value: object) -> None:
+        # What follows from a and the numbers is computed once.
+        if "_numbers" in vars(self):
+            raise AttributeError(f"{name}: a law does not change once it is made; `at` gives it at another a")
+        super().__setattr__(name, value)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Law) and self._key == other._key
 
@@ -103,6 +111,11 @@ class Law:
     def __repr__(self) -> str:
         numbers = "".join(f", {key}={value!r}" for key, value in self.numbers.items())
         return f"<law {self.name}: {self.formula}, a={self.a!r}{numbers}>"
+
+    @property
+    def numbers(self) -> Mapping[str, float]:
+        """Values of the names that the formula uses besides `a` and `u`."""
+        return MappingProxyType(self._numbers)
 
     @property
     def words(self) -> str:
@@ -176,7 +189,7 @@ class FormulaLaw(Law):
 
     def __init__(self, a: float, formula: str, /, *, name: str = "formula", **numbers: float) -> None:
         self.name = name
-        self.formula = formula
+        self.formula = instance_of(formula, str, "formula")
         self._set(a, numbers)
 
     @property

@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.values import read_only
+
 #: What an operation makes of its registers p and q: α p + β q + γ, α p q, α / p, p^α, α exp p, α log p.
 CODES = ("linear", "multiply", "reciprocal", "power", "exp", "log")
 LINEAR, MULTIPLY, RECIPROCAL, POWER, EXP, LOG = range(len(CODES))
@@ -172,7 +174,8 @@ class Tape:
         """The operations for the kernel: code and registers, intc of shape (n, 3), and constants α, β, γ, (n, 3)."""
         rows = [(item.code, item.first, item.second) for item in self.operations]
         constants = [(item.alpha, item.beta, item.gamma) for item in self.operations]
-        return np.array(rows, dtype=np.intc).reshape(-1, 3), np.array(constants, dtype=float).reshape(-1, 3)
+        table = np.array(rows, dtype=np.intc).reshape(-1, 3), np.array(constants, dtype=float).reshape(-1, 3)
+        return read_only(table[0]), read_only(table[1])
 
     def run(self, speed: Any, functions: Any = np) -> tuple[Any, Any]:
         """Return Φ and dΦ/du at a speed, in the arithmetic of the speed.

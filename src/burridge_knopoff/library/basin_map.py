@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
-from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import SearchOptions, settings_of, shows
-from burridge_knopoff.library.given import Initial, given_model, given_state
+from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.settings import MOTION, POSITIONS, BasinSettings, MotionSettings, SearchSettings
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
 @shows(SearchSettings)
 def basin_map(
-    law: Model | Law | str,
+    law: Model | GivenLaw,
     a: float | None = None,
     initial: Initial = "minus",
     *,
@@ -37,8 +36,8 @@ def basin_map(
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Return a map of basins and its attractors, in the form of `basins.nc` and `attractors.nc`, for one model.
 
-    law : a Model, which has its own a, chain, v and contact; or a law at this a: the name of one that is built in, or a
-        `Law`
+    law : a Model, which has its own a, chain, v and contact; or a law at this a, as `simulate`
+        takes it
     initial : gives all but U_1(0) and U_N(0), in any form that `simulate` takes; minus has three blocks
     chain : without one the paper's springs, as many blocks as the initial state has; v, contact : see `Model`
     start : moving or tested, see `Model.begin`

@@ -16,6 +16,9 @@ from burridge_knopoff.model.model import Model
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray
 
+#: A law: one, the name of one that is built in, or {"formula": …} or {"law": …} with its numbers, as in a config.
+GivenLaw = Law | str | Mapping[str, Any]
+
 #: The name of a state that is given by numbers alone.
 OWN = "own"
 
@@ -53,12 +56,13 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
 def _plain(values: Any) -> Any:
     """Return a sequence or an array of any kind as a list, anything else as it is."""
     if hasattr(values, "__array__"):
-        return np.asarray(values).tolist()
+        # What is masked becomes None, which no range takes.
+        return np.asanyarray(values).tolist()
     return list(values) if isinstance(values, Iterable) and not isinstance(values, str | Mapping) else values
 
 
 def given_model(
-    law: Model | Law | str, a: float | None, blocks: int, chain: Chain | None, v: float, contact: str
+    law: Model | GivenLaw, a: float | None, blocks: int, chain: Chain | None, v: float, contact: str
 ) -> Model:
     """Return a model that is given as one, or as a law with what else belongs to it.
 
@@ -71,7 +75,7 @@ def given_model(
         return law
     if a is None:
         raise ValueError("a: None is not allowed but beside a model: 0 or more")
+    if isinstance(law, Mapping):
+        law = law_of(law.get("law", "formula"), a, law)
     chain = Chain(blocks) if chain is None else chain
-    if not isinstance(chain, Chain):
-        raise ValueError(f"chain: {chain!r} is not allowed: a Chain")
     return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), v, contact)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,10 @@ from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import AXES, axes
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.values import refusal
+
+# HDF5 is not safe for threads, and xarray's own lock does not cover all that opening reads.
+_ONE_AT_A_TIME = Lock()
 
 #: What is one number a point.
 NUMBERS = tuple(name for name, item in POINT_VARIABLES.items() if not item.dimensions and not item.coordinate)
@@ -28,6 +33,9 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     is not there. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. No file is held
     against the sources that made it: `bk check` does that.
 
+    The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
+    Several threads may open studies, one after the other; while one opens, others must not read: HDF5 would crash.
+
     Raises ValueError, one line, if the folder holds no study, or a file that cannot be read.
 
     >>> from burridge_knopoff import open_study
@@ -37,7 +45,13 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     >>> study["points/linearized/plus/a0.0800"].velocity.dims
     ('trajectory_time', 'block')
     """
-    results = Path(results)
+    if not isinstance(results, str | Path):
+        raise refusal("results", results, "the folder of a study, results/<study>")
+    with _ONE_AT_A_TIME:
+        return _tree(Path(results), points)
+
+
+def _tree(results: Path, points: bool) -> xarray.DataTree:
     record = read_study_record(results)
     config, values = record["config"], record["grid"]
     laws, states = list(config["laws"]), list(config["initial"])

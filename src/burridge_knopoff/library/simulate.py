@@ -6,12 +6,13 @@ from typing import Any, Unpack, overload
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
-from burridge_knopoff.library.given import Initial, given_model, given_state
+from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
+from burridge_knopoff.values import instance_of
 
 
 @overload
@@ -34,7 +35,7 @@ def simulate(
 
 @overload
 def simulate(
-    law: str | Law = ...,
+    law: GivenLaw = ...,
     a: float = ...,
     initial: Initial = ...,
     settings: Settings | None = ...,
@@ -60,8 +61,9 @@ def simulate(
 ) -> Trajectory:
     """Run one simulation and return its trajectory: `simulate(law, a, initial)` or `simulate(model, initial)`.
 
-    law, a : a law and its friction parameter: the name of a law that is built in (a is 0.08 if none is given), or a
-        `Law` (its own a); or in the place of both a `Model`, which has its own chain, v and contact
+    law, a : a law and its friction parameter: the name of a law that is built in (a is 0.08 if none is given), a
+        `Law` (its own a), or {"formula": "1 - c*a*u", "c": 0.5}; or in the place of both a `Model`, which has its own
+        chain, v and contact
     initial : minus (if none is given) or plus (the paper's, three blocks), an `InitialState`,
         {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,)
     settings : of the run; by_name : some of them, or all, by name (see `Settings`)
@@ -88,8 +90,8 @@ def simulate(
         if initial is not None and settings is not None:
             raise ValueError("settings: not allowed twice")
         a, initial, settings = None, a, settings if initial is None else initial
-    if not (settings is None or isinstance(settings, Settings)):
-        raise ValueError(f"settings: {settings!r} is not allowed: a Settings, or settings by name")
+    if settings is not None:
+        instance_of(settings, Settings, "settings")
     state = given_state("minus" if initial is None else initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
     return run(model, state, settings_of(Settings, settings, by_name))

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
-from burridge_knopoff.library.given import Initial, given_model, given_state
+from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import Whole
@@ -27,7 +26,7 @@ _EVERYWHERE = {"batch", "exponent"}
 
 @shows(Settings)
 def sweep(
-    law: Model | Law | str,
+    law: Model | GivenLaw,
     a: Sequence[float] | np.ndarray,
     initial: Initial = "minus",
     settings: Settings | None = None,
@@ -40,7 +39,8 @@ def sweep(
 ) -> xarray.Dataset:
     """Run a simulation at each of some a, and return what is one number a run, a batch or an exponent, over a.
 
-    law : a `Model`, at any a, with its own chain, v and contact, or a law: the name of one that is built in, or a `Law`
+    law : a `Model`, at any a, with its own chain, v and contact, or a law as
+        `simulate` takes it
     a : friction parameters, shape (n,); `a` of the Dataset, in the same order
     initial, settings, chain, v, contact, by_name : see `simulate`
     cores : runs at once, as many as this machine has cores if none is given; they change no number
@@ -58,7 +58,7 @@ def sweep(
     """
     state = given_state(initial)
     chosen = settings_of(Settings, settings, by_name)
-    values = np.asarray(a, dtype=object).ravel().tolist()
+    values = np.asanyarray(a, dtype=object).ravel().tolist()
     if not values:
         raise ValueError("a: no value is not allowed: at least one")
     if cores is not None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
+from burridge_knopoff.values import read_only
 
 MAXIMUM_BLOCKS = 1024
 ENDS = ("open", "ring")
@@ -76,7 +77,7 @@ class Chain:
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Static friction of each block, shape (blocks,)."""
-        return np.full(self.blocks, self.threshold) if isinstance(self.threshold, float) else np.array(self.threshold)
+        return read_only(np.broadcast_to(self.threshold, self.blocks))
 
     @cached_property
     def before(self) -> np.ndarray:
@@ -84,19 +85,19 @@ class Chain:
         strengths = np.zeros(self.blocks)
         springs = self.blocks - (self.ends == "open")
         strengths[:springs] = self.coupling
-        return np.roll(strengths, 1)
+        return read_only(np.roll(strengths, 1))
 
     @cached_property
     def after(self) -> np.ndarray:
         """Strength of the spring to the block after each one, shape (blocks,); 0 at an open end."""
-        return np.roll(self.before, -1)
+        return read_only(np.roll(self.before, -1))
 
     @cached_property
     def driving(self) -> np.ndarray:
         """Strengths D of the springs to the driver, shape (blocks,)."""
         if isinstance(self.pulling, str):
-            return (self.before > 0.0).astype(float) + (self.after > 0.0)
-        return np.full(self.blocks, self.pulling) if isinstance(self.pulling, float) else np.array(self.pulling)
+            return read_only((self.before > 0.0).astype(float) + (self.after > 0.0))
+        return read_only(np.broadcast_to(self.pulling, self.blocks))
 
     @property
     def diagonal(self) -> np.ndarray:

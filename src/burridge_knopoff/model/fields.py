@@ -36,6 +36,8 @@ class Keys(Range):
     """Fields by name: a mapping without others; its form has all defaults, in the order of the fields."""
 
     fields: Mapping[str, Field]
+    #: What else is to be said of them.
+    words: str = ""
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping):
@@ -53,7 +55,7 @@ class Keys(Range):
         return values
 
     def __str__(self) -> str:
-        return f"{{{', '.join(self.fields)}}}"
+        return f"{{{', '.join(self.fields)}}}{self.words}"
 
 
 def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:

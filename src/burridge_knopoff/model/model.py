@@ -14,6 +14,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.ranges import Number, OneOf, Text
+from burridge_knopoff.values import instance_of, read_only
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
@@ -54,9 +55,8 @@ class Model:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for key, kind in (("chain", Chain), ("law", Law)):
-            if not isinstance(getattr(self, key), kind):
-                raise ValueError(f"{key}: {getattr(self, key)!r} is not allowed: a {kind.__name__}")
+        instance_of(self.chain, Chain, "chain")
+        instance_of(self.law, Law, "law")
         # Blocks slip at a few v, and from afar at more: then a run ends where its law does.
         fastest = FASTEST * self.v
         if fastest > FASTEST and not self.law.tape.is_analytic(0.0, fastest):
@@ -93,7 +93,7 @@ class Model:
     @cached_property
     def sliding_offset(self) -> np.ndarray:
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
-        return self.chain.sliding_offset(float(self.law(self.v)))
+        return read_only(self.chain.sliding_offset(float(self.law(self.v))))
 
     def begin(self, initial: InitialState, start: str = "moving") -> Instant:
         """Return the state at τ = 0 of a run from an initial state.

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.values import cut, real_number, refusal, scalar
+
 #: A limit that is none: numbers have to be finite.
 HUGE = 1e300
 
@@ -42,9 +44,9 @@ class Number(Range):
     above: bool = False
 
     def _fit(self, value: Any, key: str) -> float | None:
-        is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-        fits = is_number and self.least <= value <= self.most and not (self.above and value == self.least)
-        return float(value) if fits else None
+        number = real_number(value)
+        fits = self.least <= number <= self.most and not (self.above and number == self.least)
+        return number if fits else None
 
     def __str__(self) -> str:
         limits = [f"{'>' if self.above else '≥'} {self.least:g}"] if self.least > -HUGE else []
@@ -56,6 +58,7 @@ class Whole(Number):
     """A whole number from `least` to `most`; 7.0 is none."""
 
     def _fit(self, value: Any, key: str) -> int | None:
+        value = scalar(value)
         is_whole = isinstance(value, int | np.integer) and super()._fit(value, key) is not None
         return int(value) if is_whole else None
 
@@ -165,15 +168,4 @@ class Either(Range):
 def joined(key: str, name: Any) -> str:
     """Return the key of an entry: a name that is not plain words is quoted, in ASCII, and a long one is cut."""
     shown = name if isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", name) else ascii(name)
-    return f"{key}.{_cut(shown)}" if key else _cut(shown)
-
-
-def refusal(key: str, value: Any, allowed: object) -> ValueError:
-    """Return the error of a value that is not allowed: key, value, what is."""
-    hint = isinstance(value, str) and re.fullmatch(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+", value)
-    words = " (YAML takes this for text: write it with a point and a sign, like 1.0e-6)" if hint else ""
-    return ValueError(f"{key}{': ' if key else ''}{_cut(repr(value))} is not allowed: {allowed}{words}")
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    return f"{key}.{cut(shown)}" if key else cut(shown)

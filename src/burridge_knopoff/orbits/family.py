@@ -15,6 +15,7 @@ from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow, model_at
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import instance_of
 
 # A run from rest has settled after this time at the friction parameters that orbits are continued from.
 SETTLING = 4000.0
@@ -44,7 +45,7 @@ def synchronized_orbit(model: Model) -> Orbit:
     >>> round(orbit.period, 6), round(transverse_multiplier(orbit), 4)
     (5.672418, 0.9589)
     """
-    return Family(model).at(model.a)
+    return Family(instance_of(model, Model, "model")).at(model.a)
 
 
 class Family:
@@ -58,9 +59,8 @@ class Family:
 
     def __init__(self, model: Model) -> None:
         if not has_orbit(model.chain):
-            raise OrbitError(
-                f"chain: {model.blocks} blocks are not allowed: the orbit is that of 3 blocks, symmetric in a mirror"
-            )
+            found = f"{model.blocks} blocks" + ", not symmetric in a mirror," * (model.blocks == 3)
+            raise OrbitError(f"chain: {found} are not allowed: the orbit is that of 3 blocks, symmetric in a mirror")
         self.model = model
         self.known: dict[float, Orbit] = {}
         for a in SEEDS:
@@ -92,10 +92,10 @@ class Family:
             near = self.known[here]
             try:
                 self.known[there] = find_orbit(self.model_at(there), near.reference, near.period)
-            except OrbitError:
+            except OrbitError as error:
                 step = 0.5 * abs(there - here)
                 if step < LEAST_STEP * min(1.0, here / LARGEST_STEP):
-                    raise
+                    raise OrbitError(f"{error}, on the way to a = {a!r}") from None
                 continue
             here = there
         return self.known[a]

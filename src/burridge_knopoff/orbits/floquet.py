@@ -23,6 +23,7 @@ from burridge_knopoff.orbits.orbit import rate
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.return_map import directions
 from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.values import instance_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     >>> multipliers(orbit).unstable == 0
     True
     """
-    nothing = np.zeros(orbit.model.blocks, dtype=bool)
+    nothing = np.zeros(instance_of(orbit, PeriodicOrbit, "orbit").model.blocks, dtype=bool)
     everything = np.eye(2 * orbit.model.blocks)
     keeping = directions(nothing, orbit.symmetry)
     breaking = everything[:, :0]

@@ -19,6 +19,7 @@ from scipy.optimize import root
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.values import instance_of
 
 #: Largest difference, in any position or velocity, between the state and the state one period later; times v beyond 1,
 #: since positions and velocities grow with v.
@@ -228,7 +229,8 @@ def transverse_multiplier(orbit: Orbit) -> float:
     >>> [round(transverse_multiplier(synchronized_orbit(model.at(a))), 3) for a in (0.05, 0.0869729, 0.12)]
     [0.759, 1.0, 1.178]
     """
-    change = orbit.monodromy[:, 0] - orbit.monodromy[:, 2]
+    monodromy = instance_of(orbit, Orbit, "orbit").monodromy
+    change = monodromy[:, 0] - monodromy[:, 2]
     return float(0.5 * (change[0] - change[2]))
 
 

@@ -8,7 +8,8 @@ from typing import Annotated
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.model import START, STARTS
-from burridge_knopoff.model.ranges import Number, OneOf, Whole, refusal
+from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.values import refusal
 
 SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")

@@ -33,6 +33,7 @@ from burridge_knopoff.stability.steady import (
     visit,
 )
 from burridge_knopoff.stability.tuning import TUNING, Tuning
+from burridge_knopoff.values import instance_of
 
 
 def find_attractors(
@@ -70,6 +71,9 @@ def find_attractors(
     >>> labels.shape, (labels == 1).sum().item()
     ((12,), 1)
     """
+    instance_of(model, Model, "model")
+    instance_of(settings, SearchSettings, "settings")
+    instance_of(motion, MotionSettings, "motion")
     search = Search(model, settings, motion, tuning)
     labels = search.labels(search.starts(starts, start))
     return search.attractors, labels

@@ -17,6 +17,7 @@ from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.settings import SEARCH
 from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.values import instance_of, real_array
 
 
 def label(
@@ -115,7 +116,10 @@ def label_states(
     >>> labels.tolist(), times.round().tolist()
     ([0, 1], [62.0, 355.0])
     """
-    position, velocity = np.asarray(position, dtype=float), np.asarray(velocity, dtype=float)
+    instance_of(model, Model, "model")
+    for number, attractor in enumerate(attractors):
+        instance_of(attractor, Attractor, f"attractors[{number}]")
+    position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
     if not position.shape == velocity.shape == (len(position), model.blocks):
         raise ValueError(
             f"position, velocity: shapes {position.shape}, {velocity.shape} are not allowed: (n, {model.blocks}), both"

@@ -7,7 +7,7 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
-from burridge_knopoff.model.ranges import refusal
+from burridge_knopoff.values import refusal
 
 #: Values of a list, and points of a study: Snakemake takes minutes to plan so many jobs.
 MAXIMUM_POINTS = 100_000
