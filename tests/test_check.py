@@ -136,6 +136,9 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
     log.write_text("Traceback (most recent call last):\n  File x\nMemoryError: no more\n")
     (finding,) = check_study(results).findings
     assert finding.reason == f"its job failed: MemoryError: no more (log {log})"
+    log.write_text("note: bk simulate: trajectory: 5000 is longer than the run: 300 were kept\n")
+    (finding,) = check_study(results).findings
+    assert finding.reason == "not made yet"
 
 
 @pytest.mark.parametrize("law", PAPER_LAWS)

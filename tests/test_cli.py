@@ -1,5 +1,6 @@
 """`bk`: results, help, and one line with exit code 2 for bad input."""
 
+import os
 import shlex
 import signal
 import subprocess
@@ -19,6 +20,16 @@ RUN = ["simulate", "--law", "linearized", "--a", "0.08", *SHORT]
 DROP = ["simulate", "--law", "carlson_langer", "--a", "0.08", *SHORT]
 LAWS = "linearized | nonlinear | carlson_langer | exponential | stribeck"
 OWN = ["simulate", "--a", "0.08", *SHORT, "--formula"]
+
+
+def without_doubles(arguments):
+    """Return arguments as rows are written: an option stands in the place of an earlier one of RUN."""
+    kept = list(arguments)
+    for name in ("--law", "--a", "--transient", "--window", "--batches"):
+        if kept.count(name) > 1:
+            at = kept.index(name)
+            del kept[at : at + 2]
+    return kept
 
 
 def bk(*arguments, cwd=None):
@@ -102,8 +113,8 @@ def test_what_is_longer_than_the_run_is_said(tmp_path, capsys):
     assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
     said = capsys.readouterr().err.splitlines()
     assert said == [
-        "bk simulate: trajectory: 5000 is longer than the run: 30 were kept",
-        "bk simulate: event_window: 25 is longer than the window: 20 were kept",
+        "note: bk simulate: trajectory: 5000 is longer than the run: 30 were kept",
+        "note: bk simulate: event_window: 25 is longer than the window: 20 were kept",
     ]
 
 
@@ -174,7 +185,7 @@ def test_no_events(tmp_path):
         ([*RUN, "--blocks", "4", "--out", "x.nc"], "blocks: 4"),
         ([*RUN, "--blocks", "1", "--out", "x.nc"], "blocks: 1"),
         ([*RUN, "--position", "1,2,z", "--out", "x.nc"], "--position"),
-        ([*RUN, "--position", "1,2", "--out", "x.nc"], "velocity: 3 numbers for 2"),
+        ([*RUN, "--position", "1,2", "--out", "x.nc"], "velocity: missing; needed for other than three blocks"),
         ([*RUN, "--velocity", "0.1,-0.1,0.1", "--out", "x.nc"], "one_sided"),
         ([*RUN, "--window", "0", "--out", "x.nc"], "window: 0"),
         ([*RUN, "--transient", "-5", "--out", "x.nc"], "transient: -5"),
@@ -206,6 +217,13 @@ def test_no_events(tmp_path):
         (["orbit", "--law", "linearized", "--a", "0.08", "--settling", "-1"], "settling: -1.0 is not allowed"),
         (["exponents", "--law", "linearized", "--a", "0.08", "--lyapunov-exponents", "7"], "at most 6"),
         (["exponents", "--law", "linearized", "--a", "0.08", "--longest-period", "0"], "longest_period: 0 is not"),
+        (
+            ["basins", *RUN[1:5], "--out", "x.nc", "--attractors-out", "./x.nc"],
+            "'./x.nc' is not allowed: --out",
+        ),
+        (["orbit", *RUN[1:5], "--v", "0.1", "--v=0.2"], "--v: given 2 times; once is allowed"),
+        (["orbit", *RUN[1:3], "--a", "3"], "on the way to a = 3.0"),
+        (["orbit", *RUN[1:5], "--threshold", "1,2,3"], "3 blocks, not symmetric in a mirror, are not allowed"),
         (["show", "x.nc"], "x.nc: is missing"),
         (["prune", "."], "not the results of a study"),
         (["completion", "csh"], "'csh'"),
@@ -214,7 +232,7 @@ def test_no_events(tmp_path):
 def test_bad_input(tmp_path, monkeypatch, capsys, arguments, words):
     monkeypatch.chdir(tmp_path)
     try:
-        code = main(arguments)
+        code = main(without_doubles(arguments))
     except SystemExit as end:
         code = end.code
     said = capsys.readouterr()
@@ -260,6 +278,26 @@ def test_help_names_every_setting():
     for item in (*fields(Chain), *fields(Settings)):
         assert f"--{item.name.replace('_', '-')}" in text
     assert "simulate" in bk("--help").stdout
+
+
+@pytest.mark.parametrize(
+    ("output", "code", "error"),
+    [
+        (">&-", 0, ""),
+        ("> /dev/full", 2, "bk completion: standard output: cannot be written: No space left on device"),
+    ],
+)
+def test_an_output_that_takes_nothing(output, code, error):
+    run = subprocess.run(f"{shlex.quote(BK)} completion bash {output}", shell=True, capture_output=True, text=True)
+    assert (run.returncode, run.stderr.strip()) == (code, error)
+
+
+def test_a_terminal_without_umlauts(tmp_path):
+    words = [BK, *RUN, "--out", "Größe.nc"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, env=environment)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert run.stdout.startswith(r"Gr\xf6\xdfe.nc: <J> = ")
 
 
 def test_start_up_imports_no_heavy_library(tmp_path):

@@ -1,5 +1,6 @@
 """Files are written whole or not at all."""
 
+import errno
 import os
 import re
 import signal
@@ -30,6 +31,19 @@ def test_a_failed_write_leaves_what_was_there(tmp_path):
         write_whole(path, fail)
     assert path.read_text() == "old"
     assert [item.name for item in tmp_path.iterdir()] == ["result.txt"]
+
+
+@pytest.mark.parametrize("error", [PermissionError(errno.EACCES, "Permission denied"), RuntimeError("HDF error")])
+def test_a_full_disk_is_said_to_be_full(tmp_path, error):
+    """Whatever netCDF4 takes it for."""
+
+    def fail(name):
+        # What is written to it finds no space.
+        os.symlink("/dev/full", name)
+        raise error
+
+    with pytest.raises(OSError, match="a.nc: cannot be written: No space left on device$"):
+        write_whole(tmp_path / "a.nc", fail)
 
 
 def test_an_interrupted_write_leaves_nothing(tmp_path):

@@ -1,8 +1,10 @@
 """What a failed job said last."""
 
+import shutil
+
 import pytest
 
-from burridge_knopoff.study.job_log import last_words
+from burridge_knopoff.study.job_log import SILENT, failure, last_words
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
@@ -20,6 +22,8 @@ TRACEBACK = """Traceback (most recent call last):
         (TRACEBACK + "ValueError: wrong\n", "ValueError: wrong"),
         (TRACEBACK + "ValueError: wrong\n\nin two\n  lines\n", "ValueError: wrong in two lines"),
         (TRACEBACK + "KeyError: 'a'\n\nDuring handling:\n\n" + TRACEBACK + "burridge_knopoff.x.Bad: b", "b"),
+        ("note: 30 were kept\n", ""),
+        ("ValueError: wrong\nnote: 30 were kept\n", "ValueError: wrong"),
         # Cut off, as on a full disk.
         (TRACEBACK, ""),
     ],
@@ -34,3 +38,11 @@ def test_last_words(tmp_path, text, words):
 
 def test_no_log(tmp_path):
     assert last_words(tmp_path / "log") == ""
+
+
+@pytest.mark.parametrize(("free", "words"), [(0, "no space left on its disk"), (10**9, "it was killed")])
+def test_a_job_that_said_nothing(tmp_path, monkeypatch, free, words):
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(10**9, 10**9 - free, free))
+    log = tmp_path / "not there" / "log"
+    assert words in failure("simulate", [log])
+    assert failure("simulate", []) == f"failed: simulate: {SILENT} (log none)"

@@ -6,6 +6,7 @@ Only the module of the command that is called is imported: a study starts `bk si
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -65,20 +66,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run `bk`; return its exit code: 0, or 2 for bad input (one line on stderr)."""
     from burridge_knopoff.cli.options import join_signed
 
+    if sys.stdout is None:
+        # Closed: the first file that is opened would take its place.
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # Names of files may have letters that a terminal does not know.
+        sys.stdout.reconfigure(errors="backslashreplace")
     given = list(sys.argv[1:] if arguments is None else arguments)
     name = next((word for word in given if not word.startswith("-")), "")
     parser = build_parser(name)
     options = parser.parse_args(join_signed(given))
     options.given = given
+    names = [word.partition("=")[0] for word in join_signed(given) if word.startswith("--")]
+    for name in names:
+        if names.count(name) > 1 and name != "--number":
+            parser.error(f"{name}: given {names.count(name)} times; once is allowed")
     try:
         code = _module(options.command).run(options)
         sys.stdout.flush()
     except BrokenPipeError:
-        # What is left must not be written when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _write_no_more()
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
-        print(f"bk {options.command}: {error}", file=sys.stderr)
+        words = f"{error}"
+        # Errors of files name them, in words of ours.
+        if isinstance(error, OSError) and error.errno is not None and error.filename is None:
+            words = f"standard output: cannot be written: {error.strerror}"
+            _write_no_more()
+        print(f"bk {options.command}: {words}", file=sys.stderr)
         return 2
     except MemoryError:
         print(f"bk {options.command}: not enough memory for what is to be kept or computed", file=sys.stderr)
@@ -87,6 +102,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"bk {options.command}: interrupted, nothing was written", file=sys.stderr)
         return 130
     return code
+
+
+def _write_no_more() -> None:
+    """Let what is left to print go nowhere: it must not be written when Python ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _module(command: str) -> ModuleType:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from dataclasses import asdict
 
 from burridge_knopoff.cli.attractors import add_search, search_of
@@ -54,6 +55,8 @@ def run(options: argparse.Namespace) -> int:
     files = [path for path in (options.out, options.attractors_out) if path]
     for path in files:
         check_out(path)
+    if len(set(map(os.path.realpath, files))) < len(files):
+        raise ValueError(f"--attractors-out: {options.attractors_out!r} is not allowed: --out writes the map there")
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)
     plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}

@@ -177,6 +177,9 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
         if given == (None, None):
             return None
         usual = PAPER_STATES["minus"]
+        if None in given and len(given[0] or given[1]) != len(usual.position):
+            missing = "position" if given[0] is None else "velocity"
+            raise ValueError(f"{missing}: missing; needed for other than three blocks: numbers, one a block")
         name, given = OWN, (given[0] or usual.position, given[1] or usual.velocity)
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(f"initial: {name!r} is not allowed for other numbers than the paper's: another name, or none")

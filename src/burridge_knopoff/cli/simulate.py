@@ -54,12 +54,13 @@ def run(options: argparse.Namespace) -> int:
     for key, part in _PARTS.items():
         asked, there = getattr(settings, key), settings.duration if part == "run" else settings.window
         if asked > there and asked != fields_of(Settings)[key].default:
-            print(f"bk simulate: {key}: {asked:g} is longer than the {part}: {there:g} were kept", file=sys.stderr)
+            told = f"{key}: {asked:g} is longer than the {part}: {there:g} were kept"
+            print(f"note: bk simulate: {told}", file=sys.stderr)
     if trajectory.status == "completed":
         print(f"{options.out}: {outcome(trajectory)}")
     else:
         print(
-            f"bk simulate: {options.out}: the run ended at tau = {trajectory.end_time:g} with status "
+            f"note: bk simulate: {options.out}: the run ended at tau = {trajectory.end_time:g} with status "
             f"{trajectory.status}; its averages are NaN",
             file=sys.stderr,
         )

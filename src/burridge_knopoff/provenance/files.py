@@ -57,15 +57,15 @@ def _remove(*paths: Path) -> None:
 
 def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
     """Return why a file could not be written."""
-    if isinstance(error, OSError):
-        return error.strerror or error
-    # netCDF4 tells a full disk as "NetCDF: HDF error": whether the disk takes more tells the reason.
+    # netCDF4 tells a full disk as "NetCDF: HDF error" or "Permission denied": whether the disk takes more tells.
     try:
         with temporary.open("ab", buffering=0) as file:
             file.write(bytes(PROBE))
             os.fsync(file.fileno())
     except OSError as refused:
         return refused.strerror or refused
+    if isinstance(error, OSError):
+        return error.strerror or error
     return f"{error} (not for want of space on the disk, perhaps of memory)"
 
 

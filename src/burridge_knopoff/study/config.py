@@ -59,7 +59,7 @@ class LawKeys(Range):
         return {name: kinds.get(name, NUMBER).form(item, joined(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
-        return "law or formula, and numbers"
+        return "law or formula, and numbers; {} for those of the law itself"
 
 
 def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
@@ -148,7 +148,7 @@ CONFIG = Keys(
         "a": Field(VALUES, "the friction parameters, in any order; a range includes both ends, and step divides it"),
         "a_digits": Field(Whole(1, 15), "decimals of a in file names", 4),
         "initial": Field(
-            Named(STATE_NAME, Keys(_STATE), 1),
+            Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
             "named initial states, each with position U(0) and velocity U'(0), one number a block, for 2 to "
             f"{MAXIMUM_BLOCKS} blocks; minus: {{}} and plus: {{}} are the paper's and need no numbers",
         ),

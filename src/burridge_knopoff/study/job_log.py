@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
+
+from burridge_knopoff.provenance.files import nearest_folder
 
 #: Of a log only its end is read.
 _TAIL = 20_000
@@ -18,6 +21,12 @@ _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
 _TRACEBACK = "Traceback (most recent call last):\n"
 
 SILENT = "nothing in its log: it was killed, or could not begin"
+FULL = "nothing in its log: no space left on its disk"
+#: Of a disk with fewer bytes left a log may have had no room.
+ROOM = 1 << 16
+
+#: How a line begins that tells of no failure.
+NOTE = "note: "
 
 
 def last_words(log: str | Path) -> str:
@@ -27,7 +36,8 @@ def last_words(log: str | Path) -> str:
     except OSError:
         return ""
     _, traceback, said = text.rpartition(_TRACEBACK)
-    said = _CALLS.sub("", said) if traceback else said.rstrip().rpartition("\n")[2]
+    lines = [line for line in said.splitlines() if line.strip() and not line.startswith(NOTE)]
+    said = _CALLS.sub("", said) if traceback else "".join(lines[-1:])
     words = _CLASS.sub("", " ".join(said.split()))
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
@@ -39,5 +49,10 @@ def interrupted(logs: Sequence[str | Path]) -> bool:
 
 def failure(job: str, logs: Sequence[str | Path]) -> str:
     """Return the line that tells of a failed job: the job, its reason, and where its log lies."""
-    reason = next((words for log in logs if (words := last_words(log))), SILENT)
+    reason = next((words for log in logs if (words := last_words(log))), FULL if _is_full(logs) else SILENT)
     return f"failed: {job}: {reason} (log {', '.join(map(str, logs)) or 'none'})"
+
+
+def _is_full(logs: Sequence[str | Path]) -> bool:
+    """Tell whether a disk on which logs lie has no room for them."""
+    return any(shutil.disk_usage(nearest_folder(Path(log).parent)).free < ROOM for log in logs)

@@ -16,11 +16,12 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.ranges import OneOf, Range, Several, refusal
+from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.running.settings import MOST_NUMBERS, SOLVERS
 from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
+from burridge_knopoff.values import refusal
 
 #: States that are labelled at once for each pair of near states: stability/splitting.py.
 _STATES_OF_A_PAIR = 2
@@ -77,13 +78,17 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) 
     """Check the chain, each law at every a that it is wanted at, its solver, and that every initial state can begin."""
     chain, laws = Chain(blocks, **config["chain"]), config["laws"]
     for name, solver in config["solver"].items():
+        tapes = []
         for a in grid:
             with under("laws."):
                 law = law_of(name, a, laws[name])
+            tapes.append(law.tape)
             model = Model(chain, law, config["v"], config["contact"])
             if solver == "map" and not model.has_closed_form:
                 others = " | ".join(solver for solver in SOLVERS if solver != "map")
                 raise refusal(f"solver.{name}", "map", f"no closed form at a = {a:g}: {_reason(model)}; {others}")
+        if len(tapes) > 1 and all(tape == tapes[0] for tape in tapes):
+            raise refusal(f"laws.{name}.formula", laws[name].get("formula"), "a has no effect in it: one value of a")
     chains = config["chains"]
     for key, section, names in (("chains", chains, chains["laws"]), ("chains.two_blocks", chains["two_blocks"], laws)):
         for name in names:

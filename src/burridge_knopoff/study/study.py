@@ -20,6 +20,7 @@ from burridge_knopoff.study.grid import grid_of
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.yaml_file import ConfigError
+from burridge_knopoff.values import refusal
 
 _T = TypeVar("_T")
 
@@ -229,6 +230,8 @@ def _study(config: Mapping[str, Any]) -> Study:
     grid = grid_of(filled["a"], filled["a_digits"])
     values = list(grid.values())
     study = Study(filled, grid)
+    if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:
+        raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, which it is a part of")
     rules.fill_states(filled)
     rules.fill_chains(filled)
     rules.fill_names(filled)
