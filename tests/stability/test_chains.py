@@ -1,17 +1,29 @@
 """Mirror synchrony of chains: closed form and 40 digits for two blocks, symmetries, whole runs."""
 
 import math
-from dataclasses import astuple, fields
+from dataclasses import astuple, fields, replace
 from itertools import product
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, law_of, simulate, transverse_exponent
+from burridge_knopoff import (
+    Chain,
+    FormulaLaw,
+    InitialState,
+    Instant,
+    Model,
+    law_of,
+    simulate,
+    synchronized_orbit,
+    transverse_exponent,
+    transverse_multiplier,
+)
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability import chains
-from burridge_knopoff.stability.chains import INTERVAL, Fate, Outcome, Sample, Watch, symmetrized, watch_state
+from burridge_knopoff.stability.chains import INTERVAL, Fate, Outcome, Sample, Watch, watch_state
+from burridge_knopoff.stability.mirror import symmetrized
 from tests.orbits.exact import SHIFT
 from tests.reference import reference_events, reference_run
 
@@ -145,15 +157,6 @@ def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
     assert result.outcome == Outcome.UNDETERMINED
 
 
-def test_symmetrized_and_pair_distances():
-    state = Instant(np.array([1.0, 5.0, 4.0]), np.array([0.0, 1.0, 3.0]), np.array([True, False, False]))
-    assert chains.pair_distances(state).tolist() == [math.hypot(3.0, 3.0)]
-    symmetric = symmetrized(state)
-    assert symmetric.position.tolist() == [2.5, 5.0, 2.5]
-    assert symmetric.velocity.tolist() == [0.0, 1.0, 0.0]
-    assert symmetric.stuck.tolist() == [True, False, True]
-
-
 class Scripted:
     """A runner whose four blocks are the given distances apart, (outer pair, inner pair), at each look."""
 
@@ -208,15 +211,48 @@ def test_the_fate_that_distances_tell(tell, distances, exponent, expected):
     assert [told[2:] for told in asked] == ([(200.0, 50.0)] if exponent else [])
 
 
-def test_the_error_is_the_scatter_of_the_batches():
-    """Five batches of the window are five windows of their own, each begun where the one before ends."""
+def test_a_window_of_several_parts_is_their_mean():
+    """Whole windows of any length, each begun where the one before ends."""
     chain = model(5, 0.2)
     state = chain.begin(SAMPLE.initial(5)[0])
-    exponent, error = transverse_exponent(chain, state, 100.0, 500.0)
-    parts = [transverse_exponent(chain, state, 100.0 * (k + 1), 100.0)[0] for k in range(5)]
-    assert exponent == pytest.approx(np.mean(parts), abs=1e-12)
-    assert error == pytest.approx(np.std(parts, ddof=1) / math.sqrt(5), rel=1e-9)
+    whole, _ = transverse_exponent(chain, state, 100.0, 173.0)
+    windows = [(100.0, 50.0), (150.0, 61.5), (211.5, 61.5)]
+    parts = [transverse_exponent(chain, state, *times)[0] for times in windows]
+    assert whole == pytest.approx(np.average(parts, weights=[window for _, window in windows]), abs=1e-9)
     assert transverse_exponent(chain, state) == transverse_exponent(chain, state, 200.0, 2500.0)
+
+
+@pytest.mark.parametrize("window", [0.0, 1.0, 10.0, 49.9])
+def test_a_window_that_is_too_short_for_an_error_is_refused(window):
+    chain = model(3, 0.05)
+    with pytest.raises(ValueError, match=rf"^window: {window} is not allowed"):
+        transverse_exponent(chain, chain.begin(SAMPLE.initial(3)[0]), 200.0, window)
+
+
+@pytest.mark.parametrize("window", [500.0, 2500.0])
+def test_deviations_from_the_multiplier_are_within_the_error(law, window):
+    """A batch of 500 is close to 88 periods of synchrony: the scatter of batches alone may be 1e-17 there."""
+    deviations = []
+    for a in np.linspace(0.08, 0.09, 25).tolist():
+        chain = model(3, a, law)
+        orbit = synchronized_orbit(chain)
+        exact = math.log(abs(transverse_multiplier(orbit))) / orbit.period
+        start = chain.begin(InitialState("state", (-1.0, -1.0, -1.0), (0.1, 0.1, 0.1)))
+        exponent, error = transverse_exponent(chain, start, 2500.0, window)
+        deviations.append(abs(exponent - exact) / error)
+        # Two instants of a period differ by less than a factor of 20.
+        assert error < 3.0 / window
+    assert np.mean(np.array(deviations) < 1.0) > 0.68
+    assert max(deviations) < 3.0
+
+
+def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
+    """Windows one after another scatter by what each of them says of itself."""
+    chain = model(6, 0.25)
+    state = chain.begin(SAMPLE.initial(6)[0])
+    found = np.array([transverse_exponent(chain, state, 200.0 + 500.0 * k, 500.0) for k in range(40)])
+    ratio = math.sqrt((found[:, 1] ** 2).mean()) / found[:, 0].std(ddof=1)
+    assert 0.75 < ratio < 1.5
 
 
 def test_a_watched_chain_is_its_states_one_by_one():
@@ -224,18 +260,27 @@ def test_a_watched_chain_is_its_states_one_by_one():
     results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
     for (i, law), (j, a) in product(enumerate(("linearized", "nonlinear")), enumerate((0.05, 0.2))):
         chain = model(3, a, law)
-        fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial(3)]
+        fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial(3, a)]
         for name, values in zip((item.name for item in fields(Fate)), zip(*fates, strict=True), strict=True):
             np.testing.assert_array_equal(results[name][i, j], values, name)
-        starts = [chain.begin(state) for state in SAMPLE.initial(3)[:2]]
+        starts = [chain.begin(state) for state in SAMPLE.initial(3, a)[:2]]
         exponents = [transverse_exponent(chain, start, 150.0, 150.0) for start in starts]
         told = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
         assert told.tolist() == [list(item) for item in exponents]
-        run = simulate(law, a, SAMPLE.initial(3)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1)
+        run = simulate(law, a, SAMPLE.initial(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1)
         assert results["lyapunov_exponent"][i, j] == pytest.approx(run.lyapunov_exponent[0], rel=1e-9)
         assert results["lyapunov_error"][i, j] == pytest.approx(run.lyapunov_error[0], rel=1e-9)
     assert (results["symmetric_exponent"][0, 0] < 0.0).all()
     assert (results["symmetric_exponent"][0, 1] > 0.0).all()
+
+
+def test_each_a_has_states_of_its_own():
+    """A larger sample begins with the smaller one, other numbers of blocks and other seeds have others."""
+    samples = [SAMPLE.initial(3, 0.05), SAMPLE.initial(3, 0.06), SAMPLE.initial(3), SAMPLE.initial(2, 0.05)]
+    samples.append(replace(SAMPLE, seed=2).initial(3, 0.05))
+    first = [number for states in samples for state in states for number in state.position]
+    assert len(set(first)) == len(first)
+    assert replace(SAMPLE, samples=9).initial(3, 0.05)[:6] == samples[0]
 
 
 def test_a_chain_without_mirror_blocks_is_refused():

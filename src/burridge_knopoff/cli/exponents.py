@@ -33,13 +33,16 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.running import simulation
     from burridge_knopoff.show.words import table
-    from burridge_knopoff.stability.chains import ALIGNMENT, transverse_exponent
+    from burridge_knopoff.stability.chains import ALIGNMENT, WINDOW, transverse_exponent
     from burridge_knopoff.stability.motion import motion_of_run
 
     if options.out:
         check_out(options.out)
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
+    if model.chain.is_mirror_symmetric:
+        # Refused before the run, and not after it.
+        WINDOW.form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
     print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
     exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)

@@ -18,11 +18,13 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.settings import DURATION, Settings
+from burridge_knopoff.running.settings import DURATION, LONGEST, Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.settings import SAMPLE, TIME, WATCH, Sample, Watch
+from burridge_knopoff.stability.mirror import pair_distances, symmetrized
+from burridge_knopoff.stability.settings import SAMPLE, WATCH, Sample, Watch
 
 
 class Outcome(IntEnum):
@@ -43,12 +45,15 @@ FALLING = 0.5
 NEAR = 0.01
 STANDARD_ERRORS = 3.0
 
-# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time.
+# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time at most.
 RENEWAL = 10.0
 
 # Time for a perturbation to turn into the direction that grows most, where the motion itself has settled.
 ALIGNMENT = 200.0
 BATCHES = 5
+
+# A batch holds such a time at least, about two periods of synchronous motion: less shows nothing of its own scatter.
+WINDOW = Number(BATCHES * RENEWAL, LONGEST)
 
 
 @dataclass(frozen=True)
@@ -72,20 +77,6 @@ class Fate:
     mean_distance: float = math.nan
     pairs: int = 0
     transverse_exponent: float = math.nan
-
-
-def pair_distances(state: Instant) -> np.ndarray:
-    """Return the distances J_i of the mirror pairs, from the ends to the middle, shape (blocks // 2,)."""
-    pairs = len(state.position) // 2
-    apart = [(values - values[::-1])[:pairs] for values in (state.position, state.velocity)]
-    return np.hypot(*apart)
-
-
-def symmetrized(state: Instant) -> Instant:
-    """Return the mirror-symmetric state next to this one; a block sticks if it or its mirror block does."""
-    stuck = state.stuck | state.stuck[::-1]
-    velocity = 0.5 * (state.velocity + state.velocity[::-1])
-    return Instant(0.5 * (state.position + state.position[::-1]), np.where(stuck, 0.0, velocity), stuck)
 
 
 def watch_state(runner: Runner, start: Instant, watch: Watch = WATCH) -> Fate:
@@ -132,13 +123,16 @@ def transverse_exponent(
     """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
 
     The state is made symmetric, and an antisymmetric perturbation is carried along exactly (see `kernel.tangent`). The
-    exponent is its mean rate of growth over the window, which begins after a time of alignment; the standard error is
-    that of BATCHES equal batches. Negative: mirror blocks that are near each other synchronize. NaN if the run fails,
-    −∞ if the perturbation vanishes. Raises ValueError if the chain is not its own mirror image, and for times that are
-    not allowed.
+    exponent is its mean rate of growth over the window, which begins after a time of alignment. Negative: mirror blocks
+    that are near each other synchronize. NaN if the run fails, −∞ if the perturbation vanishes. Raises ValueError if
+    the chain is not its own mirror image, and for times that are not allowed.
+
+    Two things go into the error: the scatter of BATCHES equal batches, and what the length of the perturbation owes to
+    the phases at which the window begins and ends. If a batch lasts about a whole number of periods all of them have
+    the same share of that, and their scatter shows nothing of it.
 
     model, state : any state of a motion, as `Model.begin` and `Orbit.reference` are
-    alignment, window : in units of 1/ω, as the exponent is in units of ω
+    alignment, window : in units of 1/ω, as the exponent is in units of ω; the window is 50 at least
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -148,32 +142,34 @@ def transverse_exponent(
     (-0.007, True)
     """
     _check_mirror(model)
-    alignment, window = DURATION.form(alignment, "alignment"), TIME.form(window, "window")
+    alignment, window = DURATION.form(alignment, "alignment"), WINDOW.form(window, "window")
     blocks = model.blocks
     index = np.arange(2 * blocks)
     # A direction of no special symmetry but this one.
     perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
     runner = Runner(model, perturbations=perturbation)
-    steps = max(1, round(window / BATCHES / RENEWAL))
-    growth = np.zeros(BATCHES)
+    before, steps = math.ceil(alignment / RENEWAL), BATCHES * math.ceil(window / BATCHES / RENEWAL)
+    growth = np.zeros(steps)
     state = symmetrized(state)
-    for step in range(-round(alignment / RENEWAL), BATCHES * steps):
+    for step in range(-before, steps):
         perturbation[blocks:, 0] *= ~state.stuck
         length = math.sqrt(math.fsum(perturbation[:, 0] ** 2))
         if length == 0.0:
             return -math.inf, math.nan
         perturbation /= length
         runner.carry(perturbation)
-        after = runner.after(state, RENEWAL)
+        after = runner.after(state, alignment / before if step < 0 else window / steps)
         if after is None:
             return math.nan, math.nan
         # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
         state = symmetrized(after)
         perturbation = _antisymmetric(runner.perturbations)
         if step >= 0:
-            growth[step // steps] += 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
-    rate = growth / (steps * RENEWAL)
-    return float(rate.mean()), float(rate.std(ddof=1) / math.sqrt(BATCHES))
+            growth[step] = 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
+    rate = growth.reshape(BATCHES, -1).sum(axis=1) / (window / BATCHES)
+    # What is left of the growth so far without its trend changes with the phase; the window has that of two instants.
+    by_phase = np.cumsum(growth - growth.mean()).std() * math.sqrt(2.0) / window
+    return float(rate.mean()), math.hypot(rate.std(ddof=1) / math.sqrt(BATCHES), by_phase)
 
 
 def watch_chain(
@@ -182,22 +178,23 @@ def watch_chain(
     """Watch all sampled states of a chain under each law at each a of a grid.
 
     models : one for each law, at any a, all of the same number of blocks
+    sample : drawn anew at each a, for all laws alike: laws are compared from the same states, and neighbouring values
+        of a do not err together
 
     Returns arrays of shape (models, grid, states): the fields of `Fate`; of shape (models, grid, symmetric samples):
     `symmetric_exponent` and its error, the largest transverse exponent of symmetric motion after a quarter of the time
     limit, over another quarter; and of shape (models, grid): `lyapunov_exponent`, the largest one of the first state in
     the second half of the time limit, and its error. Raises ValueError if the chain is not its own mirror image.
     """
-    initial = sample.initial(models[0].blocks)
     shape = (len(models), len(grid))
     results: dict[str, np.ndarray] = {
-        **{name: np.full((*shape, len(initial)), np.nan) for name in Fate.__dataclass_fields__},
+        **{name: np.full((*shape, sample.samples), np.nan) for name in Fate.__dataclass_fields__},
         **{f"symmetric_{name}": np.full((*shape, sample.symmetric_samples), np.nan) for name in ("exponent", "error")},
         **{f"lyapunov_{name}": np.full(shape, np.nan) for name in ("exponent", "error")},
     }
     for i, of_law in enumerate(models):
         for j, a in enumerate(grid):
-            model = of_law.at(a)
+            model, initial = of_law.at(a), sample.initial(of_law.blocks, a)
             runner = Runner(model)
             for k, state in enumerate(initial):
                 fate = watch_state(runner, model.begin(state, sample.start), watch)

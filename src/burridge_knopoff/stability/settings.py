@@ -139,6 +139,9 @@ class SearchSettings:
 #: The defaults of a study.
 SEARCH = SearchSettings()
 
+#: Its fields that bear upon what given states end on; the others say which states are drawn.
+OF_GIVEN_STATES = ("seed", "transient", "window", "time_limit", "resolution", "pushes", "lifetime")
+
 
 @dataclass(frozen=True)
 class Refine:
@@ -220,8 +223,15 @@ class Sample:
     Raises ValueError, one line, for anything out of range.
     """
 
-    samples: Annotated[int, SAMPLES, "initial states sampled for each number of blocks, uniform in a box"] = 40
-    seed: Annotated[int, SEED, "seed of the sample; the first states of a larger sample are those of a smaller one"] = 1
+    samples: Annotated[int, SAMPLES, "initial states sampled for each number of blocks at each a, uniform in a box"] = (
+        40
+    )
+    seed: Annotated[
+        int,
+        SEED,
+        "seed of the sample, at each a another one, under each law the same; the first states of a larger sample are "
+        "those of a smaller one. The two blocks of chains.two_blocks have one sample for every a",
+    ] = 1
     position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
     velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
     symmetric_samples: Annotated[
@@ -238,12 +248,13 @@ class Sample:
                 f"symmetric_samples: {self.symmetric_samples} is not allowed: at most samples ({self.samples})"
             )
 
-    def initial(self, blocks: int) -> list[InitialState]:
-        """Return the initial states of a chain of that many blocks."""
+    def initial(self, blocks: int, a: float | None = None) -> list[InitialState]:
+        """Return the initial states of a chain of that many blocks, those drawn for one a or those for every a."""
         # Here, as whoever reads a config should not wait for SciPy.
-        from burridge_knopoff.stability.sampling import sampled_states
+        from burridge_knopoff.stability.sampling import sampled_states, seed_at
 
-        return sampled_states(blocks, self.samples, self.position, self.velocity, self.seed)
+        seed = self.seed if a is None else seed_at(self.seed, a)
+        return sampled_states(blocks, self.samples, self.position, self.velocity, seed)
 
 
 #: The defaults of a study.
