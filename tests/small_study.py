@@ -164,12 +164,13 @@ class SmallStudy:
         window = {key: config[key] for key in ("transient", "window", "batches")}
         sample = sampled_states(2, 2, (-1.5, 1.5), (0.0, 0.2), 1)
         pair = [Model(Chain(2), model.law) for model in self.models]
-        settings = two_blocks.run_settings(transient=100.0, window=100.0, batches=2)
+        settings = two_blocks.run_settings(transient=100.0, window=100.0)
+        told = settings, self.search, self.motion, config["agreement"]
         return {
             "stick_slip": stick_slip.summarize(self.grid, **window),
             "equilibrium": equilibrium.summarize(self.models, values),
             "solvers": self._solvers(),
-            "two_blocks": two_blocks.summarize(pair, sample, values, settings, self.motion, config["agreement"]),
+            "two_blocks": two_blocks.summarize(pair, sample, values, *told),
             "basins": self._basins(found["attractors"]),
             "edges": self._edges(found["attractors"], found["refined"]),
             **self._phases(found["attractors"]),

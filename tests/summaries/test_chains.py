@@ -1,5 +1,6 @@
 """Fractions and intervals follow from the outcomes; two blocks under both laws."""
 
+from dataclasses import asdict
 from itertools import product
 
 import numpy as np
@@ -10,9 +11,9 @@ from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.stability.chains import Sample, Watch
-from burridge_knopoff.stability.motion import motion_of_run
+from burridge_knopoff.stability.endings import endings
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MOTION
+from burridge_knopoff.stability.settings import MOTION, SearchSettings
 from burridge_knopoff.summaries import chains, two_blocks
 from burridge_knopoff.summaries.event_order import common_order
 from tests.sections import AGREEMENT
@@ -36,14 +37,15 @@ def files(tmp_path_factory):
     return list(paths.values())
 
 
-SETTINGS = two_blocks.run_settings(transient=1500.0, window=400.0, batches=4)
+SETTINGS = two_blocks.run_settings(transient=1500.0, window=400.0)
+SEARCH = SearchSettings(lifetime=20_000.0)
 LAWS, GRID = ("linearized", "nonlinear", "exponential"), (0.03, 0.15, 0.3)
 STATES = Sample(samples=2, symmetric_samples=0).initial(2)
 
 
 @pytest.fixture(scope="module")
 def compared():
-    return two_blocks.summarize(models(2, LAWS), STATES, GRID, SETTINGS, MOTION, AGREEMENT)
+    return two_blocks.summarize(models(2, LAWS), STATES, GRID, SETTINGS, SEARCH, MOTION, AGREEMENT)
 
 
 def test_chains_are_ordered_by_their_number_of_blocks(files):
@@ -98,29 +100,33 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
-def test_two_blocks_are_whole_runs(compared):
+def test_two_blocks_are_what_their_states_end_on(compared):
+    """Kind and ⟨J⟩ are those of the motion that is reached, the order of events is that from the start."""
     for (j, state), (k, a) in product(enumerate(STATES), enumerate(GRID)):
         assert tuple(compared["initial_position"].values[j]) == state.position
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
         runs = [simulate(model.at(a), state, SETTINGS) for model in models(2, LAWS)]
-        for i, run in enumerate(runs):
-            motion = motion_of_run(vars(run), True, MOTION)
-            expected = [run.mean_distance, run.mean_distance_error, motion.section_period, motion.kind]
-            names = ("mean_distance", "mean_distance_error", "section_period", "kind")
-            assert [compared[name].values[i, j, k] for name in names] == expected
+        for i, model in enumerate(models(2, LAWS)):
+            told = {name: compared[name].values[i, j, k] for name in two_blocks.MOTION_VARIABLES}
+            assert told == asdict(endings(model.at(a), STATES, SEARCH)[j])
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):
             count, until = common_order(first, other)
             assert compared["event_order_count"].values[i, j, k] == count
             assert compared["event_order_time"].values[i, j, k] == min(until, 1900.0)
-    told = {"transient": 1500.0, "window": 400.0, "agreement_standard_errors": 3.0, "motion_longest_period": 120}
+    told = {
+        "transient": 1500.0,
+        "search_transient": 3000.0,
+        "agreement_standard_errors": 3.0,
+        "motion_longest_period": 120,
+    }
     assert {name: compared.attrs[name] for name in told} == told
     assert compared["state"].values.tolist() == [1, 2]
 
 
 def test_one_law_has_nothing_to_be_compared_with():
-    settings = two_blocks.run_settings(transient=200.0, window=100.0, batches=4)
-    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], settings, MOTION, AGREEMENT)
+    told = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
+    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *told)
     assert alone["agrees"].shape == (0, 1, 1)
     assert alone["mean_distance"].shape == (1, 1, 1)
 

@@ -101,7 +101,8 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
     [
         ("running/runner.py", (*POINTS, *STABILITY, *SUMMARIES)),
         ("dataset/point.py", POINTS),
-        ("stability/attractors.py", ("attractors_of_law",)),
+        ("stability/attractors.py", ("attractors_of_law", "two_blocks")),
+        ("stability/chains.py", ()),
         ("stability/basins.py", ("basin_tile", "basin_pairs", "basins", "phases_of_law", "phases")),
         ("stability/phases.py", ("phases_of_law", "phases")),
         ("stability/motion.py", ("attractors_of_law", "lyapunov", "agreement", "two_blocks")),
@@ -169,7 +170,8 @@ def test_a_kernel_that_is_not_compiled_starts_no_study(uncompiled):
 #: Changes of keys that make the same rules run again, besides the report.
 KEYS = [
     ({"sampling": 4, "trajectory": 20, "trajectory_sampling": 0.1, "events": "all", "event_window": 100}, POINTS),
-    ({"transient": 120, "window": 180, "batches": 5, "lyapunov_alignment": 50}, (*POINTS, "two_blocks")),
+    ({"transient": 120, "window": 180}, (*POINTS, "two_blocks")),
+    ({"batches": 5, "lyapunov_alignment": 50}, POINTS),
     ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
     ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
     ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
@@ -183,7 +185,8 @@ KEYS = [
     ({"agreement.relative_tolerance": 0.2, "agreement.standard_errors": 2}, ("agreement", "two_blocks")),
     ({"figures.a": 0.05}, ("figure_motion", "figure_distance", "figure_friction_laws")),
     ({"figures.law": "nonlinear"}, ("figure_motion", "figure_distance", "figure_stick_slip")),
-    ({"attractors.samples": 7, "attractors.lifetime": 900}, ("attractors_of_law",)),
+    ({"attractors.samples": 7, "attractors.fraction_samples": 9}, ("attractors_of_law",)),
+    ({"attractors.seed": 2, "attractors.lifetime": 900}, ("attractors_of_law", "two_blocks")),
     ({"refine.resolution": 0.5}, ("attractors_of_law",)),
     ({"basins.pixels": 9}, ("basin_tile",)),
     ({"basins.pairs": 21}, ("basin_pairs",)),

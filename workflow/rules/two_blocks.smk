@@ -1,4 +1,5 @@
 # Two blocks under each law: a statement of the paper on them is judged in every study.
+from burridge_knopoff.stability.settings import OF_GIVEN_STATES
 
 CHAINS = STUDY.config["chains"]
 
@@ -19,7 +20,8 @@ rule two_blocks:
         model=lambda wildcards: other_length_config(),
         sample={key: CHAINS[key] for key in ("seed", "position", "velocity")},
         two_blocks=CHAINS["two_blocks"],
-        settings=keys("start", "transient", "window", "batches", "lyapunov_alignment"),
+        settings=keys("start", "transient", "window"),
+        search={key: STUDY.config["attractors"][key] for key in OF_GIVEN_STATES},
         motion=motion_config(),
         sources=sources("two_blocks"),
     message:

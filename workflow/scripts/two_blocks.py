@@ -5,8 +5,7 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.stability.chains import Sample
-from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.stability.settings import MotionSettings, Sample, SearchSettings
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.two_blocks import BLOCKS, run_settings, summarize
 
@@ -15,4 +14,5 @@ grid, samples = params.two_blocks["a"], params.two_blocks["samples"]
 models = [model_of(params.model, law, grid[0], BLOCKS) for law in params.model["laws"]]
 initial = Sample(samples=samples, symmetric_samples=0, **params.sample).initial(BLOCKS)
 settings, motion = run_settings(**params.settings), MotionSettings(**params.motion)
-write_summary(summarize(models, initial, grid, settings, motion, params.agreement), snakemake.output[0])
+search = SearchSettings(**params.search)
+write_summary(summarize(models, initial, grid, settings, search, motion, params.agreement), snakemake.output[0])

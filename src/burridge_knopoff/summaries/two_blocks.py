@@ -1,6 +1,7 @@
 """Two blocks under the laws of a study, from the same sampled initial states: each other law against the first one.
 
-The verdict is that of `agreement`: the kind of motion is the same, and ⟨J⟩ differs by no more than a tolerance.
+The verdict is that of `agreement`: the kind of motion is the same, and ⟨J⟩ differs by no more than a tolerance. Both
+are those of the motion that a state ends on; only the order of events is that of runs from the state.
 """
 
 from __future__ import annotations
@@ -19,32 +20,40 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.stability.motion import MotionKind, motion_of_run
+from burridge_knopoff.stability.endings import endings
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.stability.settings import OF_GIVEN_STATES, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import Answer, judge
+from burridge_knopoff.summaries.judgement import Answer, allowed, judge
 
 BLOCKS = 2
 
-# Enough to tell the kinds of motion apart.
-EXPONENTS = 2
-
-_RUN = ("law", "state", "a")
+_MOTION = ("law", "state", "a")
 _PAIR = ("other_law", "state", "a")
 _FRACTION = ("other_law", "a")
 _ANSWER = flag("i1", Answer)
-RUN_VARIABLES = {
-    "mean_distance": Variable(_RUN, "f8", "time average <J> of the phase-space distance between the two blocks"),
-    "mean_distance_error": Variable(_RUN, "f8", "standard error of <J> from the batch means"),
-    "kind": Variable(_RUN, "i1", "kind of motion", flag("i1", MotionKind)),
+MOTION_VARIABLES = {
+    "mean_distance": Variable(
+        _MOTION,
+        "f8",
+        "time average <J> of the phase-space distance between the two blocks, in the motion that is reached",
+    ),
+    "mean_distance_error": Variable(_MOTION, "f8", "standard error of <J> from the batch means"),
+    "kind": Variable(_MOTION, "i1", "kind of the motion that is reached", flag("i1", MotionKind)),
     "section_period": Variable(
-        _RUN, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
+        _MOTION, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
     ),
 }
 PAIR_VARIABLES = {
     "difference": Variable(_PAIR, "f8", "<J> of the other law minus <J> of the first law"),
     "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
+    "margin": Variable(
+        _PAIR,
+        "f8",
+        "how far |difference| lies beyond what agreement allows, in standard errors of the difference",
+        {"comment": "negative where it is allowed; within agreement_standard_errors of 0 the verdict is left open"},
+    ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
     "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _ANSWER),
@@ -57,15 +66,15 @@ PAIR_VARIABLES = {
 VARIABLES = {
     "initial_position": Variable(("state", "block"), "f8", "initial position U(0)"),
     "initial_velocity": Variable(("state", "block"), "f8", "initial velocity U'(0)"),
-    **RUN_VARIABLES,
+    **MOTION_VARIABLES,
     **PAIR_VARIABLES,
 }
 
 
 def run_settings(**settings: Any) -> Settings:
-    """Return the settings of the runs that are compared: nothing is sampled, all events are kept."""
+    """Return the settings of the runs whose orders of events are compared: nothing is sampled, all events are kept."""
     duration = settings["transient"] + settings["window"]
-    return Settings(**settings, events="all", sampling=duration, trajectory=0.0, lyapunov_exponents=EXPONENTS)
+    return Settings(**settings, events="all", sampling=duration, trajectory=0.0, lyapunov_exponents=0)
 
 
 def summarize(
@@ -73,13 +82,15 @@ def summarize(
     initial: Sequence[InitialState],
     grid: Sequence[float],
     settings: Settings,
+    search: SearchSettings,
     motion: MotionSettings,
     agreement: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Run two blocks from each initial state at each a of an ascending grid under each law, and compare.
+    """Compare what two blocks end on from each initial state at each a of an ascending grid under each law.
 
     models : one of two blocks for each law, at any a; each other law is compared with the first one
-    settings : of the runs, see `run_settings`; motion : how kinds of motion are told apart
+    settings : of the runs for the order of events, see `run_settings`, and how all motion begins
+    search, motion : how attractors are looked for, and how kinds of motion are told apart
     agreement : the config's section of that name
     """
     laws = [model.law.name for model in models]
@@ -88,31 +99,33 @@ def summarize(
         name: np.zeros([sizes[dimension] for dimension in item.dimensions], dtype=item.dtype)
         for name, item in VARIABLES.items()
     }
-    judging = motion.at_speed(models[0].v)
     for j, state in enumerate(initial):
         values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
-        for k, a in enumerate(grid):
-            runs = [run(model.at(a), state, settings) for model in models]
-            for i, (model, trajectory) in enumerate(zip(models, runs, strict=True)):
-                found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, judging)
-                values["mean_distance"][i, j, k] = trajectory.mean_distance
-                values["mean_distance_error"][i, j, k] = trajectory.mean_distance_error
-                values["kind"][i, j, k], values["section_period"][i, j, k] = found.kind, found.section_period
+    for k, a in enumerate(grid):
+        here = [model.at(a) for model in models]
+        for i, model in enumerate(here):
+            for j, found in enumerate(endings(model, initial, search, motion, start=settings.start)):
+                for name in MOTION_VARIABLES:
+                    values[name][i, j, k] = getattr(found, name)
+        for j, state in enumerate(initial):
+            runs = [run(model, state, settings) for model in here]
             for i, trajectory in enumerate(runs[1:]):
                 count, until = common_order(_sequence(runs[0]), _sequence(trajectory))
                 values["event_order_count"][i, j, k] = count
                 values["event_order_time"][i, j, k] = min(until, runs[0].end_time, trajectory.end_time)
     for i in range(len(laws) - 1):
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
-        pair = {name: values[name][[0, i + 1]] for name in RUN_VARIABLES}
-        judge({**pair, **compared}, np.asarray(grid), motion.synchronization_threshold, agreement)
+        pair = {name: values[name][[0, i + 1]] for name in MOTION_VARIABLES}
+        both = {**pair, **compared}
+        judge(both, np.asarray(grid), motion.synchronization_threshold, agreement, certain=True)
+        compared["margin"][...] = _margin(both, motion.synchronization_threshold, agreement)
         for k, column in enumerate(compared["agrees"].T):
             interval = fraction_interval(int((column == 1).sum()), int((column >= 0).sum()))
             for name, value in zip(("agreeing_fraction", "agreeing_low", "agreeing_high"), interval, strict=True):
                 compared[name][k] = value
     shared = axes([], grid, laws)
     about = {**shared["law"][2], "long_name": "friction law that is compared with the first one"}
-    judged = asdict(judging)
+    judged = asdict(motion.at_speed(models[0].v))
     threshold = judged.pop("synchronization_threshold")
     return summary(
         "Two blocks under each friction law",
@@ -131,9 +144,17 @@ def summarize(
             "window": settings.window,
             **{f"agreement_{name}": value for name, value in agreement.items()},
             **{f"motion_{name}": value for name, value in judged.items()},
+            **{f"search_{name}": getattr(search, name) for name in OF_GIVEN_STATES},
         },
         module=__name__,
     )
+
+
+def _margin(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
+    """Return how far differences of ⟨J⟩ lie beyond what is allowed, in their standard errors; infinite without one."""
+    beyond = np.abs(values["difference"]) - allowed(values, threshold, agreement)
+    with np.errstate(divide="ignore"):
+        return beyond / values["difference_error"]
 
 
 def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,0 +1,111 @@
+"""What states end on, where a run of ten thousand time units shows something else."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, closed_motion, law_of, simulate
+from burridge_knopoff.stability import endings as module
+from burridge_knopoff.stability.endings import Ending, endings
+from burridge_knopoff.stability.labels import UNDETERMINED, moved
+from burridge_knopoff.stability.lifetime import Lifetime
+from burridge_knopoff.stability.settings import SEARCH, Sample
+from tests.stability.test_chains import two_block_exponent
+
+STATES = Sample(samples=8, symmetric_samples=0).initial(2)
+APART = InitialState("apart", (-0.9, -0.85), (0.1, 0.1))
+
+
+def pair(law, a):
+    return Model(Chain(2), law_of(law, a))
+
+
+@pytest.mark.parametrize(("law", "a"), [("linearized", 0.05), ("linearized", 0.0501), ("nonlinear", 0.05)])
+def test_slow_synchrony_is_synchrony(law, a):
+    """Next to where it is lost, which 40 digits tell, the blocks are apart for far longer than any run."""
+    assert -1e-3 < two_block_exponent(law, a) < 0.0
+    (found,) = endings(pair(law, a), [APART])
+    assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
+    assert found.mean_distance < 1e-8
+    assert simulate(pair(law, a), APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
+
+
+def test_what_synchrony_repels_does_not_synchronize():
+    assert two_block_exponent("linearized", 0.05013) > 0.0
+    (found,) = endings(pair("linearized", 0.05013), [APART])
+    assert found.kind != MotionKind.SYNCHRONIZED
+
+
+@pytest.mark.parametrize(("law", "a", "state"), [("linearized", 0.115, 0), ("nonlinear", 0.155, 3)])
+def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
+    """Newton's method finds the orbit from where the state is after 100 000 time units."""
+    model = pair(law, a)
+    early = simulate(model, STATES[state], transient=3000.0, window=7000.0)
+    assert early.lyapunov_exponent[0] > 3.0 * early.lyapunov_error[0]
+    found = endings(model, STATES)[state]
+    assert found.kind == MotionKind.PERIODIC
+    (later,) = moved(model, [model.begin(STATES[state])], 100_000.0)
+    orbit = closed_motion(model, later)
+    options = {"transient": 100_000.0, "window": 20.0 * orbit.period, "batches": 10, "lyapunov_exponents": 0}
+    assert found.mean_distance == pytest.approx(simulate(model, STATES[state], **options).mean_distance, rel=0.02)
+
+
+def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
+    """In runs of the usual length some of these look like a torus; a window of 400 000 tells them apart from one."""
+    found = endings(pair("linearized", 0.08), STATES)
+    inner = [k for k in range(8) if found[k].mean_distance < 0.1]
+    assert inner == [0, 2, 4, 5, 7]
+    assert {found[k] for k in inner} == {found[0]}
+    assert found[0].kind == MotionKind.CHAOTIC
+    for k in inner[:2]:
+        long = simulate(pair("linearized", 0.08), STATES[k], transient=20_000.0, window=400_000.0, events="none")
+        assert long.lyapunov_exponent[0] > max(1e-3, 5.0 * long.lyapunov_error[0])
+        error = math.hypot(long.mean_distance_error, found[0].mean_distance_error)
+        assert found[0].mean_distance == pytest.approx(long.mean_distance, abs=4.0 * error)
+    # Half a percent, as a search's window leaves it, would be too much.
+    assert found[0].mean_distance_error < 2e-3 * found[0].mean_distance
+
+
+def test_chaos_that_does_not_last_is_followed_out_of(monkeypatch):
+    """At a = 0.18 under the linearized law it does last: nobody leaves it, and then nothing is known."""
+    model = pair("linearized", 0.18)
+    chaotic = [k for k, found in enumerate(endings(model, STATES)) if found.kind == MotionKind.CHAOTIC]
+    assert chaotic == [0, 3, 7]
+
+    def dying(model, attractors, settings, tuning):
+        kinds = [attractor.motion.kind for attractor in attractors]
+        return [Lifetime(9, 900.0) if kind == MotionKind.CHAOTIC else None for kind in kinds]
+
+    monkeypatch.setattr(module, "lifetimes", dying)
+    found = endings(model, STATES)
+    assert {k for k in range(8) if repr(found[k]) == repr(Ending())} == {*chaotic}
+    assert {found[k].kind for k in range(8) if k not in chaotic} == {MotionKind.PERIODIC}
+    # Under the nonlinear law chaos at a = 0.2 ends, in a run of the fourth state within its window.
+    monkeypatch.undo()
+    assert {found.kind for found in endings(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
+
+
+def test_an_average_over_chaos_that_ends_is_not_taken(monkeypatch):
+    model = pair("linearized", 0.18)
+    whole = endings(model, STATES[:1])[0]
+    own = module.label
+
+    def gone(model, attractors, starts, time_limit):
+        labels, times = own(model, attractors, starts, time_limit)
+        return (labels * 0 + UNDETERMINED if time_limit == SEARCH.time_limit else labels), times
+
+    monkeypatch.setattr(module, "label", gone)
+    short = endings(model, STATES[:1])[0]
+    assert short.kind == whole.kind
+    assert short.mean_distance_error > 2.0 * whole.mean_distance_error
+    assert short.mean_distance == pytest.approx(whole.mean_distance, abs=4.0 * short.mean_distance_error)
+
+
+def test_what_settles_on_nothing_is_undetermined():
+    """Without friction that weakens the last slip never ends."""
+    settings = replace(SEARCH, transient=200.0, window=200.0, time_limit=500.0)
+    (found,) = endings(pair("linearized", 0.0), [APART], settings)
+    assert repr(found) == repr(Ending())
+    uneven = Model(Chain(2, threshold=(1.0, 0.9)), law_of("linearized", 0.0))
+    assert endings(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED
