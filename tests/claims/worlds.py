@@ -21,6 +21,7 @@ A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in 
 STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
 PAIR = ("other_law", "initial", "a")
+PAIR_OF_STATES = ("other_law", "state", "a")
 BLOCK = (*POINT, "block")
 STATE = ("position", "velocity")
 BLOCKS = np.array([1, 2, 3])
@@ -87,7 +88,11 @@ def paper_world() -> Summaries:
         "equilibrium": _equilibrium(),
         "solvers": _solvers(),
         "two_blocks": _dataset(
-            {"agrees": (("other_law", "state", "a"), np.int8(1))},
+            {
+                "agrees": (PAIR_OF_STATES, np.int8(1)),
+                "same_kind": (PAIR_OF_STATES, np.int8(1)),
+                "margin": (PAIR_OF_STATES, -40.0),
+            },
             other_law=["nonlinear"],
             state=np.arange(4),
             a=np.linspace(0.02, 0.4, 20).round(2),

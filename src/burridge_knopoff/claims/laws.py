@@ -51,10 +51,11 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
 
 
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether two blocks move alike under both laws, from all sampled states, at all a of a range."""
-    evidence.check_runs()
+    """Judge whether two blocks end on like motion under both laws, from all sampled states, at all a of a range."""
     found = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
-    agrees = found["agrees"].transpose("state", "a").values
+    agrees, same_kind, margin = (
+        found[name].transpose("state", "a").values for name in ("agrees", "same_kind", "margin")
+    )
     # One state that parts them is enough; to say that none does, all have to be known.
     known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
     if not known.any():
@@ -70,10 +71,16 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
             Measured("least a at which they disagree", wrong[0]),
             Measured("largest a at which they disagree", wrong[-1]),
         ]
+    by_distance = (same_kind == 1) & (agrees >= 0) & np.isfinite(margin)
+    if by_distance.any():
+        nearest = float(np.abs(margin[by_distance]).min())
+        measured.append(Measured("least distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
     states = found.sizes["state"]
     reason = f"From all {states} sampled states the laws agree at {100 * share:.1f} % of the values of a with {a}."
-    changes = f"they disagree {at_values(grid, known & ~right)}" if len(wrong) else ""
-    return Verdict(by_share(share, loose_share), reason, measured, changes)
+    changes = [f"they disagree {at_values(grid, known & ~right)}"] if len(wrong) else []
+    if not known.all():
+        changes.append(f"it is not known {at_values(grid, ~known)}")
+    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
 
 
 def solutions_agree(

@@ -1,14 +1,16 @@
-"""The claim that frequency locking precedes chaos, from the edges of the branches of attractors."""
+"""Claims on frequency locking: of the end blocks with each other, and of a branch of attractors before chaos."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.conventions import judge_shares
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import Measured, NotTestableError, Verdict, by_share, worst
+from burridge_knopoff.claims.verdict import Measured, NotTestableError, Range, Verdict, at_values, by_share, worst
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -18,12 +20,55 @@ if TYPE_CHECKING:
     import xarray
 
 
-def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
-    """Judge whether branches of attractors, as a grows, become chaotic where a locked orbit ends, under both laws.
+def end_blocks_locked(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
+    """Judge whether the end blocks oscillate at one frequency, within the errors, in the runs of both laws.
 
-    A locked orbit is a closed one: the blocks stop in a ratio of whole numbers. A torus is not locked. What a branch is
-    like before it turns chaotic is taken at the value of a next below. Chaos that was there before is no beginning of
-    chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change.
+    The frequency of a block is that of the highest peak of the spectrum of its velocity; its error is half of what the
+    spectrum resolves. Numbers of stops are told as well: blocks that share a frequency need not stop equally often.
+    """
+    shares, measured, apart, others = {}, [], [], []
+    for state in initial:
+        whole = evidence.of_state("stick_slip", state)
+        runs = evidence.choose(whole, a)
+        for law in PAPER_LAWS:
+            same, known = _same_frequency(runs.sel(law=law))
+            if not known.any():
+                raise NotTestableError(f"no frequency of the end blocks from {state} under the {law} law with {a}")
+            name = f"{law}, {state}"
+            shares[name] = float(same[known].mean())
+            measured.append(Measured(f"share of a at which the end blocks have one frequency, {name}", shares[name]))
+            stops = runs["stop_rate"].sel(law=law).values[known]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                difference = np.abs(stops[:, 0] / stops[:, -1] - 1.0)
+            measured.append(Measured(f"largest difference of their numbers of stops, {name}", float(difference.max())))
+            elsewhere = whole.sel(law=law).isel(a=~a.choose(whole["a"].values) & (whole["a"].values > 0.0))
+            there, seen = _same_frequency(elsewhere)
+            if seen.any():
+                others.append(bool(there[seen].all()))
+                measured.append(Measured(f"share of all other a at which they have, {name}", float(there[seen].mean())))
+            if shares[name] < 1.0:
+                apart.append(f"two frequencies {at_values(runs['a'].values, known & ~same)} ({name})")
+    verdict, text = judge_shares(shares, loose_share)
+    reason = f"With {a} both end blocks have one leading frequency, within its error, at {text} of the values of a."
+    if others and all(others):
+        reason += " So they have at all others: it does not set these apart."
+    return Verdict(verdict, reason, measured, "; ".join(apart))
+
+
+def _same_frequency(runs: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return where the end blocks have one frequency, and where both are known, shape (a,)."""
+    frequency, error = (runs[name].values[:, [0, -1]] for name in ("velocity_frequency", "velocity_frequency_error"))
+    known = np.isfinite(frequency).all(axis=1)
+    with np.errstate(invalid="ignore"):
+        return known & (np.abs(np.diff(frequency)[:, 0]) <= np.hypot(*error.T)), known
+
+
+def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
+    """Judge whether a closed orbit, not a torus, precedes chaos where a branch of attractors turns chaotic as a grows.
+
+    On a closed orbit the blocks stop in a ratio of whole numbers: they are locked. On a torus they are not. What a
+    branch is like before it turns chaotic is taken at the value of a next below. Chaos that was there before is no
+    beginning of chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change.
 
     loose_share : share of the beginnings of chaos from which on the claim holds loosely
     """
@@ -50,7 +95,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         share = float(np.mean(locked))
         verdicts.append(by_share(share, loose_share))
         texts.append(f"{sum(locked)} of {len(locked)} ({name})")
-        measured.append(Measured(f"share of the beginnings of chaos at which a locked orbit ends, {name}", share))
+        measured.append(Measured(f"share of the beginnings of chaos at which a closed orbit ends, {name}", share))
         ends = Counter(int(edges["kind"].values[k]) for k in np.flatnonzero(onset))
         for kind, count in sorted(ends.items()):
             measured.append(Measured(f"edges there that are a {EdgeKind(kind).name.lower()}, {name}", count))
@@ -61,7 +106,8 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         if torus:
             others.append(f"a torus before chaos above a = {', '.join(f'{value:g}' for value in torus)} ({name})")
     reason = (
-        f"Where a branch of attractors becomes chaotic as a grows, a locked orbit comes before: {', '.join(texts)}."
+        "Where a branch of attractors becomes chaotic as a grows, a closed orbit comes before, not a torus: "
+        f"{', '.join(texts)}."
     )
     return Verdict(worst(verdicts), reason, measured, "; ".join(others))
 

@@ -25,6 +25,7 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.judgement import Answer
 from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
@@ -117,12 +118,26 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
     exceptions = [f"negative {at_values(runs['a'].values, negative)}, not elsewhere"] if negative.any() else []
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        # Only of synchrony is the correlation known: 1.
+        # Of attractors no correlation is known, but that of synchrony, which is 1, and that of the run's own: a mirror
+        # image, which exchanges the end blocks, has the same.
         known, branch = reached(attractors.sel(a=[at]), initial, law, "branch")
-        return (FAILS, "synchrony") if known[0] and branch[0] == 0 else ("", "")
+        if known[0] and branch[0] == 0:
+            return FAILS, "synchrony"
+        mine, own = reached(evidence.own_attractors().sel(a=[at]), initial, law, "branch")
+        if known[0] and mine[0] and branch[0] == own[0] and _is_settled(evidence, initial, law, at):
+            return verdict, f"{with_error(round(value, 2))}, the same branch"
+        return "", ""
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
     return under_conventions(evidence, verdict, reason, measured, exceptions, labels)
+
+
+def _is_settled(evidence: Evidence, initial: str, law: str, at: float) -> bool:
+    """Tell whether a run is known to end on the attractor that its initial state reaches."""
+    ends = evidence.summaries.get("agreement")
+    if ends is None or at not in ends["a"].values:
+        return False
+    return bool(ends["settled"].sel(law=law, initial=initial, a=at) == Answer.YES)
 
 
 def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: float) -> Verdict:
