@@ -44,6 +44,54 @@ def test_a_share_changes_by_its_distance_from_one():
     assert turns(turning("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, "")) == []
 
 
+@pytest.mark.parametrize("level", [NOT_TESTABLE, FAILS])
+def test_what_leaves_too_little_to_judge_is_told_as_well(level):
+    """As states that are too few for a greater share, and numbers that are known for one level only."""
+    judge = turning("share", 0.93, HOLDS, NOT_TESTABLE)
+    (text,) = turns(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
+    head, value = text.removesuffix(" (0.9)").rsplit(" ", 1)
+    assert head == "not testable: share above"
+    assert 0.92 < float(value) <= 0.93
+
+    def only(_evidence, parameters):
+        return Verdict(HOLDS if parameters["level"] == 1.0 else level, "")
+
+    assert turns(only, NOTHING, {"level": 1.0}, Verdict(HOLDS, "")) == [f"{level}: any other level (1)"]
+
+
+def test_the_nearest_of_several_turns_is_told():
+    """It fails beyond 1.2, and beyond 1.5 there is nothing to judge."""
+
+    def judge(_evidence, parameters):
+        where = parameters["tolerance"]
+        return Verdict(HOLDS if where < 1.2 else FAILS if where < 1.5 else NOT_TESTABLE, "")
+
+    (text,) = turns(judge, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, ""))
+    assert text.startswith("fails: tolerance above 1.")
+    assert float(text.removesuffix(" (1)").rsplit(" ", 1)[1]) == pytest.approx(1.2, rel=0.025)
+
+
+def test_both_halves_of_the_grid_are_told_as_one():
+    world = Evidence({"mean_distance": xarray.Dataset(coords={"a": [0.1, 0.2, 0.3]})}, {})
+
+    def judge(evidence, _parameters):
+        return Verdict(HOLDS if evidence.summaries["mean_distance"].sizes["a"] == 3 else NOT_TESTABLE, "")
+
+    assert turns(judge, world, {}, judge(world, {})) == ["not testable: every second value of a"]
+    # Of a claim on one value of a this goes without saying.
+    assert turns(judge, world, {"at": 0.2}, judge(world, {})) == []
+
+
+def test_other_amplitudes_of_the_inner_blocks_are_told():
+    world = Evidence({"phases": xarray.Dataset(coords={"inner_share": [0.0, 0.3, 1.0]})}, {})
+
+    def judge(_evidence, parameters):
+        return Verdict(HOLDS if parameters["inner_share"] < 0.5 else FAILS, "")
+
+    assert turns(judge, world, {"inner_share": 0.0}, Verdict(HOLDS, "")) == ["fails: inner_share = 1 (0)"]
+    assert turns(judge, NOTHING, {"inner_share": 0.0}, Verdict(HOLDS, "")) == []
+
+
 @pytest.mark.parametrize(("a", "which"), [([0.1, 0.2, 0.3], "second"), ([0.2, 0.1, 0.2], "first")])
 def test_the_half_of_the_grid_that_turns_a_verdict_is_told(a, which):
     """Of three values one half has the first and the third, the other the second; without 0.1 it fails."""

@@ -1,7 +1,8 @@
 """How far a verdict is from turning: the claim is judged again with other tolerances and on other grids.
 
-A tolerance is a choice. Whoever reads a verdict should see which other sensible choice would change it: a tolerance
-within a factor of two, every second value of the grid of a, or a compared value of a less.
+A tolerance is a choice. Whoever reads a verdict should see which other sensible choice would change it, or leave too
+little to judge: a tolerance within a factor of two, every second value of the grid of a, a compared value of a less, or
+another motion of the inner blocks.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ def turns(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdi
     return [
         *_by_tolerance(judge, evidence, parameters, verdict.verdict),
         *_by_grid(judge, evidence, parameters, verdict.verdict),
+        *_by_inner_share(judge, evidence, parameters, verdict.verdict),
     ]
 
 
@@ -48,21 +50,33 @@ def _by_tolerance(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any
         def judged(exponent: float, name: str = name) -> str:
             return judge(evidence, {**parameters, name: _changed(parameters[name], name, exponent)}).verdict
 
-        for side in (-1.0, 1.0):
-            other = judged(side)
-            if other in (verdict, NOT_TESTABLE):
-                continue
-            same, turned = 0.0, side
-            for _ in range(HALVINGS):
-                middle = 0.5 * (same + turned)
-                found = judged(middle)
-                if found == verdict:
-                    same = middle
-                else:
-                    turned, other = middle, found
-            value = _changed(parameters[name], name, turned)
-            relation = "above" if value > parameters[name] else "below"
-            yield f"{other}: {name} {relation} {_changed(parameters[name], name, same):.3g} ({parameters[name]:g})"
+        found = [(side, *_nearest(judged, side, verdict)) for side in (-1.0, 1.0)]
+        if len({other for _, _, other in found if other != verdict}) == 1 and not any(same for _, same, _ in found):
+            yield f"{found[0][2]}: any other {name} ({parameters[name]:g})"
+            continue
+        for side, same, other in found:
+            if other != verdict:
+                last = _changed(parameters[name], name, same)
+                relation = "above" if _changed(parameters[name], name, side) > parameters[name] else "below"
+                yield f"{other}: {name} {relation} {last:.3g} ({parameters[name]:g})"
+
+
+def _nearest(judged: Callable[[float], str], side: float, verdict: str) -> tuple[float, str]:
+    """Return the farthest exponent towards a side at which a verdict is still seen, and the verdict beyond.
+
+    The verdict itself if it is so at the side as well.
+    """
+    same, turned, other = 0.0, side, judged(side)
+    if other == verdict:
+        return side, verdict
+    for _ in range(HALVINGS):
+        middle = 0.5 * (same + turned)
+        found = judged(middle)
+        if found == verdict:
+            same = middle
+        else:
+            turned, other = middle, found
+    return same, other
 
 
 def _changed(value: float, name: str, exponent: float) -> float:
@@ -75,17 +89,38 @@ def _changed(value: float, name: str, exponent: float) -> float:
 
 def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
     """Judge on both halves of the grid, and without each of the values at which solvers are compared."""
+    halves = {}
     for half, first in zip(evidence.halves, ("first", "second"), strict=True):
+        # Of one value there is no second half.
         if not all(dataset.sizes.get("a", 1) for dataset in half.summaries.values()):
-            # Of one value there is no second half.
             continue
         other = judge(half, parameters).verdict
-        if other not in (verdict, NOT_TESTABLE):
-            yield f"{other}: every second value of a, from the {first} on"
+        # One of the halves does not have the only value of a that a claim is on: that is no other choice.
+        if other != NOT_TESTABLE or "at" not in parameters:
+            halves[first] = other
+    found = set(halves.values())
+    if len(halves) == 2 and len(found) == 1:
+        yield from (f"{other}: every second value of a" for other in found if other != verdict)
+    else:
+        yield from (
+            f"{other}: every second value of a, from the {first} on"
+            for first, other in halves.items()
+            if other != verdict
+        )
     if "relative" in parameters and "solvers" in evidence.summaries:
         solvers = evidence.summaries["solvers"]
         for a in solvers["a"].values.tolist():
             without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
             other = judge(replace(evidence, summaries=without), parameters).verdict
-            if other not in (verdict, NOT_TESTABLE):
+            if other != verdict:
                 yield f"{other}: without a = {a:g}"
+
+
+def _by_inner_share(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+    """Judge with each other amplitude of the inner blocks of which there are states."""
+    if "inner_share" not in parameters or "phases" not in evidence.summaries:
+        return
+    for share in evidence.summaries["phases"]["inner_share"].values.tolist():
+        other = judge(evidence, {**parameters, "inner_share": share}).verdict
+        if other != verdict:
+            yield f"{other}: inner_share = {share:g} ({parameters['inner_share']:g})"
