@@ -58,7 +58,7 @@ SMALL = {
         "pushes": 4,
     },
     "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
-    "phases": {"amplitude": [0.05, 0.5], "phase_difference": [30, 180], "samples": 2},
+    "phases": {"amplitude": [0.05, 0.5], "phase_difference": [30, 180], "inner_share": [0, 1], "samples": 2},
     "solvers": {"a": [0.2], "step": 0.05},
 }
 

@@ -112,7 +112,8 @@ def units_of(study: Study) -> dict[str, float]:
         "attractors_of_law": study.blocks * search["samples"] * (search["transient"] + search["window"]) * searched,
         "two_blocks": pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,
         "watch_chain": samples * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
-        "phases_of_law": phases["samples"] * prod(len(phases[name]) for name in ("a", "amplitude", "phase_difference")),
+        "phases_of_law": phases["samples"]
+        * prod(len(phases[name]) for name in ("a", "inner_share", "amplitude", "phase_difference")),
         "edges_of_law": len(values),
         "basin_tile": basins["pixels"] ** 2 / basins["tiles"],
         "basin_pairs": basins["pairs"],

@@ -223,17 +223,19 @@ def _edges() -> xarray.Dataset:
 
 def _phases() -> xarray.Dataset:
     """Return states that synchronize from phases up to 90° apart and are in antiphase from phases beyond."""
-    states = ("law", "a", "amplitude", "phase_difference", "state")
+    states = ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
     opposite = np.array([False, False, True, True])[:, None]
     return _dataset(
         {
             "branch": (states, np.where(opposite, 2, 0).astype("i2")),
             "velocity_correlation": (states, np.where(opposite, -0.9, 1.0)),
+            "slipping_amplitude": (("inner_share",), [0.07, 0.07, 0.05]),
         },
+        inner_share=[0.0, 0.3, 1.0],
         amplitude=[0.01, 0.05, 0.2],
         phase_difference=[15.0, 30.0, 150.0, 180.0],
         state=np.arange(1, 41),
-    ).assign_attrs(slipping_amplitude=0.07)
+    )
 
 
 def _equilibrium() -> xarray.Dataset:

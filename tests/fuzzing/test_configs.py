@@ -46,7 +46,7 @@ series rk4 one_sided symmetric tested moving window all none linearized nonlinea
 v contact start solver step transient batches sampling trajectory trajectory_sampling events event_window
 lyapunov_exponents lyapunov_alignment a_digits synchronization_threshold motion agreement solvers figures attractors
 basins chains two_blocks samples pixels tiles pairs blocks laws seed position velocity time_limit resolution pushes
-threads phases amplitude phase_difference 180 180.5 refine fraction_samples lifetime 1.0e-4
+threads phases amplitude phase_difference inner_share 180 180.5 refine fraction_samples lifetime 1.0e-4
 law chain coupling pulling threshold ends neighbours open ring formula sigma eta exponential stribeck
 carlson_langer own 100 100.5 1/(1+a*u) 1-a*u 1-b*u exp(-a*u) sqrt(1-a*u) 1-a*u**2 {formula: 1-a*u}
 {formula: 1-b*u, b: 0.5} {law: stribeck, sigma: 0.1} {sigma: 0.02} {linearized: {}}
@@ -191,6 +191,7 @@ def check_study(study, written):
     assert values["basins.initial"] in study.initial
     assert all(amplitude > 0.0 for amplitude in values["phases.amplitude"])
     assert all(0.0 <= difference <= 180.0 for difference in values["phases.phase_difference"])
+    assert all(0.0 <= share <= 1000.0 for share in values["phases.inner_share"])
     assert study.shown_a == values.get("figures.a", study.shown_a)
     assert len(study.laws) * len(study.initial) * len(study.grid) <= 100_000
     assert all(2 <= blocks <= 64 for blocks in values["chains.blocks"])

@@ -1,30 +1,35 @@
 """What phases lead to: counted from labels that are known, and real ones of a few states."""
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Instant, Model, law_of
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.basins import KnownAttractors
-from burridge_knopoff.stability.phases import common_phases, oscillating_states
+from burridge_knopoff.stability.phases import common_phases, inner_phases, oscillating_states
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION, SEARCH, PhaseSettings
 from burridge_knopoff.summaries import phases
 
-PHASES = PhaseSettings(amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), samples=5, seed=3)
+PHASES = PhaseSettings(
+    amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
+)
 MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinear")]
 
 
 @pytest.fixture
 def ruled(monkeypatch):
-    """Three attractors; a state reaches the first where x_1 > 0.4 v, none where x_1 < −0.4, else the last."""
+    """Three attractors; a state reaches the first where x_1 + x_2 > 0.4 v, none where it is < −0.4, else the last."""
 
     class Known:
         motion = type("Motion", (), {"instant": staticmethod(lambda: None)})
 
     def label_states(model, attractors, position, velocity, *, time_limit):
         assert time_limit == SEARCH.label_limit
-        x = (position - model.sliding_offset)[:, 0]
+        x = (position - model.sliding_offset)[:, :2].sum(axis=1)
         return np.select([x > 0.04, x < -0.4], [0, -1], 2), np.zeros(len(x))
 
     def known(found, model, *_):
@@ -39,17 +44,21 @@ def ruled(monkeypatch):
 def test_states_are_counted_by_what_they_reach(ruled):
     parts = [phases.one_law(None, model, [0.05, 0.08], PHASES, SEARCH, MOTION) for model in MODELS]
     found = phases.merge(parts)
-    assert found["branch"].dims == ("law", "a", "amplitude", "phase_difference", "state")
-    assert found["branch"].shape == (2, 2, 2, 3, 5)
+    assert found["branch"].dims == ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
+    assert found["branch"].shape == (2, 2, 2, 2, 3, 5)
     assert found["law"].values.tolist() == ["linearized", "nonlinear"]
     assert found["phase_difference"].values.tolist() == [30.0, 90.0, 180.0]
     assert found["phase_difference"].attrs["units"] == "degree"
-    for a in (0.05, 0.08):
-        common = common_phases(a, (2, 3, 5), 3)
+    assert found["inner_share"].values.tolist() == [0.0, 0.5]
+    assert found["inner_block"].values.tolist() == [2]
+    for a, share in product((0.05, 0.08), (0.0, 0.5)):
+        common, inner = common_phases(a, (2, 3, 5), 3), inner_phases(a, (2, 3, 5, 1), 3)
         assert (found["common_phase"].sel(a=a).values == common).all()
-        x = found["amplitude"].values[:, None, None] * np.cos(np.radians(common))
+        assert (found["inner_phase"].sel(a=a).values == inner).all()
+        swing = np.cos(np.radians(common)) + share * np.cos(np.radians(inner[..., 0]))
+        x = found["amplitude"].values[:, None, None] * swing
         for law in found["law"].values:
-            one = found.sel(law=law, a=a)
+            one = found.sel(law=law, a=a, inner_share=share)
             assert (one["branch"].values == np.select([x > 0.04, x < -0.4], [0, -1], 7)).all()
             assert (one["side"].values == np.select([x > 0.04, x < -0.4], [0, 0], -1)).all()
             correlation = np.select([x > 0.04, x < -0.4], [1.0, np.nan], -0.7)
@@ -62,14 +71,23 @@ def test_states_are_counted_by_what_they_reach(ruled):
     assert found["undetermined_count"].sum() > 0
     # With A = 0.05 no velocity becomes negative; with A = 0.5 those of most states do.
     assert found["standing_count"].sel(amplitude=0.05).sum() == 0
-    assert 15 < found["standing_count"].sel(amplitude=0.5).sum() <= 30
-    assert found.attrs["slipping_amplitude"] == pytest.approx(0.1 / np.sqrt(2.0))
+    for share in found["inner_share"].values:
+        assert 15 < found["standing_count"].sel(amplitude=0.5, inner_share=share).sum() <= 30
+    assert found["slipping_amplitude"].values == pytest.approx([0.1 / np.sqrt(2.0)] * 2)
+
+
+def test_a_state_is_the_same_whatever_other_shares_there_are(ruled):
+    """So that those on which the inner blocks slide uniformly stay when others are added."""
+    alone = phases.one_law(None, MODELS[0], [0.05], replace(PHASES, inner_share=(0.5,)), SEARCH, MOTION)
+    both = phases.one_law(None, MODELS[0], [0.05], PHASES, SEARCH, MOTION)
+    assert both.sel(inner_share=[0.5]).drop_attrs().equals(alone.drop_attrs())
 
 
 def test_a_study_finds_what_its_phases_lead_to(small_studies):
     """The attractors are found with short runs; synchrony is, and its velocities are the same."""
     found = small_studies("paper").found["phases"]
     assert found["a"].values.tolist() == [0.05]
+    found = found.sel(inner_share=0.0)
     synchronized = found["branch"] == 0
     assert synchronized.sel(amplitude=0.05, phase_difference=30.0).all()
     assert not synchronized.sel(amplitude=0.05, phase_difference=180.0).any()
@@ -89,3 +107,22 @@ def test_velocities_go_together_or_against_each_other(difference, least, most):
     start = Instant(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
     end = Runner(model).after(start, 3000.0)
     assert least <= phases.velocity_correlation(model, end) <= most
+
+
+@pytest.mark.parametrize(("share", "least", "most"), [(0.0, 1.0, 1.0), (0.7, 0.6, 0.99)])
+def test_inner_blocks_that_oscillate_break_the_rule_of_close_phases(share, least, most):
+    """Of phases 30° apart all states synchronize while the inner block slides uniformly, and not all if it does not.
+
+    Integrated until a motion has synchronized or never will: no attractor, and no label, is asked.
+    """
+    count = 40
+    common, inner = common_phases(0.05, (count,), 7), inner_phases(0.05, (count, 1), 7)
+    position, velocity, standing = oscillating_states(
+        MODELS[0], np.full(count, 0.03), np.full(count, 30.0), common, share, inner
+    )
+    assert not standing.any()
+    runner, together = Runner(MODELS[0]), 0
+    for x, speed in zip(position - MODELS[0].sliding_offset, velocity, strict=True):
+        end = runner.after(Instant(x, speed, np.zeros(3, dtype=bool)), 3000.0)
+        together += abs(end.position[0] - end.position[2]) < 1e-3
+    assert least <= together / count <= most

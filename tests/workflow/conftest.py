@@ -24,7 +24,7 @@ batches: 4
 attractors: {samples: 6, fraction_samples: 6, lifetime: 1000, transient: 500, window: 500, time_limit: 5000, pushes: 4}
 refine: {resolution: 1}
 basins: {pixels: 8, pairs: 20}
-phases: {a: [0.05, 0.08], amplitude: [0.03, 0.3], phase_difference: [20, 180], samples: 3}
+phases: {a: [0.05, 0.08], amplitude: [0.03, 0.3], phase_difference: [20, 180], inner_share: [0, 0.2], samples: 3}
 solvers: {a: [0.2], step: 0.01}
 chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 """

@@ -108,7 +108,8 @@ def test_attractors_and_basins(results):
 
 def test_phases_summary(results):
     with xr.open_dataset(results / "summary" / "phases.nc") as phases:
-        assert dict(phases.sizes) == {"law": 2, "a": 2, "amplitude": 2, "phase_difference": 2, "state": 3}
+        shared = {"a": 2, "inner_share": 2, "amplitude": 2, "phase_difference": 2, "state": 3}
+        assert dict(phases.sizes) == {"law": 2, **shared, "inner_block": 1}
         assert phases["a"].values.tolist() == [0.05, 0.08]
         small = phases["branch"].sel(amplitude=0.03)
         assert (small.sel(phase_difference=20.0) == 0).all()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.endings import Criteria, Endings, percent
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
@@ -22,9 +23,7 @@ from burridge_knopoff.claims.verdict import (
     is_decided,
     worst,
 )
-from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.study.words import span
 
 if TYPE_CHECKING:
     import xarray
@@ -170,10 +169,18 @@ def _words(name: str) -> str:
 
 
 def phases_decide(
-    evidence: Evidence, a: Range, close: float, opposite: float, correlation: float, share: float, loose_share: float
+    evidence: Evidence,
+    a: Range,
+    inner_share: float,
+    close: float,
+    opposite: float,
+    correlation: float,
+    share: float,
+    loose_share: float,
 ) -> Verdict:
     """Judge whether close phases of the end blocks lead to synchrony and opposite ones to antiphase, under both laws.
 
+    inner_share : of the states that are judged; those of other shares are told beside them
     close, opposite : difference of phase in degrees up to which phases are close, and from which they are opposite
     correlation : of the velocities of the end blocks, up to which these are in antiphase
     share : of the states that have to end so, by the lower end of a Wilson interval
@@ -184,68 +191,47 @@ def phases_decide(
     evidence.check_blocks()
     phases = evidence.summary("phases")
     evidence.choose(phases, a)
-    difference, amplitude = phases["phase_difference"].values, phases["amplitude"].values
-    slips = amplitude <= phases.attrs["slipping_amplitude"]
-    if not slips.any():
-        raise NotTestableError("at every amplitude of phases.nc some block would slip backward")
-    together, together_low = _fractions(phases["branch"] == 0, difference <= close, share)
-    against, against_low = _fractions(phases["velocity_correlation"] <= correlation, difference >= opposite, share)
-    right = (together_low >= share) & (against_low >= share)
-    laws, inside = phases["law"].values.tolist(), a.choose(phases["a"].values)
-    measured, changes = [], []
-    for k, size in enumerate(amplitude):
-        for words, found in (("close phases that synchronize", together), ("opposite phases in antiphase", against)):
-            least = found[:, inside, k].min(axis=1).tolist()
-            measured += [
-                Measured(f"least share of {words}, A = {size:g}, {law}", value)
-                for law, value in zip(laws, least, strict=True)
-            ]
-        if not right[:, inside, k].all():
-            shown = _span(together[:, inside, k]), _span(against[:, inside, k])
+    criteria = Criteria(a, close, opposite, correlation, share, loose_share)
+    judged = Endings(phases, inner_share, criteria)
+    measured: list[Measured] = []
+    changes = []
+    for k, size in enumerate(judged.amplitude):
+        measured += judged.measured(f"A = {size:g}", np.arange(len(judged.amplitude)) == k)
+        if not judged.right[:, judged.inside, k].all():
+            shown = [percent(found.fraction[:, judged.inside, k]) for found in (judged.together, judged.against)]
             changes.append(
                 f"A = {size:g}: {shown[0]} of the close phases synchronize, {shown[1]} of the opposite ones end in "
                 "antiphase"
             )
-    for law, low in zip(laws, together_low, strict=True):
-        lost = ~inside & (low[:, slips] < share).any(axis=1)
+    for law, low in zip(judged.laws, judged.together.low, strict=True):
+        lost = ~judged.inside & (low[:, judged.slips] < share).any(axis=1)
         if lost.any():
             changes.append(f"close phases do not synchronize {at_values(phases['a'].values, lost)} ({law})")
-    cells = np.ix_(np.arange(len(laws)), inside, slips)
-    shares = {law: float(one.all(axis=1).mean()) for law, one in zip(laws, right[cells], strict=True)}
-    own, text = judge_shares(shares, loose_share)
-    told = [
-        f"{_span(found[cells])} of the states, Wilson intervals {100 * low[cells].min():.1f} % or more"
-        for found, low in ((together, together_low), (against, against_low))
-    ]
-    reason = (
-        f"End blocks that oscillate about uniform sliding, none of them backward (A = {_values(amplitude[slips])}), "
-        f"synchronize from phases within {close:g}° ({told[0]}) and end in antiphase from opposite ones ({told[1]}), "
-        f"at {text} of the values of a with {a}."
+    for other in phases["inner_share"].values[phases["inner_share"].values != inner_share].tolist():
+        where = _inner_block(other)
+        try:
+            endings = Endings(phases, other, criteria)
+        except NotTestableError as error:
+            changes.append(f"{where}: {NOT_TESTABLE}, {error}")
+            continue
+        changes.append(
+            f"{where} (A = {endings.amplitudes}): {endings.verdict}, right at {endings.shares} of the values of a: "
+            f"{endings.told()}"
+        )
+        measured += endings.measured(where, endings.slips)
+    together, against = (
+        f"{percent(found.fraction[judged.cells])} of the states, Wilson intervals "
+        f"{100 * found.low[judged.cells].min():.1f} % or more"
+        for found in (judged.together, judged.against)
     )
-    verdict = LOOSELY if own == HOLDS and not right[:, inside].all() else own
-    return Verdict(verdict, reason, measured, "; ".join(changes))
+    reason = (
+        f"With {_inner_block(inner_share)}, end blocks that oscillate about uniform sliding, none of them backward "
+        f"(A = {judged.amplitudes}), synchronize from phases within {close:g}° ({together}) and end in antiphase from "
+        f"opposite ones ({against}), at {judged.shares} of the values of a with {a}."
+    )
+    return Verdict(judged.verdict, reason, measured, "; ".join(changes))
 
 
-def _fractions(claimed: xarray.DataArray, chosen: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return which fraction of the states ends as claimed, and the lower ends of its Wilson interval.
-
-    claimed : over (law, a, amplitude, phase_difference, state); chosen : which differences of phase
-    share : what the interval of all states has to reach
-
-    Both have the shape (law, a, amplitude). Raises NotTestableError if there are too few states.
-    """
-    states = claimed.isel(phase_difference=chosen)
-    count = states.sizes["phase_difference"] * states.sizes["state"]
-    if not fraction_interval(count, count)[1] >= share:
-        raise NotTestableError(f"{count} states of the same phases are too few for a share of {share:g}")
-    hits = states.sum(("phase_difference", "state")).transpose("law", "a", "amplitude").values
-    found = np.reshape([fraction_interval(int(number), count)[:2] for number in hits.ravel()], (*hits.shape, 2))
-    return found[..., 0], found[..., 1]
-
-
-def _span(shares: np.ndarray) -> str:
-    return f"{span(*(f'{100 * share:.1f}' for share in (shares.min(), shares.max())))} %"
-
-
-def _values(numbers: np.ndarray) -> str:
-    return f"{numbers.min():g} to {numbers.max():g}" if len(numbers) > 1 else f"{numbers[0]:g}"
+def _inner_block(share: float) -> str:
+    """Return in words what the inner block does."""
+    return "the inner block sliding uniformly" if share == 0.0 else f"the inner block oscillating with {share:g} A"

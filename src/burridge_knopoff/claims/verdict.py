@@ -45,7 +45,8 @@ class Measured:
 class Verdict:
     """What a claim is worth: the verdict, why, the measured numbers, and where the verdict would be another.
 
-    changes : ranges of a, or conventions, for which the verdict changes; empty where there is none
+    changes : ranges of a, conventions, or motions of the inner block, for which the verdict changes or may; empty where
+        there is none
     conventions : verdict under each convention «contact, start», where the claim can be judged under each
     own : verdict under the study's own convention
     turns : other choices of judgement that would turn it, see `margins`

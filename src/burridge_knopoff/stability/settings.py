@@ -194,7 +194,7 @@ class BasinSettings:
 
 @dataclass(frozen=True)
 class PhaseSettings:
-    """End blocks that oscillate about uniform sliding: the config's section `phases`, without the values of a.
+    """Blocks that oscillate about uniform sliding: the config's section `phases`, without the values of a.
 
     Raises ValueError, one line, for anything out of range.
     """
@@ -209,8 +209,17 @@ class PhaseSettings:
         Several(Number(0.0, 180.0), 1, 100, distinct=True),
         "by how many degrees the last block is ahead of the first; exactly 0 is synchrony from the start",
     ] = (15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0)
-    samples: Annotated[int, SAMPLES, "phases of the first block, drawn at random, for each of these at each a"] = 40
-    seed: Annotated[int, SEED, "seed of these phases; at each a they are others, under each law the same"] = 1
+    inner_share: Annotated[
+        Sequence[float],
+        Several(Number(0.0, 1e3), 1, 100, distinct=True),
+        "amplitudes of all blocks but the end blocks, over A; with 0 they slide uniformly",
+    ] = (0.0, 0.3, 1.0)
+    samples: Annotated[
+        int, SAMPLES, "states, of phases drawn at random, for each amplitude and phase difference at each a"
+    ] = 40
+    seed: Annotated[
+        int, SEED, "seed of these phases; at each a they are others, under each law and with each inner_share the same"
+    ] = 1
 
     def __post_init__(self) -> None:
         check_fields(self)

@@ -18,6 +18,7 @@ from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.running.settings import MOST_NUMBERS, SOLVERS
+from burridge_knopoff.stability.phases import ends_are_neighbours
 from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
@@ -111,7 +112,8 @@ def _reason(model: Model) -> str:
 
 def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown: float) -> None:
     """Check the values of a of all sections against the grid, and fill them in; `shown` is that of single runs."""
-    of_paper = Chain(blocks, **config["chain"]) == Chain(3)
+    chain = Chain(blocks, **config["chain"])
+    of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
     usual = {law: [a for a in values if a in grid] for law, values in maps.items()}
     basins, phases, solvers = (config[section] for section in ("basins", "phases", "solvers"))
@@ -119,6 +121,8 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     basins["a"] = {law: list(values) for law, values in chosen.items()}
     phases["a"] = sorted(phases.get("a", [a for a in PAPER_PHASES if a in grid and of_paper]))
     solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown]))
+    if phases["a"] and ends_are_neighbours(chain):
+        raise refusal("phases.a", phases["a"], "[] where a spring joins the end blocks: two blocks, or a ring")
     for key, values in (
         *((f"basins.a.{law}", values) for law, values in basins["a"].items()),
         ("phases.a", phases["a"]),
@@ -159,6 +163,7 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
         )
     attractors, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
     oscillating = len(phases["amplitude"]) * len(phases["phase_difference"]) * phases["samples"]
+    kept = len(phases["a"]) * max(len(phases["inner_share"]), blocks - 2)
     maps = sum(map(len, basins["a"].values()))
     rows = -(-basins["pixels"] // basins["tiles"])
     two_blocks = chains["two_blocks"]
@@ -168,7 +173,7 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
         ("basins.pixels", maps * basins["pixels"] ** 2),
         ("basins.tiles", 2 * blocks * rows * basins["pixels"]),
         ("basins.pairs", 2 * blocks * _STATES_OF_A_PAIR * basins["pairs"]),
-        ("phases.samples", max(2 * blocks, len(phases["a"])) * oscillating),
+        ("phases.samples", max(2 * blocks, kept) * oscillating),
         ("chains.samples", max(len(chains["a"]), 2 * max(chains["blocks"])) * chains["samples"]),
         ("chains.two_blocks.samples", len(two_blocks["a"]) * two_blocks["samples"]),
     ):

@@ -1,4 +1,4 @@
-"""What initial phases of the end blocks lead to, over (law, a, amplitude, phase difference): `stability.phases`."""
+"""What initial phases lead to, over (law, a, inner share, amplitude, phase difference): `stability.phases`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.basins import KnownAttractors, known_attractors
 from burridge_knopoff.stability.labels import UNDETERMINED, label_states
-from burridge_knopoff.stability.phases import common_phases, oscillating_states, slipping_amplitude
+from burridge_knopoff.stability.phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, PhaseSettings, SearchSettings
 from burridge_knopoff.summaries.correlation import correlation
@@ -25,9 +25,13 @@ from burridge_knopoff.summaries.correlation import correlation
 #: Time for which each attractor is followed for the correlation of the velocities on it.
 FOLLOWED = 1000.0
 
+TITLE = "Initial phases of the blocks"
+
 _V = Variable
-_CELL = ("a", "amplitude", "phase_difference")
+_CELL = ("a", "inner_share", "amplitude", "phase_difference")
 _STATE = (*_CELL, "state")
+# What does not differ between the shares: a state is the same in all of them, but for how far its inner blocks swing.
+_PHASE = ("a", "amplitude", "phase_difference", "state")
 _DEGREE = {"units": "degree"}
 #: What differs between the laws.
 VARIABLES = {
@@ -45,15 +49,24 @@ VARIABLES = {
 }
 #: What is the same under each law.
 COMMON_VARIABLES = {
-    "common_phase": _V(_STATE, "f8", "phase theta of the first block at tau = 0", _DEGREE),
-    "standing_count": _V(_CELL, "i4", "states with an end block that stands, as its velocity would be negative"),
+    "common_phase": _V(_PHASE, "f8", "phase theta of the first block at tau = 0", _DEGREE),
+    "inner_phase": _V((*_PHASE, "inner_block"), "f8", "phase of an inner block at tau = 0", _DEGREE),
+    "standing_count": _V(_CELL, "i4", "states with a block that stands, as its velocity would be negative"),
+    "slipping_amplitude": _V(
+        ("inner_share",), "f8", "amplitude A up to which all velocities are positive, whatever the phases"
+    ),
 }
 COORDINATES = {
+    "inner_share": _V(
+        ("inner_share",), "f8", "amplitude of the inner blocks over A; with 0 they slide uniformly", coordinate=True
+    ),
     "amplitude": _V(("amplitude",), "f8", "amplitude A of both end blocks about uniform sliding", coordinate=True),
     "phase_difference": _V(
         ("phase_difference",), "f8", "by how much the last block is ahead of the first", _DEGREE, coordinate=True
     ),
 }
+INNER_BLOCK = {"long_name": "block number, 2 to N - 1 along the chain", "units": "1"}
+ATTRIBUTES = ("history", "v", "contact", "seed", "label_limit")
 
 
 def one_law(
@@ -71,22 +84,30 @@ def one_law(
     """
     shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
     amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
+    inner = model.chain.blocks - 2
     found: dict[str, list[np.ndarray]] = {name: [] for name in (*VARIABLES, *COMMON_VARIABLES)}
     for a in grid:
         known = known_attractors(attractors, model.at(a), settings, motion)
+        correlations = [velocity_correlation(known.model, item.motion.instant()) for item in known.attractors]
         common = common_phases(a, shape, phases.seed)
-        states = oscillating_states(known.model, amplitude.ravel(), difference.ravel(), common.ravel())
-        position, velocity, standing = states
-        # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
-        labels, _ = label_states(known.model, known.attractors, position, velocity, time_limit=settings.label_limit)
-        values = {"common_phase": common, "standing_count": standing.reshape(shape).sum(axis=2)}
-        values |= _reached(known, labels.reshape(shape))
-        for name, value in values.items():
+        of_inner = inner_phases(a, (*shape, inner), phases.seed)
+        told = amplitude.ravel(), difference.ravel(), common.ravel()
+        cells = []
+        for share in phases.inner_share:
+            states = oscillating_states(known.model, *told, share, of_inner.reshape(-1, inner))
+            position, velocity, standing = states
+            # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
+            labels, _ = label_states(known.model, known.attractors, position, velocity, time_limit=settings.label_limit)
+            cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
+            cells.append({**cell, **_reached(known, correlations, labels.reshape(shape))})
+        values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
+        for name, value in {"common_phase": common, "inner_phase": of_inner, **values}.items():
             found[name].append(value)
     coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}
     for name, item in COORDINATES.items():
         coordinates[name] = (name, np.array(getattr(phases, name)), item.all_attributes())
     coordinates["state"] = ("state", np.arange(1, shape[2] + 1, dtype=STATE.dtype), STATE.all_attributes())
+    coordinates["inner_block"] = ("inner_block", np.arange(2, inner + 2, dtype="i2"), INNER_BLOCK)
     attributes = {
         "law": model.law.name,
         "history": "snakemake, from attractors.nc",
@@ -94,11 +115,11 @@ def one_law(
         "contact": model.contact,
         "seed": phases.seed,
         "label_limit": settings.label_limit,
-        "slipping_amplitude": slipping_amplitude(model),
     }
     variables = {**VARIABLES, **COMMON_VARIABLES}
     arrays = {name: np.array(values) for name, values in found.items()}
-    return summary("Initial phases of the end blocks", variables, arrays, coordinates, attributes, module=__name__)
+    arrays["slipping_amplitude"] = np.array([slipping_amplitude(model, share) for share in phases.inner_share])
+    return summary(TITLE, variables, arrays, coordinates, attributes, module=__name__)
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
@@ -108,22 +129,20 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     variables = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in VARIABLES.items()}
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
     coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
-    attributes = {
-        name: parts[0].attrs[name] for name in ("history", "v", "contact", "seed", "label_limit", "slipping_amplitude")
-    }
-    title = "Initial phases of the end blocks"
-    return summary(title, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
+    attributes = {name: parts[0].attrs[name] for name in ATTRIBUTES}
+    return summary(TITLE, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
 
 
-def _reached(known: KnownAttractors, labels: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what states reach by their labels, shape (amplitude, phase_difference, state)."""
+def _reached(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what states reach by their labels, shape (amplitude, phase_difference, state).
+
+    correlations : of the velocities of the end blocks on each attractor
+    """
     # The last entry is that of the label −1.
     tables = {
         "branch": np.append(known.branch, UNDETERMINED),
         "side": np.append(known.side, 0),
-        "velocity_correlation": np.append(
-            [velocity_correlation(known.model, item.motion.instant()) for item in known.attractors], np.nan
-        ),
+        "velocity_correlation": np.append(correlations, np.nan),
     }
     values = {name: table[labels] for name, table in tables.items()}
     undetermined = (labels == UNDETERMINED).sum(axis=2)
