@@ -211,7 +211,7 @@ class SmallStudy:
                 model = self.study.model(law, a)
                 told = (plane, self.search, self.motion, config["start"])
                 maps.append((model, [basins.tile(found, model, 0, *told)], basins.pairs(found, model, *told)))
-        return basins.merge(maps, self.study.laws, plane, self.search.label_limit, config["start"])
+        return basins.merge(maps, found, self.study.laws, plane, self.search.label_limit, config["start"])
 
 
 def run_study(folder: Path, config: Mapping[str, Any]) -> SmallStudy:

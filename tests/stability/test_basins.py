@@ -34,7 +34,9 @@ def whole(known, tiles, threads, model=MODEL):
     basin_settings = replace(PLANE, tiles=tiles, threads=threads)
     parts = [basins.tile(known, model, number, basin_settings, *FOUND) for number in range(tiles)]
     near = basins.pairs(known, model, basin_settings, *FOUND)
-    return basins.merge([(model, parts, near)], ["linearized", "other"], basin_settings, SEARCH.label_limit, "moving")
+    return basins.merge(
+        [(model, parts, near)], known, ["linearized", "other"], basin_settings, SEARCH.label_limit, "moving"
+    )
 
 
 @pytest.fixture(scope="module")

@@ -60,6 +60,17 @@ def test_the_digest_tells_each_branch(one_law):
         "transient chaos; largest basin fraction 1.000 (a = 0.1)\n"
         "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
     )
+    found["sliding_attracts"][0, 2] = 1
+    sliding = "uniform sliding, which has no stops and is not looked for, attracts at a = 0.2\n"
+    assert all_laws.digest(found).endswith(f"undetermined; {sliding}")
+
+
+def test_the_largest_basin_fraction_is_one_where_the_branch_exists(one_law):
+    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    found["basin_fraction"][...] = found["basin_fraction"] * 0.0
+    assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.05)")
+    found["branch"][0, 0] = [0, -1]
+    assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.1)")
 
 
 def test_a_branch_between_has_a_number_of_its_own():

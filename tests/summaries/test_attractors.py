@@ -10,7 +10,7 @@ from burridge_knopoff.stability.lifetime import Lifetime
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION, Refine
 from burridge_knopoff.summaries import all_laws, attractors, refined
-from burridge_knopoff.summaries.slots import branch_names
+from burridge_knopoff.summaries.slots import name_branches
 from tests.summaries.continued import SETTINGS, STATES, continuation
 
 
@@ -115,7 +115,7 @@ def test_branches_have_names_that_say_what_they_are():
     rate = np.ones((2, 2, 2, 3))
     rate[branch == 1] = [0.2, 0.0, 0.2]
     rate[branch == 3] = [0.0, 0.1, 0.0]
-    names = branch_names(branch, symmetry, rate)
+    names = name_branches(branch, symmetry, rate)
     assert names["branch_number"].tolist() == [0, 1, 2, 3, 4]
     assert names["branch_name"].tolist() == [
         "synchronized",

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -82,7 +83,10 @@ def test_maps_are_put_together_and_told(ruled):
     near[0]["exponent_kind"][...] = ExponentKind.SINGLE
     near[1]["exponent_change"][...], near[1]["exponent_change_error"][...] = 0.4375, 0.0625
     near[1]["exponent_kind"][...] = ExponentKind.VARYING
-    found = basins.merge(maps, ["linearized", "nonlinear"], PLANE, 7.0, "moving")
+    attractors = xr.Dataset(
+        {"branch_number": ("number", [0, 5]), "branch_name": ("number", ["synchronized", "pair (5)"])}
+    )
+    found = basins.merge(maps, attractors, ["linearized", "nonlinear"], PLANE, 7.0, "moving")
     assert found["branch"].values.tolist() == [[[0, 0, 5, 5], [0, 5, 5, 5], [0, 5, 5, 5], [-1] * 4]] * 2
     assert found["last_position"].values.tolist() == [0.25, 0.75, 1.25, 1.75]
     assert found["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
@@ -96,7 +100,7 @@ def test_maps_are_put_together_and_told(ruled):
     expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "label_limit": 7.0}
     assert {key: found.attrs[key] for key in expected} == expected
     assert [found.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
-    shares = "undetermined 25.00 %, synchronized 25.00 %, branch 5 (-) 50.00 %"
+    shares = "undetermined 25.00 %, synchronized 25.00 %, pair (5) (-) 50.00 %"
     decided = f"decided at tau = {np.nanmean(found['decision_time'].values[0]):.0f} in the mean"
     varying = "no single uncertainty exponent: it changes by 0.44 +- 0.06 over the separations"
     assert basins.digest(found) == (
@@ -105,3 +109,12 @@ def test_maps_are_put_together_and_told(ruled):
     )
     found["exponent_kind"][...] = ExponentKind.UNKNOWN
     assert basins.digest(found).count("; uncertainty exponent unknown: too few pairs differ; ") == 2
+
+
+@pytest.mark.parametrize(("velocity", "alike"), [([0.1, 0.2, 0.1], 2), ([0.1, 0.2, 0.3], 0)])
+def test_undetermined_states_that_are_their_own_mirror_images_are_counted(velocity, alike):
+    """Those of one row are undetermined, and one beyond it: of these two lie where U_1 = U_N."""
+    branch = np.array([[-1, -1, -1], [0, 0, -1], [0, 0, -1]])
+    places = {name: [0.5, 1.5, 2.5] for name in ("last_position", "first_position")}
+    plane = {"plane_position": np.array([1.0, 3.0, 2.0]), "plane_velocity": np.array(velocity)}
+    assert basins.undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike

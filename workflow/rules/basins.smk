@@ -81,6 +81,7 @@ rule basin_pairs:
 
 rule basins:
     input:
+        attractors=f"{SUMMARY}/attractors.nc",
         tiles=[
             TILE.format(law=law, a=GRID_NAMES[a], tile=tile)
             for law, a in STUDY.basin_maps

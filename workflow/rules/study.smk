@@ -118,6 +118,11 @@ def prepare_results():
         write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
     except OSError as error:
         sys.exit(f"{error}")
+    if "basins" not in STUDY.left_out and not STUDY.basin_maps and GIVEN.get("basins"):
+        print(
+            "basins: no map: give basins.a; none of its usual values is in the grid",
+            file=sys.stderr,
+        )
     PLAN.announce()
 
 

@@ -19,6 +19,6 @@ maps = [
     (model_of(params.model, law, a, blocks), tiles[n * plane.tiles : (n + 1) * plane.tiles], pairs[n])
     for n, (law, a) in enumerate(params.maps)
 ]
-limit = SearchSettings(**params.attractors).label_limit
-dataset = basins.merge(maps, list(params.model["laws"]), plane, limit, params.start)
+attractors, limit = open_summary(snakemake.input.attractors), SearchSettings(**params.attractors).label_limit
+dataset = basins.merge(maps, attractors, list(params.model["laws"]), plane, limit, params.start)
 write_results(dataset, basins, snakemake.output)

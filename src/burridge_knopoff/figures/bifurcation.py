@@ -17,9 +17,10 @@ from burridge_knopoff.figures.style import (
     legend_below,
     legend_entries,
     panel_table,
+    say,
     styled,
 )
-from burridge_knopoff.summaries.bifurcation import section_points
+from burridge_knopoff.summaries.bifurcation import ROUNDING, section_points
 
 TITLE = "Bifurcation diagrams"
 CATEGORY = "Synchronization"
@@ -27,7 +28,8 @@ PAPER = "Figs. 4a, 4b"
 INPUTS = ("bifurcation",)
 CAPTION = """\
 Section points W' at W = 0 against a, for each law and initial state; upward crossings above 0, downward crossings
-below. W is the sum of the positions relative to uniform sliding.
+below. W is the sum of the positions relative to uniform sliding. Crossings slower than 1e-9 are not shown: they are
+uniform sliding itself, by rounding.
 """
 
 # Values of a beyond which points are so small that a cloud of many can be told apart; those of few are to be seen.
@@ -50,10 +52,11 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
         law, state = laws[number // len(initial)], initial[number % len(initial)]
         for index, direction in enumerate(_DIRECTIONS):
             a, velocity = section_points(bifurcation, law, state, direction)
+            real = np.abs(velocity) > ROUNDING
             # A cloud of 10^5 points is a picture, not 10^5 shapes: kept as pixels inside the PDF.
             panel.plot(
-                a,
-                velocity,
+                a[real],
+                velocity[real],
                 ".",
                 markersize=1.2 if len(grid) > FEW else 3.6,
                 markeredgewidth=0,
@@ -62,6 +65,8 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
                 label=_LABELS[direction],
             )
         panel.set_xlim(*ends)
+        if not any(line.get_xdata().size for line in panel.get_lines()):
+            say(panel, "no crossings")
         titles.append(f"{state}, {law} law")
     _, shown = legend_entries(panels)
     look: Any = {"linestyle": "none", "marker": "o", "markersize": 4}

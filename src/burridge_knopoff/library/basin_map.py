@@ -79,7 +79,9 @@ def basin_map(
     attractors = coexisting_attractors(model, settings, motion, starts=[state], start=start)
     tile = basin_summary.tile(attractors, model, 0, plane, *chosen)
     pairs = basin_summary.pairs(attractors, model, plane, *chosen)
-    basins = basin_summary.merge([(model, [tile], pairs)], [model.law.name], plane, settings.label_limit, start)
+    basins = basin_summary.merge(
+        [(model, [tile], pairs)], attractors, [model.law.name], plane, settings.label_limit, start
+    )
     for dataset in (attractors, basins):
         dataset.attrs["history"] = "burridge_knopoff.basin_map"
     return basins, attractors

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
+from burridge_knopoff.figures.branches import branch_colors, side_color
 from burridge_knopoff.report.numbers import rounded
+from burridge_knopoff.summaries.slots import branch_names
 
 UNDETERMINED_COLOR = "#000000"
 

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.orbits.loss import OrbitStatus
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.summaries.slots import branch_names
 
 
 def kinds() -> list[dict[str, Any]]:

@@ -26,6 +26,7 @@ from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
+from burridge_knopoff.summaries.basins import undetermined_alike
 
 FOLDER = Path(__file__).parent
 
@@ -75,6 +76,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = (), thread
         shown = pool.map(partial(read_picture, summaries=list(summaries)), sources.figures.values())
         pictures = dict(zip(sources.figures, shown, strict=True))
     commands = Commands(study, arguments)
+    sections = section_counts(summaries["bifurcation"])
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -93,8 +95,8 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = (), thread
         ran=overview.what_was_run(study),
         states=overview.initial_states(study),
         config=overview.config_text(study),
-        crossed=_crossed(summaries["bifurcation"], len(study.laws), len(study.initial)),
-        data=_data(study, commands, summaries),
+        crossed=[[bool(run["count"]) for run in law] for law in sections["runs"]],
+        data=_data(study, commands, summaries, sections),
         laws=list(study.laws),
         mirror_symmetric=study.model(study.laws[0], next(iter(study.grid.values()))).chain.is_mirror_symmetric,
         initial=list(study.initial),
@@ -103,6 +105,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = (), thread
         exponents=bool(summaries["lyapunov"]["lyapunov_exponent"].notnull().any()),
         branches=_of(summaries, "attractors", tables.branch_table, []),
         attractors=_of(summaries, "attractors", lambda attractors: attractors.attrs),
+        sliding=_of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
         transitions=tables.transition_table(summaries["orbits"]),
         maps=_of(summaries, "basins", _map_table, []),
         agreement=digest(summaries["agreement"]).splitlines(),
@@ -120,7 +123,9 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = (), thread
     )
 
 
-def _data(study: Study, commands: Commands, summaries: Mapping[str, xarray.Dataset]) -> Markup:
+def _data(
+    study: Study, commands: Commands, summaries: Mapping[str, xarray.Dataset], sections: Mapping[str, Any]
+) -> Markup:
     """Return all numbers of the charts as JSON."""
     return embedded_json(
         {
@@ -130,7 +135,7 @@ def _data(study: Study, commands: Commands, summaries: Mapping[str, xarray.Datas
             "attractors": _of(summaries, "attractors", curves.attractor_points, []),
             "fractions": _of(summaries, "attractors", curves.basin_fractions, []),
             "conventions": _of(summaries, "attractors", curves.conventions),
-            "sections": section_counts(summaries["bifurcation"]),
+            "sections": sections,
             "orbits": curves.orbit_curves(summaries["orbits"]),
             "basins": _of(
                 summaries, "basins", lambda basins: basin_maps(basins, summaries["attractors"], study.marked_states)
@@ -148,12 +153,6 @@ def _of(
     return make(summaries[name]) if name in summaries else nothing
 
 
-def _crossed(bifurcation: xarray.Dataset, laws: int, states: int) -> list[list[bool]]:
-    """Return, for each law and initial state, whether any of its runs crossed the section."""
-    counts = bifurcation["crossing_count"].values.reshape(laws, states, -1)
-    return (counts.sum(axis=2) > 0).tolist()
-
-
 def _map_table(basins: xarray.Dataset) -> list[dict[str, Any]]:
     """Return law, a, and the uncertainty exponent of the boundary of each map."""
     names = basins["law"].attrs["flag_meanings"].split()
@@ -161,13 +160,14 @@ def _map_table(basins: xarray.Dataset) -> list[dict[str, Any]]:
     for number in range(basins.sizes["map"]):
         one = basins.isel(map=number)
         exponent = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
-        undetermined = int(one["undetermined_count"])
+        undetermined, alike = int(one["undetermined_count"]), undetermined_alike(one)
         rows.append(
             {
                 "law": names[int(one["law"])],
                 "a": text(one["a"].item()),
                 "exponent": with_error(*exponent),
-                "undetermined": f"{undetermined} of {one['branch'].size}",
+                "undetermined": f"{undetermined} of {one['branch'].size}"
+                + (f", {alike} of them where mirror blocks are alike, a line of no area" if alike else ""),
             }
         )
     return rows

@@ -15,6 +15,7 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
 
 #: How runs end, in words, in the order of the numbers in files.
 STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED]
@@ -112,7 +113,9 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xa
                     "command": commands.snakemake(law, initial, a),
                 }
                 if status == Status.COMPLETED:
-                    undetermined.append({**run, "what": "kind of motion undetermined"})
+                    sliding = sliding_attracts(commands.study.model(law, commands.study.grid[a]))
+                    what = f"kind of motion undetermined{f': {SLIDING}' if sliding else ''}"
+                    undetermined.append({**run, "what": what})
                 else:
                     failed.append({**run, "what": f"did not complete: {STATUSES[status]}"})
     return [*failed, *undetermined]

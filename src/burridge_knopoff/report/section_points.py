@@ -8,6 +8,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.report.numbers import rounded
+from burridge_knopoff.summaries.bifurcation import ROUNDING
 
 BINS = 300
 
@@ -18,10 +19,11 @@ def section_counts(bifurcation: xarray.Dataset) -> dict[str, Any]:
     `edges` are the first and the last edge of BINS equal bins. For every (law, initial): `index` are the differences
     of the flat indices a·BINS + bin of the bins that are not empty, `count` their signed numbers. Upward crossings have
     W' ≥ 0 and downward ones W' ≤ 0, so that a bin holds one kind only, but for the one with W' = 0: that one is edge.
+    Crossings that are rounding are not counted.
     """
     velocity, counts = bifurcation["crossing_velocity"].values, bifurcation["crossing_count"].values
     # Sums of the stored type, one byte, would overflow.
-    directions = bifurcation["crossing_direction"].values.astype(float)
+    directions = np.where(np.abs(velocity) > ROUNDING, bifurcation["crossing_direction"].values.astype(float), 0.0)
     low, high = _edges(velocity)
     edges = np.linspace(low, high, BINS + 1)
     laws, states = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))

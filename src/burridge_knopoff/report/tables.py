@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import branch_names
 from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.report.numbers import text, with_error
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.study.words import span
+from burridge_knopoff.summaries.slots import branch_names
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
@@ -25,19 +26,20 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
         branch = one["branch"].values
         for number in sorted({int(n) for n in np.unique(branch) if n >= 0}):
             members = branch == number
-            there = np.flatnonzero(members.any(axis=1))
+            there = members.any(axis=1)
+            where = a[there]
             distance = one["mean_distance"].values[members]
             fraction = np.where(members, one["basin_count"].values, 0).sum(axis=1) / max(samples, 1)
-            largest = int(fraction.argmax())
+            largest = int(fraction[there].argmax())
             rows.append(
                 {
                     "law": str(law),
                     "branch": names[number],
-                    "range": f"{text(a[there[0]])} to {text(a[there[-1]])}",
-                    "values": f"{len(there)} of {len(a)}",
-                    "distance": f"{distance.min():.4f} to {distance.max():.4f}",
+                    "range": span(text(where[0]), text(where[-1])),
+                    "values": f"{len(where)} of {len(a)}",
+                    "distance": span(f"{distance.min():.4f}", f"{distance.max():.4f}"),
                     "kinds": ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[members])),
-                    "fraction": f"{fraction[largest]:.3f} (a = {text(a[largest])})" if samples else "–",
+                    "fraction": f"{fraction[there][largest]:.3f} (a = {text(where[largest])})" if samples else "–",
                 }
             )
     return rows
@@ -107,7 +109,7 @@ def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:
                     "at": text(a[best]) if len(some) else "–",
                     "interval": f"{100 * low:.0f} to {100 * high:.0f} %",
                     "values": f"{len(some)} of {len(a)}"
-                    + (f", {text(some[0])} to {text(some[-1])}" if len(some) else ""),
+                    + (f", {span(text(some[0]), text(some[-1]))}" if len(some) else ""),
                     "undetermined": f"{open_states} of {states * len(a)}",
                 }
             )

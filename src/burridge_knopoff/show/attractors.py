@@ -7,12 +7,12 @@ import xarray
 
 from burridge_knopoff.show.words import table
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.summaries.slots import branch_names
 
 
 def called(found: xarray.Dataset, branch: int, side: int) -> str:
     """Return what a branch is called, with + or - for the side of it where it has two."""
-    names = dict(zip(found["branch_number"].values.tolist(), found["branch_name"].values, strict=True))
-    return f"{names[branch]} {' +-'[side]}".rstrip()
+    return f"{branch_names(found)[branch]} {' +-'[side]}".rstrip()
 
 
 def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> list[str]:

@@ -23,7 +23,7 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.study.words import span
 from burridge_knopoff.summaries.attractors import VARIABLES
-from burridge_knopoff.summaries.slots import NAMES, branch_names, missing
+from burridge_knopoff.summaries.slots import NAMES, branch_names, missing, name_branches
 
 _HEAD = ("Conventions", "title", "law", *provenance(__name__))
 
@@ -52,7 +52,7 @@ def merge(
     coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
     whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()} | NAMES
-    values.update(branch_names(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))
+    values.update(name_branches(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))
     return summary(title, whole, values, coordinates, attributes, module=__name__)
 
 
@@ -116,9 +116,9 @@ def with_branches_between(
 
 def named_alike(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
     """Return attractors at all values of a with the names that branches have at the values of the grid."""
-    names = dict(zip(attractors["branch_number"].values.tolist(), attractors["branch_name"].values, strict=True))
-    own = zip(refined["branch_number"].values.tolist(), refined["branch_name"].values, strict=True)
-    return refined.assign(branch_name=refined["branch_name"].copy(data=[names.get(n, name) for n, name in own]))
+    names = branch_names(refined) | branch_names(attractors)
+    own = refined["branch_number"].values.tolist()
+    return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in own]))
 
 
 def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
@@ -133,17 +133,18 @@ def digest(dataset: xarray.Dataset) -> str:
     """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
     lines = []
     a = dataset["a"].values
-    names = dict(zip(dataset["branch_number"].values.tolist(), dataset["branch_name"].values, strict=True))
+    names = branch_names(dataset)
     for law in dataset["law"].values:
         one = dataset.sel(law=law)
         branch = one["branch"].values
         for number in np.unique(branch[branch >= 0]):
             slots = branch == number
-            where = a[slots.any(axis=1)]
             mean = one["mean_distance"].values[slots]
             kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
-            share = np.nansum(np.where(slots, one["basin_fraction"].values, 0.0), axis=1)
-            largest = f"largest basin fraction {share.max():.3f} (a = {a[share.argmax()]:g})"
+            there = slots.any(axis=1)
+            where = a[there]
+            share = np.where(slots, one["basin_fraction"].values, 0.0).sum(axis=1)[there]
+            largest = f"largest basin fraction {share.max():.3f} (a = {where[share.argmax()]:g})"
             name = names[int(number)]
             ends, means = span(f"{where[0]:g}", f"{where[-1]:g}"), span(f"{mean.min():.4f}", f"{mean.max():.4f}")
             lines.append(
@@ -151,10 +152,14 @@ def digest(dataset: xarray.Dataset) -> str:
                 f"{largest if dataset.attrs['fraction_samples'] else 'no states sampled for its basin'}"
             )
         undetermined = one["undetermined_count"].values
-        empty = a[branch.max(axis=1) < 0]
         total = int(dataset.attrs["fraction_samples"]) * len(a)
-        lines.append(
-            f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
-            + (f"; no attractor at a = {', '.join(f'{value:g}' for value in empty)}" if len(empty) else "")
-        )
+        line = f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
+        sliding = one["sliding_attracts"].values == 1
+        for where, words in (
+            ((branch.max(axis=1) < 0) & ~sliding, "no attractor"),
+            (sliding, "uniform sliding, which has no stops and is not looked for, attracts"),
+        ):
+            if where.any():
+                line += f"; {words} at a = {', '.join(f'{value:g}' for value in a[where])}"
+        lines.append(line)
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""The attractors of each law against a, as `stability.continuation` finds them, as a file.
+"""The attractors that coexist under each law at each a, how many initial states reach each, and where sweeps of a lead.
 
 Features, branches, sweeps, basin fractions, and what each initial state reaches, at the values of the grid; `refined`
 has the attractors at those that were put in between as well.
@@ -15,7 +15,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.running.processes import shared_out
@@ -24,6 +24,7 @@ from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+from burridge_knopoff.summaries.equilibrium import sliding_attracts
 from burridge_knopoff.summaries.slots import (
     NOTHING,
     branch_order,
@@ -47,6 +48,12 @@ VARIABLES = {
     "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
     "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
     "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit"),
+    "sliding_attracts": _V(
+        ("a",),
+        "i1",
+        "whether uniform sliding attracts: it has no stops and is not looked for",
+        flag("i1", {0: "no", 1: "yes"}),
+    ),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch"),
     "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
@@ -72,6 +79,7 @@ def one_law(
     models = [found.models[k] for k in found.grid]
     values = slot_values(found, found.grid, settings.lifetime, "a")
     values.update(_basins(found, settings.fraction_samples))
+    values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit, processes))
     values.update(_sweeps(found))

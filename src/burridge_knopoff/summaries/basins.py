@@ -1,4 +1,4 @@
-"""Basins of attraction, as `stability.basins` labels them: tiles of a map, whole maps, and their boundaries."""
+"""Maps of basins of attraction: which attractor each initial state of a plane reaches, and how rough boundaries are."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from burridge_knopoff.stability.labels import UNDETERMINED, label_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
 from burridge_knopoff.stability.splitting import SEPARATIONS, follow_pairs
 from burridge_knopoff.stability.uncertainty import ExponentKind, uncertainty_exponent
+from burridge_knopoff.summaries.slots import NAMES, branch_names
 
 _PLANE = ("last_position", "first_position")
 _V = Variable
@@ -59,6 +60,7 @@ MAP_VARIABLES = {
     **{name: _V(("map", *_PLANE), item.dtype, item.long_name) for name, item in TILE_VARIABLES.items()},
     "undetermined_count": _V(("map",), "i4", "states that reach no attractor by label_limit"),
     **{name: replace(item, dimensions=("map", *item.dimensions)) for name, item in PAIR_VARIABLES.items()},
+    **NAMES,
 }
 COORDINATES = {
     "first_position": "initial position U_1(0) of the first block",
@@ -155,6 +157,7 @@ def _separation(basins: BasinSettings) -> tuple[str, np.ndarray, dict[str, str]]
 
 def merge(
     maps: Sequence[tuple[Model, Sequence[xarray.Dataset], xarray.Dataset]],
+    attractors: xarray.Dataset,
     laws: Sequence[str],
     basins: BasinSettings,
     label_limit: float,
@@ -162,12 +165,14 @@ def merge(
 ) -> xarray.Dataset:
     """Put the maps together, each (model, its tiles in order, its pairs).
 
+    attractors : the summary of that name, which has the names of the branches
     laws : names of the laws of the study, in order; basins, label_limit, start : what the maps were made with
     """
     wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
     values["undetermined_count"] = [np.count_nonzero(whole["branch"] == UNDETERMINED) for whole in wholes]
     values |= {name: np.stack([near[name].values for *_, near in maps]) for name in PAIR_VARIABLES}
+    values |= {name: attractors[name].values for name in NAMES}
     coordinates = _coordinates(wholes[0]["first_position"].values, wholes[0]["last_position"].values)
     coordinates["separation"] = _separation(basins)
     models = [model for model, *_ in maps]
@@ -196,6 +201,7 @@ def merge(
 def digest(dataset: xarray.Dataset) -> str:
     """Return, in a line for each map, the shares of the basins and the uncertainty exponent of their boundary."""
     lines = []
+    names = {UNDETERMINED: "undetermined", **branch_names(dataset)}
     laws = dataset["law"].attrs["flag_meanings"].split()
     for number in range(dataset.sizes["map"]):
         one = dataset.isel(map=number)
@@ -204,15 +210,28 @@ def digest(dataset: xarray.Dataset) -> str:
         )
         shares = []
         for (branch, side), count in zip(pairs.T, counts, strict=True):
-            name = {-1: "undetermined", 0: "synchronized"}.get(int(branch), f"branch {branch}")
-            name += {1: " (+)", -1: " (-)", 0: ""}[int(side)]
-            shares.append(f"{name} {100.0 * count / one['branch'].size:.2f} %")
+            name = names[int(branch)] + {1: " (+)", -1: " (-)", 0: ""}[int(side)]
+            alike = undetermined_alike(one) if branch == UNDETERMINED else 0
+            within = f" ({alike} of {count} where mirror blocks are alike, a line of no area)" if alike else ""
+            shares.append(f"{name} {100.0 * count / one['branch'].size:.2f} %{within}")
         times = one["decision_time"].values
         decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
         lines.append(
             f"{laws[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; {_exponent_text(one)}{decided}"
         )
     return "\n".join(lines) + "\n"
+
+
+def undetermined_alike(one: xarray.Dataset) -> int:
+    """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of no area.
+
+    In a chain that is its own mirror image such states stay alike, and so come to no attractor where synchrony repels.
+    """
+    position, velocity = one.attrs["plane_position"], one.attrs["plane_velocity"]
+    if (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
+        return 0
+    alike = np.equal.outer(one["last_position"].values, one["first_position"].values)
+    return int(np.count_nonzero(one["branch"].values[alike] == UNDETERMINED))
 
 
 def _exponent_text(one: xarray.Dataset) -> str:

@@ -12,6 +12,7 @@ from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.all_laws import branch_numbers, merge
 from burridge_knopoff.summaries.attractors import one_law
+from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
 
 
 def coexisting_attractors(
@@ -30,6 +31,8 @@ def coexisting_attractors(
     """
     found = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not found.attractors[0]:
+        if sliding_attracts(model):
+            raise ValueError(f"a: {model.a!r} is not allowed: no attractor was found; {SLIDING}")
         raise ValueError(
             f"transient: {settings.transient:g} is not allowed at a = {model.a!r}: no attractor was found; longer, or "
             f"more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples {settings.samples} "

@@ -1,4 +1,4 @@
-"""The edges of all branches of attractors: where each begins, ends or changes, and by what, as a file.
+"""The edges of all branches of attractors: where each begins, ends or changes, and by what.
 
 An attractor that is a closed orbit is followed in a to where it loses its stability or ends; that edge is known to
 1e-10. An edge of which both sides are no closed orbits is only known to lie between two values of a.

@@ -29,6 +29,9 @@ DURATION = 20.0
 # Logarithm of how much a perturbation may grow in that time; where growth is faster, the time is shorter.
 LARGEST_GROWTH = 20.0
 
+#: What is said of a model under which no other attractor is found.
+SLIDING = "uniform sliding attracts here; it has no stops and is not looked for"
+
 PARTS = ("real", "imaginary")
 
 # Digits kept of numbers that come from LAPACK, whose last bits depend on the machine.
@@ -138,6 +141,11 @@ def eigenvalues(model: Model) -> np.ndarray:
     # A mode that does not oscillate has two real eigenvalues.
     shift = np.where(square > 0.0, 1j, 1.0) * root
     return (half + shift[:, None] * np.array([1.0, -1.0])).ravel()
+
+
+def sliding_attracts(model: Model) -> bool:
+    """Return whether every perturbation of uniform sliding that is small decays."""
+    return bool((eigenvalues(model).real < 0.0).all())
 
 
 def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import xarray
 
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.orbits.symmetry import Symmetry
@@ -102,6 +103,11 @@ def empty(variables: Mapping[str, Variable], shape: Mapping[str, int], *beginnin
     }
 
 
+def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
+    """Return what each branch of a file is called, by its number."""
+    return dict(zip(dataset["branch_number"].values.tolist(), map(str, dataset["branch_name"].values), strict=True))
+
+
 def branch_order(found: Continuation, place: int) -> list[int]:
     """Return the indices of the attractors of one model in the order of their slots: by branch and side."""
     return [int(i) for i in np.lexsort((-found.side[place], found.branch[place]))]
@@ -143,7 +149,7 @@ def slot_values(found: Continuation, places: Sequence[int], lasting: float, dime
     return values
 
 
-def branch_names(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:
+def name_branches(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:
     """Return the values of NAMES.
 
     branch, symmetry : of slots, of one shape; stop_rate : of the same shape and (block,)
