@@ -1,9 +1,10 @@
 """What a panel has nothing of it says; values of a at which nothing is drawn stay on the axis."""
 
 import numpy as np
+import pytest
 import xarray as xr
 
-from burridge_knopoff.figures import agreement, basin_fractions, bifurcation, distance
+from burridge_knopoff.figures import agreement, basin_fractions, bifurcation, distance, lyapunov, stick_slip, windows
 
 GRID = {"law": ["linearized", "nonlinear"], "initial": ["symmetric"], "a": [0.1, 0.2]}
 
@@ -41,6 +42,11 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
     )
     (panel,) = bifurcation.draw(points).axes
     assert panel.get_xlim() == (1.5, 6.0)
+    # Rounding of uniform sliding is no crossing.
+    assert words(bifurcation.draw(points.assign(crossing_velocity=1e-10 * points["crossing_velocity"]))) == [
+        ["no crossings"]
+    ]
+    assert words(bifurcation.draw(points)) == [[]]
 
 
 def test_differences_of_0_lie_at_the_foot_and_are_said():
@@ -74,3 +80,45 @@ def test_a_distance_of_0_is_said():
     )
     other = run.assign(distance=run["distance"] + 0.1)
     assert words(distance.draw({"symmetric": run, "plus": other})) == [["$J$ is 0 at all times"], []] * 2
+
+
+def test_windows_of_no_attractors_keep_their_axis():
+    names = ("law", "value", "attractor")
+    refined = xr.Dataset(
+        {
+            "a": (names[:2], [[0.3, 0.5]]),
+            "in_grid": (names[:2], [[1, 1]]),
+            "branch": (names, np.full((1, 2, 1), -1)),
+            "kind": (names, np.full((1, 2, 1), -1)),
+            "mean_distance": (names, np.full((1, 2, 1), np.nan)),
+            "branch_number": ("number", np.zeros(0, dtype=int)),
+            "branch_name": ("number", np.zeros(0, dtype=str)),
+        },
+        {"law": ["linearized"]},
+    )
+    figure = windows.draw(refined)
+    assert words(figure) == [["no attractor"], []]
+    assert np.allclose(figure.axes[0].get_xlim(), (0.2, 0.6))
+
+
+def test_runs_without_exponents_say_so():
+    names = tuple(GRID)
+    exponents = (*names, "exponent"), np.full((2, 1, 2, 3), np.nan)
+    kinds = names, np.full((2, 1, 2), -1)
+    run = xr.Dataset({"lyapunov_exponent": exponents, "lyapunov_error": exponents, "kind": kinds}, GRID)
+    assert words(lyapunov.draw(run)) == [["no exponents were computed"]] * 2
+
+
+@pytest.mark.parametrize(
+    ("stuck", "said"),
+    [(0.0, [["no stops"], ["the velocities do not change"], []]), (np.nan, [["no run completed"]] * 3)],
+)
+def test_cycles_of_runs_without_stops_say_so(stuck, said):
+    names = (*GRID, "block")
+    block = names, np.full((2, 1, 2, 2), np.nan)
+    values = dict.fromkeys(("cycle_time", "cycle_time_error", "stop_rate", "velocity_frequency"), block)
+    run = xr.Dataset(values, {**GRID, "block": [1, 2]}).assign(
+        stick_fraction=(names, np.full((2, 1, 2, 2), stuck)),
+        velocity_correlation=(tuple(GRID), np.full((2, 1, 2), np.nan)),
+    )
+    assert words(stick_slip.draw(run, "nonlinear")) == said

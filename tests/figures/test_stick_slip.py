@@ -22,7 +22,7 @@ def cycles(blocks):
     return found.assign(velocity_frequency_error=error, velocity_correlation=correlation)
 
 
-@pytest.mark.parametrize(("blocks", "shown"), [(2, [1, 2]), (3, [1, 2, 3]), (6, [1, 3, 6])])
+@pytest.mark.parametrize(("blocks", "shown"), [(3, [1, 2, 3]), (6, [1, 3, 6])])
 def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, blocks, shown):
     dataset = cycles(blocks)
     figure = draw(dataset, "nonlinear")
@@ -42,3 +42,14 @@ def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, bloc
     assert len(ratios) == 2 * len(ends)
     assert panels[1].get_ylabel().endswith(f"block {middle}")
     write_figure(figure, tmp_path / "figure.png")
+
+
+def test_two_blocks_have_no_ratio_to_a_middle_one():
+    figure = draw(cycles(2), "nonlinear")
+    labels = [panel.get_ylabel().splitlines()[0] for panel in figure.axes]
+    assert labels == ["time between stops", "correlation of", "share of time stuck"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        "block 1",
+        "block 2",
+        "2 to 3, the paper's chain",
+    ]

@@ -7,17 +7,19 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
 from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
     legend_entries,
     new_figure,
     page_width,
+    say,
     say_nothing,
     styled,
 )
 from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Basin fractions and sweeps"
 CATEGORY = "Attractors"
@@ -87,16 +89,18 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
     if not attractors["sweep_mean_distance"].notnull().any():
-        say_nothing(panel, "no attractor to follow")
+        # With its axis, whose numbers are those of the panel above as well.
+        say(panel, "no attractor to follow")
         return
-    styles = {"upward": ("black", ">", 3.6), "downward": ("#E69F00", "<", 2.2)}
-    for direction, (color, marker, size) in styles.items():
+    # Gray: the colours are those of branches.
+    styles = {"upward": ("black", ">", 3.6, "-"), "downward": ("0.5", "<", 2.2, "--")}
+    for direction, (color, marker, size, dashes) in styles.items():
         for number in range(attractors.sizes["sweep"]):
             values = attractors["sweep_mean_distance"].sel(direction=direction).isel(sweep=number).values
             panel.plot(
                 attractors["a"].values,
                 values,
-                f"-{marker}",
+                f"{dashes}{marker}",
                 markersize=size,
                 markeredgewidth=0,
                 linewidth=0.5,

@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import branch_colors, branch_names, side_color
+from burridge_knopoff.figures.branches import branch_colors, side_color
 from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
+from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Basins of attraction"
 CATEGORY = "Attractors"
@@ -72,6 +73,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
             panel.plot(x, y, **_number(index))
         if number >= count - columns:
             panel.set_xlabel("$U_1(0)$")
+            panel.tick_params(labelbottom=True)
         if number % columns == 0:
             panel.set_ylabel("$U_N(0)$")
     states = [Line2D([], [], **_number(index), label=f"state {name}") for index, name in enumerate(there)]

@@ -32,9 +32,3 @@ def side_color(color: str, side: int) -> tuple[float, float, float]:
     if side >= 0:
         return red, green, blue
     return tuple(0.45 * part + 0.55 for part in (red, green, blue))  # type: ignore[return-value]
-
-
-def branch_names(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return how a legend calls each branch, by its number."""
-    numbers, names = attractors["branch_number"].values, attractors["branch_name"].values
-    return {int(number): str(name) for number, name in zip(numbers, names, strict=True)}

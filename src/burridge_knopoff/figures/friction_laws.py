@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, dashes, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, dashes, label_panels, lone_marker, new_figure, styled
 from burridge_knopoff.laws import Law, law_of
 
 TITLE = "Friction laws"
@@ -59,7 +59,8 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
             left.plot(speed, friction, color=color(n), linestyle=dashes(k))
         for k, initial in enumerate(mean_distance["initial"].values):
             least = mean_distance["least_friction"].sel(initial=initial, law=law.name)
-            right.plot(mean_distance["a"], least, color=color(n), linestyle=dashes(k))
+            alone = lone_marker(least.values)
+            right.plot(mean_distance["a"], least, color=color(n), linestyle=dashes(k), marker=alone, markersize=3.5)
     left.set(xlabel="velocity $U'$", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, fastest))
     left.set_ylim(-0.15, 1.08 * largest)
     right.set(xlabel="$a$", ylabel=r"least $\Phi$", ylim=(min(-0.15, right.get_ylim()[0]), 1.08))

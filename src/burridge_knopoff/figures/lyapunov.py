@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import cells, label_panels, legend_below, legend_entries, panel_table, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_below, legend_entries, panel_table, say, styled
 from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Lyapunov exponents"
@@ -63,6 +63,8 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
                 color=("black", "0.5", "0.75")[n],
                 label=rf"$\lambda_{n + 1}$",
             )
+        if run["lyapunov_exponent"].isnull().all():
+            say(panel, "no exponents were computed")
         panel.set_ylim(LOWEST, LOWEST + (top - LOWEST) / CURVES)
         for left, right, kind in zip(edges[:-1], edges[1:], run["kind"].values, strict=True):
             panel.axvspan(left, right, STRIP, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)

@@ -9,8 +9,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, branch_names
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
 from burridge_knopoff.figures.style import begin_at_zero, cells, label_panels, legend_below, page_width, styled
+from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "⟨J⟩ against a"
 CATEGORY = "Synchronization"
@@ -23,8 +24,8 @@ state (black, bars of three standard errors).
 OPTIONAL = {
     "attractors": """\
 Coloured points: the attractors that were found, by branch. Below: the branch on which each initial state ends under
-each convention of contact and start, after a push if the motion before it does not attract; a run above may not get
-there within its time.
+each convention of contact and start, after a push if the motion before it does not attract (white: undetermined); a run
+above may not get there within its time.
 """
 }
 

@@ -16,6 +16,7 @@ from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
     legend_entries,
+    lone_marker,
     marker,
     new_figure,
     say_nothing,
@@ -99,12 +100,13 @@ def _styles(styles: tuple[Any, ...], labels: tuple[str, ...]) -> list[Line2D]:
 
 def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
     a = one["a"].values
-    panel.plot(a, one["transverse_multiplier"].values, "-", color=hue)
+    look: Any = {"color": hue, "marker": lone_marker(a), "markersize": 3.5}
+    panel.plot(a, one["transverse_multiplier"].values, "-", **look)
     symmetric = one.sel(mode="symmetric_1")
     real, imaginary = (symmetric["multiplier"].sel(part=part).values for part in ("real", "imaginary"))
     modulus = np.hypot(real, imaginary)
     # The modulus, of a complex pair as well, with the sign of the real part.
-    panel.plot(a, np.where(real < 0.0, -modulus, modulus), "--", color=hue)
+    panel.plot(a, np.where(real < 0.0, -modulus, modulus), "--", **look, markerfacecolor="none")
     panel.plot(one["critical_a"].item(), 1.0, "o", color=hue, markersize=3.5)
 
 

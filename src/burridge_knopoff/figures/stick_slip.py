@@ -12,18 +12,19 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.motion import SHADES
-from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, legend_below, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, legend_below, new_figure, say, styled
 
 TITLE = "Stick-slip cycles"
 CATEGORY = "Runs"
 INPUTS = ("stick_slip",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
-Cycles of each block against a, a column for each initial state, under one law, that of the figures of single runs,
-which stands above the columns: the time between two stops, the frequency of the end blocks over that of the middle
-block, by the peaks of the spectra of their velocities and by their stops, the correlation of the velocities of the end
-blocks, and the share of time for which each block sticks. Bars are standard errors of cycle times and how finely the
-spectra resolve; the band and the dotted line are what the paper states for its chain.
+Cycles of the first, the middle and the last block against a, a column for each initial state, under one law, that of
+the figures of single runs, which stands above the columns: the time between two stops; in chains of more than two
+blocks the frequency of the end blocks over that of the middle block, by the peaks of the spectra of their velocities
+and by their stops; the correlation of the velocities of the end blocks; and the share of time for which each block
+sticks. Bars are standard errors of cycle times and how finely the spectra resolve; the band and the dotted line are
+what the paper states for its chain.
 """
 
 #: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -41,38 +42,42 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
 
     A column for each initial state. Of the blocks the first, the middle and the last one are shown; ratios are those of
-    the end blocks to the middle one. Gaps are blocks that do not stop, and runs that did not complete.
+    the end blocks to the middle one, which two blocks do not have. Gaps are blocks that do not stop, and runs that did
+    not complete.
     """
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
     shown = sorted({1, middle, count})
-    figure, panels = new_figure(PAGE, 7.4, rows=4, columns=len(states))
+    # Two blocks have none in the middle.
+    over_middle = [f"frequency: end blocks\nover block {middle}"] if count > 2 else []
+    together_label = f"correlation of\n$U_1'$ with $U_{{{count}}}'$"
+    labels = ("time between stops", *over_middle, together_label, "share of time stuck")
+    figure, panels = new_figure(PAGE, 0.2 + 1.8 * len(labels), rows=len(labels), columns=len(states))
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
-        cycles, ratios, together, sticks = panels[column :: len(states)]
+        cycles, *ratios, together, sticks = panels[column :: len(states)]
         for n, block in enumerate(shown):
             one = run.sel(block=block)
             _points(cycles, n, one["cycle_time"], one["cycle_time_error"])
             _points(sticks, n, one["stick_fraction"])
-            if block != middle:
-                _ratios(ratios, n, one, run.sel(block=middle))
+            if ratios and block != middle:
+                _ratios(ratios[0], n, one, run.sel(block=middle))
+        _say_why(cycles, run, "cycle_time", "no stops")
+        _say_why(together, run, "velocity_correlation", "the velocities do not change")
+        _say_why(sticks, run, "stick_fraction", "")
         cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
-        ratios.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
         together.plot(run["a"], run["velocity_correlation"], "o", color="black", markersize=2.0)
         together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
+        together.set_ylim(-1.1, 1.1)
         sticks.set_xlabel("$a$")
-    labels = (
-        "time between stops",
-        f"frequency: end blocks\nover block {middle}",
-        f"correlation of\n$U_1'$ with $U_{{{count}}}'$",
-        "share of time stuck",
-    )
+        for panel in ratios:
+            _say_why(panel, run, "velocity_frequency", "the velocities do not change")
+            panel.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
     for row, label in enumerate(labels):
         panels[row * len(states)].set_ylabel(label)
-    for row in (0, 1, 3):
-        begin_at_zero(panels[row * len(states)])
-    panels[2 * len(states)].set_ylim(-1.1, 1.1)
-    legend_below(figure, _legend(shown))
+        if "correlation" not in label:
+            begin_at_zero(panels[row * len(states)])
+    legend_below(figure, _legend(shown, bool(over_middle)))
     heads = [f"{initial}, {shown_law} law" for initial in states]
     label_panels(panels, heads + [""] * (len(panels) - len(heads)))
     return figure
@@ -86,6 +91,12 @@ def _points(panel: Axes, n: int, values: xarray.DataArray, errors: xarray.DataAr
     panel.errorbar(values["a"], values, errors, elinewidth=0.6, **_look(n))
 
 
+def _say_why(panel: Axes, run: xarray.Dataset, name: str, words: str) -> None:
+    """Say why a panel has no points of that variable, if it has none."""
+    if run[name].isnull().all():
+        say(panel, "no run completed" if run["stick_fraction"].isnull().all() else words)
+
+
 def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
     """Draw the frequency of the velocity of an end block over that of the middle one, and the same of their stops."""
     # Both are within the resolution of the spectrum.
@@ -97,12 +108,16 @@ def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) ->
     panel.plot(end["a"], stops, markerfacecolor="none", **_look(n))
 
 
-def _legend(shown: list[int]) -> list[Line2D | Patch]:
+def _legend(shown: list[int], ratios: bool) -> list[Line2D | Patch]:
     gray: dict[str, Any] = {**_look(0), "color": "0.3"}
+    blocks = [Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)]
+    band = Patch(facecolor="0.88", label="2 to 3, the paper's chain")
+    if not ratios:
+        return [*blocks, band]
     return [
-        *(Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)),
+        *blocks,
         Line2D([], [], **gray, label="frequency of the velocity"),
         Line2D([], [], **gray, markerfacecolor="none", label="frequency of the stops"),
-        Patch(facecolor="0.88", label="2 to 3, the paper's chain"),
+        band,
         Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="1/2, the paper's chain"),
     ]

@@ -214,6 +214,11 @@ def dashes(index: int) -> Any:
     return DASHES[index % len(DASHES)]
 
 
+def lone_marker(values: np.ndarray) -> str:
+    """Return the marker of a curve over these values: none, unless it has one point, where a line shows nothing."""
+    return "o" if len(values) == 1 else ""
+
+
 def marker(index: int) -> str:
     """Return the marker of the curve of that number."""
     return MARKERS[index % len(MARKERS)]

@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import branch_names
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, styled
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Windows of a"
 CATEGORY = "Attractors"
@@ -52,6 +52,9 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
     there = refined["branch"].values >= 0
     a = np.broadcast_to(refined["a"].values[:, None], there.shape)[there]
     mean, kind = refined["mean_distance"].values[there], refined["kind"].values[there]
+    if not len(a):
+        say(panel, "no attractor")
+        panel.set_xlim(*cells(refined["a"].dropna("value").values)[[0, -1]])
     for number, color in KIND_COLORS.items():
         chosen = kind == number
         edge = {"markeredgecolor": "0.4", "markeredgewidth": 0.4} if number < 0 else {"markeredgewidth": 0}
