@@ -3,6 +3,8 @@
 tests/study/test_config.py has more of them, as changes to a good one.
 """
 
+from burridge_knopoff.laws import LAWS
+
 GRID = "a: [0.1]\n"
 STATES = "initial: {minus: {}}\n"
 GOOD = f"study: x\n{GRID}{STATES}"
@@ -104,8 +106,11 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         ["a: 2002000 points", "2 laws, 1000 initial states, 1001 values", "at most 100000"],
     ),
     # Laws and chains.
-    "unknown_law": (f"{GOOD}laws: {{cubic: {{}}}}\n", ["laws.cubic: 'cubic' is not allowed", "stribeck, or a formula"]),
-    "unknown_kind": (f"{GOOD}laws: {{mine: {{law: cubic}}}}\n", ["laws.mine.law: 'cubic' is not allowed", "stribeck"]),
+    "unknown_law": (
+        f"{GOOD}laws: {{cubic: {{}}}}\n",
+        ["laws.cubic: 'cubic' is not allowed", f"{' | '.join(LAWS)}, or a formula"],
+    ),
+    "unknown_kind": (f"{GOOD}laws: {{mine: {{law: cubic}}}}\n", ["laws.mine.law: 'cubic' is not allowed", *LAWS]),
     "unknown_number": (
         f"{GOOD}laws: {{stribeck: {{sigm: 0.1}}}}\n",
         ["laws.stribeck.sigm: not a number", "sigma | eta"],

@@ -17,8 +17,7 @@ VARIABLES = {
 
 def made(count=64, **attributes):
     values = {"value": np.arange(2.0 * count).reshape(2, count), "verdict": [2.0] * count, "other": 1}
-    coordinates = axes([], np.arange(count) / 8, ["linearized", "nonlinear"])
-    del coordinates["initial"]
+    coordinates = axes(law=["linearized", "nonlinear"], a=np.arange(count) / 8)
     module = "burridge_knopoff.summaries.lyapunov"
     return summary("A title", VARIABLES, values, coordinates, {"v": 0.1, **attributes}, module=module)
 
@@ -37,7 +36,7 @@ def test_what_is_described_is_in_the_dataset():
     assert found["a"].attrs == {"long_name": "friction parameter a", "units": "1"}
     assert found["law"].values.tolist() == ["linearized", "nonlinear"]
     assert found["law"].attrs == {"long_name": "friction law"}
-    assert axes(["minus"], [], [])["initial"][1].tolist() == ["minus"]
+    assert axes(initial=["minus"])["initial"][1].tolist() == ["minus"]
     head = {
         "Conventions": "CF-1.11, ACDD-1.3",
         "title": "A title",

@@ -12,8 +12,7 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries import agreement, lyapunov, mean_distance
-from burridge_knopoff.summaries.judgement import judge
+from burridge_knopoff.summaries import agreement, judgement, lyapunov, mean_distance
 from tests.grids import grid_of
 from tests.sections import AGREEMENT, MOTION
 from tests.summaries.points import write_points
@@ -281,7 +280,7 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     values = {name: np.concatenate([item, np.full((2, 1, 1), same[name])], axis=2) for name, item in pair.items()}
     filled = ("difference", "difference_error", "same_kind", "agrees")
     values |= {name: np.zeros((1, 2)) for name in filled} | {"parting_a": np.zeros(1)}
-    judge(values, np.array([0.1, 0.2]), 1e-6, AGREEMENT)
+    judgement.compare(values, np.array([0.1, 0.2]), 1e-6, AGREEMENT)
     assert values["agrees"].tolist() == [[agrees, 1]]
     assert values["same_kind"].tolist() == [
         [-1 if -1 in kinds else int(kinds in {(k, k) for k in range(4)} | {(1, 2)}), 1]

@@ -18,7 +18,7 @@ SLOT = {
 }
 EXPECTED = {
     "agreement": {**AGREEMENT, "settled": VERDICT},
-    "attractors": SLOT,
+    "attractors": {**SLOT, "sliding_attracts": YES_NO},
     "refined": {**SLOT, "in_grid": YES_NO},
     "bifurcation": {"crossing_direction": DIRECTION},
     "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},

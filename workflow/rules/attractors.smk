@@ -8,6 +8,13 @@ SHARED_CORES = max(1, (workflow.resource_settings.cores or 1) // len(STUDY.laws)
 OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
 
 
+# What decides them under one law, but for the values of a.
+SEARCH_PARAMS = {
+    **keys("initial", "start", "attractors", "refine"),
+    "motion": motion_config(),
+}
+
+
 rule attractors_of_law:
     output:
         OF_LAW,
@@ -24,16 +31,14 @@ rule attractors_of_law:
         mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=240,
     params:
-        **keys("initial", "start", "attractors", "refine"),
+        **SEARCH_PARAMS,
         grid=list(STUDY.grid.values()),
         model=lambda wildcards: model_config([wildcards.law]),
-        motion=motion_config(),
         sources=sources("attractors_of_law"),
         kept=lambda wildcards: kept_folder(
             f"attractors {wildcards.law}",
-            keys("initial", "start", "attractors", "refine"),
+            SEARCH_PARAMS,
             model_config([wildcards.law]),
-            motion_config(),
             source_fingerprint("burridge_knopoff.stability.continuation"),
         ),
     message:

@@ -2,7 +2,6 @@
 
 
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
-GRID_NAMES = {value: name for name, value in STUDY.grid.items()}
 PLANE_STATE = STUDY.config["basins"]["initial"]
 
 
@@ -83,14 +82,11 @@ rule basins:
     input:
         attractors=f"{SUMMARY}/attractors.nc",
         tiles=[
-            TILE.format(law=law, a=GRID_NAMES[a], tile=tile)
+            TILE.format(law=law, a=a, tile=tile)
             for law, a in STUDY.basin_maps
             for tile in range(STUDY.config["basins"]["tiles"])
         ],
-        pairs=[
-            f"{RESULTS}/basins/{law}/a{GRID_NAMES[a]}/pairs.nc"
-            for law, a in STUDY.basin_maps
-        ],
+        pairs=[f"{RESULTS}/basins/{law}/a{a}/pairs.nc" for law, a in STUDY.basin_maps],
     output:
         f"{SUMMARY}/basins.nc",
         report(
@@ -107,7 +103,7 @@ rule basins:
         group("summaries")
     params:
         **keys("start", "attractors"),
-        maps=STUDY.basin_maps,
+        maps=[(law, STUDY.value(a)) for law, a in STUDY.basin_maps],
         model=model_config(),
         basins=BASIN_KEYS["maps"],
         state=BASIN_PARAMS["state"],

@@ -30,10 +30,10 @@ from burridge_knopoff.provenance.files import (
 from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.seal import identity
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.study.study import all_points, load_study
-from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.study import all_points, load_study
+from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import several_files
 

@@ -55,8 +55,7 @@ def run_files(study: Study) -> list[Named]:
 
 
 def _other_files(study: Study) -> Iterator[Named]:
-    names = {value: name for name, value in study.grid.items()}
-    maps = [{"law": law, "a": names[a]} for law, a in study.basin_maps if a in names]
+    maps = [{"law": law, "a": a} for law, a in study.basin_maps]
     tiles = [{**one, "tile": str(tile)} for one in maps for tile in range(study.config["basins"]["tiles"])]
     for form, known in (("basins/{law}/a{a}/pairs", maps), ("basins/{law}/a{a}/tile{tile}", tiles)):
         yield form, form, known

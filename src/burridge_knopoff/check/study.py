@@ -56,8 +56,8 @@ class Check:
     @property
     def exit_code(self) -> int:
         """0 if nothing is wrong, 3 if runs have failed only, else 1."""
-        changed = any(finding.kind == "stale" for finding in self.others)
-        return 1 if changed or self.paths else 3 if self.findings else 0
+        stale = any(finding.kind == "stale" for finding in self.others)
+        return 1 if stale or self.paths else 3 if self.findings else 0
 
     @property
     def paths(self) -> list[str]:

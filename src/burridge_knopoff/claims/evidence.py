@@ -14,7 +14,7 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.study.paper import PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
+from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
 
 if TYPE_CHECKING:
     import xarray
@@ -24,9 +24,6 @@ LEAST_VALUES = 10
 
 # A computed a_c is good to this: rounding of the multiplier over its slope.
 COMPUTED_WITHIN = 1e-13
-
-# At this a a law of a study is held against the paper's law of the same name.
-PAPER_A = 0.08
 
 
 @dataclass(frozen=True)

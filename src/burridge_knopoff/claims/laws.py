@@ -112,7 +112,7 @@ def solutions_agree(
             )
             within = bool((np.abs(difference) <= allowed)[there].all())
             kinds = evidence.at(runs, value)["kind"].values
-            if np.isnan(kinds).any() or (kinds == MotionKind.UNDETERMINED).any() or not there.any():
+            if np.isnan(kinds).any() or (kinds == MotionKind.UNDETERMINED).any():
                 continue
             laws = bool(same_result(kinds, kinds[0]).all())
             solved.append(within)

@@ -15,13 +15,13 @@ from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIM
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.provenance.seal import identity, write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray
 
-STATUS_FLAG = flag("i1", [status for status in Status if status >= Status.COMPLETED])
+STATUS_FLAG = flag("i1", ENDS)
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 _V = Variable

@@ -22,10 +22,13 @@ AXES: dict[str, Variable] = {
 STATE = Variable(("state",), "i4", "number of the sampled initial state", coordinate=True)
 
 
-def axes(initial: Sequence[str], a: Sequence[float], laws: Sequence[str]) -> dict[str, Any]:
-    """Return the coordinates of a summary over (law, initial, a)."""
-    values = {"law": np.array(laws, dtype=object), "initial": np.array(initial, dtype=object), "a": np.asarray(a)}
-    return {name: (name, values[name], item.all_attributes()) for name, item in AXES.items()}
+def axes(**values: Sequence[Any]) -> dict[str, Any]:
+    """Return the coordinates of a summary over some of law, initial and a, which are given by these names."""
+    return {
+        name: (name, np.array(values[name], dtype=item.dtype), item.all_attributes())
+        for name, item in AXES.items()
+        if name in values
+    }
 
 
 def summary(

@@ -68,7 +68,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
                             everywhere[i, j, k] = point.variables[number].values
         nodes["grid"] = xarray.Dataset(
             {name: (tuple(AXES), found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
-            axes(states, list(values.values()), laws),
+            axes(law=laws, initial=states, a=list(values.values())),
         )
     for path in sorted(results.glob("summary/*.nc")):
         nodes[f"summary/{path.stem}"] = _opened(path)

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.loss import has_orbit
 from burridge_knopoff.orbits.orbit import LONGEST_PERIOD, Orbit, OrbitError, after, find_orbit, flow, model_at
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -24,11 +24,6 @@ SEEDS = (0.05, 0.1, 0.02, 0.2)
 # Steps in a by which an orbit is continued; the stick vanishes like the root of a as a falls to 0.
 LARGEST_STEP = 0.05
 LEAST_STEP = 1e-5
-
-
-def has_orbit(chain: Chain) -> bool:
-    """Tell whether orbits are looked for in a chain: one of three blocks that is its own mirror image."""
-    return chain.blocks == 3 and chain.is_mirror_symmetric
 
 
 def synchronized_orbit(model: Model) -> Orbit:

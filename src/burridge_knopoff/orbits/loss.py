@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from burridge_knopoff.model.chain import Chain
+
+
+def has_orbit(chain: Chain) -> bool:
+    """Tell whether the orbit is looked for in a chain: one of three blocks that is its own mirror image."""
+    return chain.blocks == 3 and chain.is_mirror_symmetric
+
 
 class OrbitStatus(IntEnum):
     """Whether there is a synchronized orbit, numbered as in netCDF files.

@@ -38,13 +38,13 @@ def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
 
 
 def attractor_points(attractors: xarray.Dataset) -> list[dict[str, list[Any]]]:
-    """Return, for each law, the attractors as columns: branch, a, ⟨J⟩, kind, side, and the basin fraction."""
+    """Return, for each law, the attractors as columns: branch, a, ⟨J⟩ and kind."""
     laws = []
     for law in attractors["law"].values:
         one = attractors.sel(law=law)
         there = one["branch"].values >= 0
         a = np.broadcast_to(one["a"].values[:, None], there.shape)
-        columns = {name: one[name].values[there] for name in ("branch", "mean_distance", "kind", "side")}
+        columns = {name: one[name].values[there] for name in ("branch", "mean_distance", "kind")}
         laws.append({"a": rounded(a[there]), **{name: rounded(column) for name, column in columns.items()}})
     return laws
 
@@ -101,7 +101,6 @@ def orbit_curves(orbits: xarray.Dataset) -> list[dict[str, Any]]:
                 "transverse": rounded(one["transverse_multiplier"].values),
                 # The modulus, of a complex pair as well, with the sign of the real part: as in the figure.
                 "symmetric": rounded(np.where(real < 0.0, -modulus, modulus)),
-                "period": rounded(one["period"].values),
                 "critical_a": rounded(one["critical_a"].item()),
                 "offset": rounded(one["branch_offset"].values),
                 "asymmetry": rounded(one["branch_asymmetry"].values),
@@ -139,7 +138,7 @@ def _positive(values: np.ndarray) -> np.ndarray:
 def chain_fractions(chains: xarray.Dataset) -> dict[str, Any]:
     """Return the fraction of states that synchronize, with its interval and the undetermined ones, (law, blocks, a)."""
     values = {
-        short: rounded(chains[f"{name}"].transpose("law", "blocks", "a").values)
+        short: rounded(chains[name].transpose("law", "blocks", "a").values)
         for short, name in (
             ("fraction", "synchronized_fraction"),
             ("low", "synchronized_low"),

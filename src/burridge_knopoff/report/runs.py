@@ -11,14 +11,11 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.report.numbers import exact
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
-
-#: How runs end, in words, in the order of the numbers in files.
-STATUSES = [status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED]
 
 
 @dataclass(frozen=True)
@@ -79,7 +76,7 @@ def embedded_runs(
         "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in study.laws],
         "arguments": shlex.join(commands.arguments),
         "results": f"results/{study.name}",
-        "statuses": STATUSES,
+        "statuses": list(ENDS.values()),
         "kinds": {str(int(kind)): kind.words for kind in MotionKind},
     }
 
@@ -117,5 +114,5 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xa
                     what = f"kind of motion undetermined{f': {SLIDING}' if sliding else ''}"
                     undetermined.append({**run, "what": what})
                 else:
-                    failed.append({**run, "what": f"did not complete: {STATUSES[status]}"})
+                    failed.append({**run, "what": f"did not complete: {ENDS[status]}"})
     return [*failed, *undetermined]

@@ -12,3 +12,7 @@ class Status(IntEnum):
     STEP_LIMIT = 1
     ACCUMULATING_EVENTS = 2
     DIVERGED = 3
+
+
+#: How runs end, in words, by the number in files.
+ENDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}

@@ -65,14 +65,14 @@ class Trajectory:
     trajectory_time: np.ndarray = field(repr=False)
     position: np.ndarray = field(repr=False)
     velocity: np.ndarray = field(repr=False)
-    least_friction: float = math.nan
-    least_spring_force: float = math.nan
-    window_least_friction: float = math.nan
-    window_least_spring_force: float = math.nan
-    lyapunov_exponent: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
-    lyapunov_error: np.ndarray = field(default_factory=lambda: np.zeros(0), repr=False)
-    batch_lyapunov_exponent: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
-    lyapunov_infinite_count: int = -1
+    least_friction: float
+    least_spring_force: float
+    window_least_friction: float
+    window_least_spring_force: float
+    lyapunov_exponent: np.ndarray = field(repr=False)
+    lyapunov_error: np.ndarray = field(repr=False)
+    batch_lyapunov_exponent: np.ndarray = field(repr=False)
+    lyapunov_infinite_count: int
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""

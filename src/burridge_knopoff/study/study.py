@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.orbits.loss import has_orbit
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
@@ -93,8 +94,8 @@ class Study:
 
     @property
     def has_synchronized_orbit(self) -> bool:
-        """Whether the orbit of three blocks is looked for, the last of which is the mirror image of the first."""
-        return self.blocks == 3 and self.is_mirror_symmetric
+        """Whether the synchronized orbit is looked for."""
+        return has_orbit(self.model(self.laws[0], self.shown_a).chain)
 
     @property
     def proved_laws(self) -> list[str]:
@@ -124,9 +125,10 @@ class Study:
         return tuple(name for stage in self.stages for name in stages.SUMMARIES.get(stage, (stage,)))
 
     @property
-    def basin_maps(self) -> list[tuple[str, float]]:
-        """Law and a of every map of basins."""
-        return [(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
+    def basin_maps(self) -> list[tuple[str, str]]:
+        """Law and name of a of every map of basins."""
+        names = {value: name for name, value in self.grid.items()}
+        return [(law, names[a]) for law, values in self.config["basins"]["a"].items() for a in values]
 
     @property
     def single_length_key(self) -> str:

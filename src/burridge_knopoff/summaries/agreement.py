@@ -10,12 +10,12 @@ import numpy as np
 import scipy
 import xarray
 
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.stability.motion import OPEN, REGULAR, MotionKind, same_result
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import Answer, judge
+from burridge_knopoff.summaries.judgement import Answer, compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 from burridge_knopoff.summaries.reached import reached
 
@@ -98,8 +98,8 @@ def summarize(
     for i in range(sizes["other_law"]):
         pair = {name: values[name][[0, i + 1]] for name in POINT_VARIABLES}
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
-        judge({**pair, **compared}, np.array(list(grid.a.values())), synchronization_threshold, agreement)
-    shared = axes(list(grid.initial), list(grid.a.values()), grid.laws)
+        compare({**pair, **compared}, np.array(list(grid.a.values())), synchronization_threshold, agreement)
+    shared = grid.axes()
     others = ("other_law", np.array(grid.laws[1:], dtype=object), OTHER_LAW.all_attributes())
     return summary(
         "Agreement of the friction laws with the first one",

@@ -49,7 +49,7 @@ def merge(
             within: Any = (number, *(slice(0, size) for size in array.shape))
             values[name][within] = array
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
-    coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
+    coordinates["law"] = axes(law=[part.attrs["law"] for part in parts])["law"]
     attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
     whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()} | NAMES
     values.update(name_branches(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))

@@ -83,8 +83,7 @@ def one_law(
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit, processes))
     values.update(_sweeps(found))
-    coordinates = axes([state.name for state in initial], [model.a for model in models], [])
-    del coordinates["law"]
+    coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
     for name, names in (("contact", CONTACTS), ("start", STARTS), ("direction", DIRECTIONS)):
         coordinates[name] = (name, np.array(names, dtype=object), {"long_name": f"convention of {name}"})

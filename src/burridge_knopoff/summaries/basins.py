@@ -226,12 +226,14 @@ def undetermined_alike(one: xarray.Dataset) -> int:
     """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of no area.
 
     In a chain that is its own mirror image such states stay alike, and so come to no attractor where synchrony repels.
+    None is counted where all states of the map are undetermined, as this has other reasons then.
     """
     position, velocity = one.attrs["plane_position"], one.attrs["plane_velocity"]
-    if (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
+    undetermined = one["branch"].values == UNDETERMINED
+    if undetermined.all() or (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
         return 0
     alike = np.equal.outer(one["last_position"].values, one["first_position"].values)
-    return int(np.count_nonzero(one["branch"].values[alike] == UNDETERMINED))
+    return int(np.count_nonzero(undetermined[alike]))
 
 
 def _exponent_text(one: xarray.Dataset) -> str:

@@ -129,10 +129,8 @@ def _settings(chain: xarray.Dataset) -> str:
 
 def _coordinates(laws: ArrayLike, grid: ArrayLike, states: int, symmetric_states: int) -> dict[str, Any]:
     symmetric = {"long_name": "number of the sampled initial state that was made symmetric", "units": "1"}
-    shared = axes([], np.asarray(grid).tolist(), np.asarray(laws).tolist())
     return {
-        "law": shared["law"],
-        "a": shared["a"],
+        **axes(law=np.asarray(laws).tolist(), a=np.asarray(grid).tolist()),
         "state": ("state", np.arange(1, states + 1, dtype="i4"), STATE.all_attributes()),
         "symmetric_state": ("symmetric_state", np.arange(1, symmetric_states + 1, dtype="i4"), symmetric),
     }

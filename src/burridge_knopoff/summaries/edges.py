@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.edge_kind import EdgeKind
@@ -121,7 +121,7 @@ def _dataset(
     }
     described = {**VARIABLES, **{name: _numbered(VARIABLES[name], names) for name in ("law", "orbit_law")}}
     about = {
-        "laws": " ".join(axes((), (), names)["law"][1]),
+        "laws": " ".join(names),
         **head,
         "history": "snakemake, from the attractors and the equations of motion",
     }

@@ -89,8 +89,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
             except ValueError:
                 continue
             values["strengthening_growth_rate"][i, k] = simulate_sliding(reverse, position)[1]
-    shared = axes((), grid, [model.law.name for model in models])
-    coordinates = {"law": shared["law"], "a": shared["a"]}
+    coordinates = axes(law=[model.law.name for model in models], a=grid)
     labels = {"block": np.arange(1, blocks + 1), "mode": np.arange(1, 2 * blocks + 1), "part": PARTS}
     for name, item in _COORDINATES.items():
         coordinates[name] = (name, np.array(labels[name], dtype=item.dtype), item.all_attributes())

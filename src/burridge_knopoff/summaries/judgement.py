@@ -12,14 +12,14 @@ from burridge_knopoff.stability.motion import MotionKind, same_result
 
 
 class Answer(IntEnum):
-    """Whether two laws agree, numbered as in netCDF files."""
+    """Whether something is so, as whether two laws agree or a run has settled, numbered as in netCDF files."""
 
     UNDETERMINED = -1
     NO = 0
     YES = 1
 
 
-def judge(
+def compare(
     values: dict[str, np.ndarray],
     a: np.ndarray,
     threshold: float,

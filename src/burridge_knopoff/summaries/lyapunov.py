@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.stability.motion import SECTION, MotionKind, motion_of_run, zero_exponents
 from burridge_knopoff.stability.settings import MotionSettings
@@ -69,7 +69,7 @@ def summarize(
         "Lyapunov exponents and kinds of motion",
         VARIABLES,
         values,
-        axes(list(grid.initial), list(grid.a.values()), grid.laws),
+        grid.axes(),
         asdict(settings),
         module=__name__,
     )

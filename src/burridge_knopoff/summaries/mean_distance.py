@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
@@ -69,7 +69,7 @@ def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
         variables,
         values,
         {
-            **axes(list(grid.initial), list(grid.a.values()), grid.laws),
+            **grid.axes(),
             "level": ("level", np.array(LEVELS), LEVEL.all_attributes()),
         },
         {"synchronization_threshold": synchronization_threshold},

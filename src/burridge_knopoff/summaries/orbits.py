@@ -135,8 +135,7 @@ def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarr
         "direction": DIRECTIONS,
         "sweep_offset": OFFSETS,
     }
-    named = axes((), grid, laws)
-    del named["initial"]
+    named = axes(law=laws, a=grid)
     for name, item in _COORDINATES.items():
         named[name] = (name, np.array(values[name], dtype=item.dtype), item.all_attributes())
     return named

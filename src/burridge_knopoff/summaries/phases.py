@@ -128,7 +128,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     values |= {name: parts[0][name].values for name in COMMON_VARIABLES}
     variables = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in VARIABLES.items()}
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
-    coordinates["law"] = axes([], [], [part.attrs["law"] for part in parts])["law"]
+    coordinates["law"] = axes(law=[part.attrs["law"] for part in parts])["law"]
     attributes = {name: parts[0].attrs[name] for name in ATTRIBUTES}
     return summary(TITLE, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
 

@@ -12,6 +12,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.point import point_identity
+from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.command import difference, simulate_command
@@ -46,7 +47,7 @@ class Grid:
 
     @classmethod
     def of(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
-        """Return the grid of the points that `config.Study.points` describes."""
+        """Return the grid of the points that `Study.points` describes."""
         return cls(
             Path(folder),
             {name: InitialState(name, **state) for name, state in points["initial"].items()},
@@ -83,6 +84,10 @@ class Grid:
     def shape(self) -> tuple[int, int, int]:
         """Numbers of laws, initial states and values of a."""
         return len(self.laws), len(self.initial), len(self.a)
+
+    def axes(self) -> dict[str, Any]:
+        """Return the coordinates of a summary over (law, initial, a)."""
+        return axes(law=self.laws, initial=list(self.initial), a=list(self.a.values()))
 
     def path(self, law: str, initial: str, a: str) -> Path:
         """Return the path of a point file."""

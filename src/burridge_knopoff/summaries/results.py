@@ -15,13 +15,11 @@ from burridge_knopoff.provenance.files import write_text
 def write_results(dataset: xarray.Dataset, module: ModuleType, paths: Iterable[str]) -> None:
     """Write a summary to each of the paths: .nc the Dataset, .csv the module's `table` of it, .txt its `digest`.
 
-    Raises ValueError for another suffix, OSError if a file cannot be written.
+    Raises OSError if a file cannot be written.
     """
     for path in paths:
         suffix = Path(path).suffix
         if suffix == ".nc":
             write_summary(dataset, path)
-        elif suffix in (".csv", ".txt"):
-            write_text(path, (module.table if suffix == ".csv" else module.digest)(dataset))
         else:
-            raise ValueError(f"{path}: {suffix!r} is not allowed: .nc, .csv or .txt")
+            write_text(path, (module.table if suffix == ".csv" else module.digest)(dataset))

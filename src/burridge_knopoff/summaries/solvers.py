@@ -7,19 +7,16 @@ from collections.abc import Mapping
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import ENDS
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 NO_RUN = -1
 
 _AXES = ("law", "solver", "initial", "a")
-_ENDS = {NO_RUN: "no_such_solver"} | {
-    int(status): status.name.lower() for status in Status if status >= Status.COMPLETED
-}
 VARIABLES = {
     "mean_distance": Variable(
         _AXES,
@@ -28,7 +25,7 @@ VARIABLES = {
         {"ancillary_variables": "mean_distance_error status"},
     ),
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
-    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", _ENDS)),
+    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", {NO_RUN: "no_such_solver", **ENDS})),
     "step_count": Variable(_AXES, "i8", "number of solver steps in the whole run, -1 if there is no run"),
     "end_time": Variable(_AXES, "f8", "time tau at which the run ended"),
     "difference": Variable(_AXES, "f8", "<J> minus <J> of the solver of the study's points"),
@@ -73,7 +70,7 @@ def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dat
             count, until = common_order(all_events(run), all_events(reference))
             values["event_order_count"][index] = count
             values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
-    shared = axes(list(grid.initial), list(grid.a.values()), grid.laws)
+    shared = grid.axes()
     names = ("solver", np.array(SOLVERS, dtype=object), SOLVER.all_attributes())
     return summary(
         "Independent solvers of the same equations",

@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 from scipy.signal import find_peaks, periodogram
 
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.status import Status
@@ -90,7 +90,7 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
         VARIABLES,
         values,
         {
-            **axes(list(grid.initial), list(grid.a.values()), grid.laws),
+            **grid.axes(),
             "block": ("block", np.arange(1, blocks + 1, dtype=BLOCK.dtype), BLOCK.all_attributes()),
         },
         {"transient": transient, "window": window, "batches": batches},

@@ -25,7 +25,7 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import OF_GIVEN_STATES, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import Answer, allowed, judge
+from burridge_knopoff.summaries.judgement import Answer, allowed, compare
 
 BLOCKS = 2
 
@@ -117,13 +117,13 @@ def summarize(
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
         pair = {name: values[name][[0, i + 1]] for name in MOTION_VARIABLES}
         both = {**pair, **compared}
-        judge(both, np.asarray(grid), motion.synchronization_threshold, agreement, certain=True)
+        compare(both, np.asarray(grid), motion.synchronization_threshold, agreement, certain=True)
         compared["margin"][...] = _margin(both, motion.synchronization_threshold, agreement)
         for k, column in enumerate(compared["agrees"].T):
             interval = fraction_interval(int((column == 1).sum()), int((column >= 0).sum()))
             for name, value in zip(("agreeing_fraction", "agreeing_low", "agreeing_high"), interval, strict=True):
                 compared[name][k] = value
-    shared = axes([], grid, laws)
+    shared = axes(law=laws, a=grid)
     about = {**shared["law"][2], "long_name": "friction law that is compared with the first one"}
     judged = asdict(motion.at_speed(models[0].v))
     threshold = judged.pop("synchronization_threshold")
