@@ -51,7 +51,7 @@ def end_blocks_locked(evidence: Evidence, initial: Sequence[str], a: Range, loos
     verdict, text = judge_shares(shares, loose_share)
     reason = f"With {a} both end blocks have one leading frequency, within its error, at {text} of the values of a."
     if others and all(others):
-        reason += " So they have at all others: it does not set these apart."
+        reason += " They have one at all others as well."
     return Verdict(verdict, reason, measured, "; ".join(apart))
 
 
