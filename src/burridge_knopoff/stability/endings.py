@@ -76,6 +76,8 @@ def endings(
     late = [k for k, index in enumerate(labels.tolist()) if index not in lasting]
     there, _ = label(model, [attractors[index] for index in lasting], [starts[k] for k in late], settings.label_limit)
     labels[late] = [lasting[index] if index != UNDETERMINED else UNDETERMINED for index in there.tolist()]
+    # A mirror image has the same ⟨J⟩ and the same kind.
+    labels = np.array([*(min(index, one.partner) for index, one in enumerate(attractors)), UNDETERMINED])[labels]
     reached = {*labels.tolist()} - {UNDETERMINED}
     known = {index: _ending(model, attractors, index, settings, tuning) for index in reached}
     lost = np.flatnonzero(labels == UNDETERMINED).tolist()
