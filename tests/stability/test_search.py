@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, law_of
-from burridge_knopoff.stability import attractors
+from burridge_knopoff.stability import attractors, settling
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.stability.tuning import TUNING
@@ -17,29 +17,6 @@ MODEL = Model(Chain(3), law_of("linearized", 0.08))
 SETTINGS = SearchSettings(transient=1.0, window=100.0)
 CLOSED, WIDE = 1e-7, 0.01
 ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.0, 0.0, 0.1, 0.1]])
-
-
-@pytest.mark.parametrize(
-    ("spacing", "symmetric", "drifts", "windows", "transients", "found"),
-    [
-        (CLOSED, False, [0.0], [1], [1], True),
-        # A set that is no closed orbit has to fill: its own mirror image soon, any other in the longest window.
-        (WIDE, True, [0.0] * 3, [1, 2, 4], [1, 1, 1], True),
-        (WIDE, False, [0.0] * 5, [1, 2, 4, 8, 16], [1] * 5, True),
-        (WIDE, True, [1.0, 1.0, 0.0], [1, 2, 4], [1, 2, 4], True),
-        # What has not settled has twice the time, and is let go if it drifts by more than ten resolutions.
-        (CLOSED, False, [2e-5, 0.0], [1, 1], [1, 2], True),
-        (CLOSED, False, [9e-3] * 5, [1] * 5, [1, 2, 4, 8, 16], True),
-        (CLOSED, False, [1.1e-2] * 5, [1] * 5, [1, 2, 4, 8, 16], False),
-        (CLOSED, False, [1.0, None], [1, 1], [1, 2], False),
-    ],
-)
-def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, windows, transients, found):
-    mirror = ONE if symmetric else -ONE
-    answers = [None if drift is None else shown(ONE, mirror, spacing, drift) for drift in drifts]
-    asked = tell(attractors, "visit", answers)
-    assert (Search(MODEL, SETTINGS)._settle(instant_of(ONE[0])) is not None) == found
-    assert [arguments[2:4] for arguments in asked] == [(x, 100 * y) for x, y in zip(transients, windows, strict=True)]
 
 
 @pytest.fixture
@@ -57,11 +34,11 @@ def add(monkeypatch):
                 asked.append((name, *arguments[2:4]))
                 return next(left)
 
-            monkeypatch.setattr(attractors, name, answer)
+            monkeypatch.setattr(attractors if name == "captured" else settling, name, answer)
 
         for name, left in answers.items():
             tell(name, iter(left))
-        monkeypatch.setattr(Search, "_lies_in_chaos", lambda *_: in_chaos)
+        monkeypatch.setattr(Search, "lies_in_chaos", lambda *_: in_chaos)
         monkeypatch.setattr(attractors, "bounded", lambda _, known, *__: list(known))
         monkeypatch.setattr(attractors, "midst", lambda *_: [])
         monkeypatch.setattr(attractors, "spread", lambda _, motion, *__: replace(motion, returns=ONE))
@@ -135,23 +112,6 @@ def test_what_is_no_chaos_has_to_be_steady(add, error, stops, measured, captured
     assert [item.motion.mean_distance_error for item in pair] == [error if measured == 1 else 0.0] * 2 * captured
 
 
-def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
-    """In its window or, where it touches its mirror image, in a longer time."""
-    search, rows = Search(MODEL, SETTINGS), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
-    touching = rows - 0.9995
-    for mirror, symmetric in ((rows + 0.01, True), (touching, False), (rows + 3.0, False)):
-        assert search._symmetric(shown(rows, mirror, WIDE, 0.0)) == symmetric
-    both = np.concatenate([rows, touching])
-    for later, changes in ((both, True), (rows, False)):
-        asked = tell(attractors, "visit", [shown(later, later, WIDE, 0.0)])
-        assert search._changes_sides(shown(rows, touching, WIDE, 0.0)) == changes
-        assert asked[0][2:4] == (0.0, TUNING.lasting * SETTINGS.transient)
-    for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
-        assert not search._changes_sides(apart)
-    # Where only one block of a mirror pair stops again and again, the two show different sets.
-    assert not search._symmetric(replace(shown(rows, rows, WIDE, 0.0), mirror_block=3))
-
-
 @pytest.mark.parametrize("kind", [MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
 def test_what_repeats_is_a_closed_orbit_whatever_its_exponents(add, kind):
     pair, asked = add([motion(kind=kind)], None, [0.02])
@@ -210,12 +170,12 @@ def search(monkeypatch):
 def test_what_a_state_reaches(search, monkeypatch, place, spacing, expected):
     sizes = []
     monkeypatch.setattr(attractors, "pushed", lambda start, size, generator: sizes.append(size) or start)
-    monkeypatch.setattr(search, "_settle", lambda start: shown(place, -place, spacing, 0.0))
+    monkeypatch.setattr(search, "settle", lambda start: shown(place, -place, spacing, 0.0))
     monkeypatch.setattr(search, "_add", lambda found: False)
     assert Search.reach(search, None) == expected
     # Off a motion that is none it is pushed twice, by a tenth of the resolution.
     assert sizes == pytest.approx([1e-4, 1e-4] if expected < 0 else [])
-    monkeypatch.setattr(search, "_settle", lambda start: None)
+    monkeypatch.setattr(search, "settle", lambda start: None)
     assert Search.reach(search, None) == -1
 
 
@@ -250,23 +210,3 @@ def test_states_that_are_ascribed_to_chaos_are_followed(search):
     assert search.followed == list("acdegh")
     search.told = ["new"]
     assert not search._single("ab", np.array([0, 1]))
-
-
-@pytest.mark.parametrize(
-    ("kind", "later", "in_chaos"),
-    [
-        (MotionKind.CHAOTIC, WIDE, True),
-        (MotionKind.CHAOTIC, CLOSED, False),  # chaos that ends on the orbit belongs to it
-        (MotionKind.CHAOTIC, None, False),
-        (MotionKind.QUASIPERIODIC, WIDE, False),
-        (None, WIDE, False),
-    ],
-)
-def test_what_surrounds_an_orbit_is_seen_from_a_push(tell, kind, later, in_chaos):
-    measured = tell(attractors, "measure", [None if kind is None else motion(kind=kind)])
-    visited = tell(attractors, "visit", [None if later is None else shown(ONE, OTHER, later, 0.0)])
-    assert Search(MODEL, SETTINGS)._lies_in_chaos(shown(ONE, OTHER, CLOSED, 0.0)) == in_chaos
-    ((_, start, *times, _),) = (arguments[:5] for arguments in measured)
-    assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
-    assert times == [TUNING.slow_time, 100 * TUNING.filling]
-    assert [arguments[2:4] for arguments in visited] == [(SETTINGS.time_limit, 100)] * (kind == MotionKind.CHAOTIC)

@@ -18,19 +18,16 @@ from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor, close_returns, pushed, spread
 from burridge_knopoff.stability.labels import UNDETERMINED, label
-from burridge_knopoff.stability.motion import MotionKind, closed_kind, judged_distance
+from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
+from burridge_knopoff.stability.settling import Settling
 from burridge_knopoff.stability.steady import (
     Returns,
-    SteadyMotion,
     is_near,
-    least_distance,
     lies_on,
     measure,
-    stops_alike,
-    visit,
 )
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 from burridge_knopoff.values import instance_of
@@ -80,29 +77,14 @@ def find_attractors(
 
 
 @dataclass(eq=False)
-class Search:
+class Search(Settling):
     """Finds the attractors of one model.
 
-    motion_settings : how kinds of motion are told apart
     attractors : those found so far; vain : states that were followed without finding one
     """
 
-    model: Model
-    settings: SearchSettings = SEARCH
-    motion_settings: MotionSettings = MOTION
-    tuning: Tuning = TUNING
     attractors: list[Attractor] = field(default_factory=list)
     vain: tuple[bytes, ...] = ()
-
-    @property
-    def resolution(self) -> float:
-        """Distance below which attractors are not told apart."""
-        return self.settings.resolution * self.model.scale
-
-    @property
-    def tolerance(self) -> float:
-        """Distance within which the returns of a closed orbit repeat."""
-        return self.motion_settings.at_speed(self.model.v).period_tolerance
 
     def seeds(self, attractors: Iterable[Attractor]) -> list[Instant]:
         """Return a state on each of some attractors of a neighbouring a, pushed a little off any symmetry."""
@@ -194,7 +176,7 @@ class Search:
         generator = np.random.default_rng(self.settings.seed)
         resolution = self.resolution
         for _ in range(self.tuning.trials):
-            found = self._settle(start)
+            found = self.settle(start)
             if found is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
@@ -217,7 +199,7 @@ class Search:
     def _add(self, found: Returns) -> bool:
         """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
         settings, tuning = self.settings, self.tuning
-        measured = self._measured(found)
+        measured = self.measured(found)
         if measured is None:
             return False
         found, motion = measured
@@ -231,7 +213,7 @@ class Search:
             new = [Attractor(motion, Symmetry.ASYMMETRIC, index)]
         elif motion.mean_distance < synchronization_threshold:
             new = [Attractor(motion, Symmetry.SYNCHRONIZED, index)]
-        elif self._symmetric(found) or self._changes_sides(found):
+        elif self.is_symmetric(found) or self.changes_sides(found):
             new = [Attractor(motion.symmetrized(tuning), Symmetry.SYMMETRIC, index)]
         else:
             new = [
@@ -247,48 +229,13 @@ class Search:
         if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
             return False
         quick = motion.exponent[1] * tuning.slow_time * settings.transient < -1.0
-        if not (closed and (quick or self._lies_in_chaos(found))):
+        if not (closed and (quick or self.lies_in_chaos(found))):
             symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
             whole = spread(self.model, motion, settings, tuning)
             slow = Attractor(whole, symmetry, index, slow=True, close_returns=tuning.close_returns)
             if self._accept([slow], tuning.smallest_radius):
                 return True
         return closed and self._accept(new, tuning.tiny_radius)
-
-    def _measured(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
-        """Measure a settled motion; where it turns out to be on its way to another one, return that one instead."""
-        settings, tuning = self.settings, self.tuning
-        closed = found.closed(self.tolerance)
-        window = settings.window * (1 if closed else tuning.filling)
-        motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, tuning)
-        if motion is None:
-            return None
-        chaotic = motion.kind == MotionKind.CHAOTIC
-        if closed and not chaotic:
-            # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
-            mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
-            return found, replace(motion, kind=closed_kind(mean, self.motion_settings))
-        if not chaotic and motion.mean_distance_error <= tuning.unsteady * motion.mean_distance:
-            return found, motion
-        # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
-        later = visit(self.model, found.instant(), settings.time_limit, settings.window, tuning)
-        if later is None:
-            return None
-        # Thin chaos may look closed in a window, but hardly twice in the same place.
-        ended = later.closed(self.tolerance) and later.settled(self.tolerance, self.resolution, tuning)
-        stays = not ended and (chaotic or stops_alike(later.stop_count, found.stop_count, tuning))
-        return (found, motion) if stays or again == tuning.trials else self._measured(later, again + 1)
-
-    def _lies_in_chaos(self, found: Returns) -> bool:
-        """Tell whether a state pushed off a motion moves in chaos that lasts."""
-        settings, tuning = self.settings, self.tuning
-        start = pushed(found.instant(), tuning.slow_push * self.resolution, np.random.default_rng(settings.seed))
-        times = tuning.slow_time * settings.transient, tuning.filling * settings.window
-        around = measure(self.model, start, *times, self.motion_settings, tuning)
-        if around is None or around.kind != MotionKind.CHAOTIC:
-            return False
-        later = visit(self.model, start, settings.time_limit, settings.window, tuning)
-        return later is not None and not later.closed(self.tolerance)
 
     def _add_slow_synchrony(self) -> bool:
         """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.
@@ -327,53 +274,3 @@ class Search:
         for index in range(len(before), len(self.attractors)):
             self.attractors[index] = replace(self.attractors[index], radius=radius)
         return True
-
-    def _settle(self, start: Instant) -> Returns | None:
-        """Return where a state returns to when it has settled, or None if it does not settle."""
-        found = None
-        transient, window = self.settings.transient, self.settings.window
-        tolerance, resolution, tuning = self.tolerance, self.resolution, self.tuning
-        longest = tuning.patience * window
-        while transient <= tuning.patience * self.settings.transient:
-            found = visit(self.model, start, transient, window, tuning)
-            if found is None:
-                return None
-            start = found.instant()
-            closed, settled = found.closed(tolerance), found.settled(tolerance, resolution, tuning)
-            # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
-            # like a set of its own; and a chaotic transient may still end.
-            whole = self._symmetric(found) or not self.model.chain.is_mirror_symmetric
-            filled = window >= tuning.filling * self.settings.window and whole
-            if settled and (closed or filled or window == longest):
-                return found
-            if not settled:
-                transient *= 2
-            if not closed:
-                window = min(2 * window, longest)
-        # What has not settled by now drifts slowly along a set; pushes will show whether the set attracts.
-        return found if found is not None and found.drift <= tuning.loose_drift * resolution else None
-
-    def _symmetric(self, found: Returns) -> bool:
-        """Tell whether a motion cannot be told apart from its mirror image, in the window in which it was seen."""
-        if not len(found.mirror_returns) or found.block != found.mirror_block:
-            return False
-        return is_near(found.mirror_returns, found.returns, self._reach(found), self.tuning.near_share)
-
-    def _changes_sides(self, found: Returns) -> bool:
-        """Tell whether a motion that touches its mirror image comes to cover it in a longer time."""
-        touches = (
-            len(found.mirror_returns)
-            and found.block == found.mirror_block
-            and not found.closed(self.tolerance)
-            and least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
-        )
-        if not touches:
-            return False
-        longer = visit(self.model, found.instant(), 0.0, self.tuning.lasting * self.settings.transient, self.tuning)
-        if longer is None or longer.block != found.block:
-            return False
-        return is_near(found.mirror_returns, longer.returns, self._reach(found), self.tuning.near_share)
-
-    def _reach(self, found: Returns) -> float:
-        """Return how far from a motion a return that belongs to it may lie."""
-        return max(self.resolution, 0.0 if found.closed(self.tolerance) else self.tuning.spacings * found.spacing)

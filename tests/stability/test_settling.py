@@ -1,0 +1,74 @@
+"""When a trajectory counts as settled, and on what, told of made-up returns."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import MotionKind
+from burridge_knopoff.stability import settling
+from burridge_knopoff.stability.settling import Settling
+from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.tuning import TUNING
+from tests.stability.stand_in import shown
+from tests.stability.test_search import CLOSED, MODEL, ONE, OTHER, SETTINGS, WIDE, motion
+
+
+@pytest.mark.parametrize(
+    ("spacing", "symmetric", "drifts", "windows", "transients", "found"),
+    [
+        (CLOSED, False, [0.0], [1], [1], True),
+        # A set that is no closed orbit has to fill: its own mirror image soon, any other in the longest window.
+        (WIDE, True, [0.0] * 3, [1, 2, 4], [1, 1, 1], True),
+        (WIDE, False, [0.0] * 5, [1, 2, 4, 8, 16], [1] * 5, True),
+        (WIDE, True, [1.0, 1.0, 0.0], [1, 2, 4], [1, 2, 4], True),
+        # What has not settled has twice the time, and is let go if it drifts by more than ten resolutions.
+        (CLOSED, False, [2e-5, 0.0], [1, 1], [1, 2], True),
+        (CLOSED, False, [9e-3] * 5, [1] * 5, [1, 2, 4, 8, 16], True),
+        (CLOSED, False, [1.1e-2] * 5, [1] * 5, [1, 2, 4, 8, 16], False),
+        (CLOSED, False, [1.0, None], [1, 1], [1, 2], False),
+    ],
+)
+def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, windows, transients, found):
+    mirror = ONE if symmetric else -ONE
+    answers = [None if drift is None else shown(ONE, mirror, spacing, drift) for drift in drifts]
+    asked = tell(settling, "visit", answers)
+    assert (Settling(MODEL, SETTINGS).settle(instant_of(ONE[0])) is not None) == found
+    assert [arguments[2:4] for arguments in asked] == [(x, 100 * y) for x, y in zip(transients, windows, strict=True)]
+
+
+def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
+    """In its window or, where it touches its mirror image, in a longer time."""
+    own, rows = Settling(MODEL, SETTINGS), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
+    touching = rows - 0.9995
+    for mirror, symmetric in ((rows + 0.01, True), (touching, False), (rows + 3.0, False)):
+        assert own.is_symmetric(shown(rows, mirror, WIDE, 0.0)) == symmetric
+    both = np.concatenate([rows, touching])
+    for later, changes in ((both, True), (rows, False)):
+        asked = tell(settling, "visit", [shown(later, later, WIDE, 0.0)])
+        assert own.changes_sides(shown(rows, touching, WIDE, 0.0)) == changes
+        assert asked[0][2:4] == (0.0, TUNING.lasting * SETTINGS.transient)
+    for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
+        assert not own.changes_sides(apart)
+    # Where only one block of a mirror pair stops again and again, the two show different sets.
+    assert not own.is_symmetric(replace(shown(rows, rows, WIDE, 0.0), mirror_block=3))
+
+
+@pytest.mark.parametrize(
+    ("kind", "later", "in_chaos"),
+    [
+        (MotionKind.CHAOTIC, WIDE, True),
+        (MotionKind.CHAOTIC, CLOSED, False),  # chaos that ends on the orbit belongs to it
+        (MotionKind.CHAOTIC, None, False),
+        (MotionKind.QUASIPERIODIC, WIDE, False),
+        (None, WIDE, False),
+    ],
+)
+def test_what_surrounds_an_orbit_is_seen_from_a_push(tell, kind, later, in_chaos):
+    measured = tell(settling, "measure", [None if kind is None else motion(kind=kind)])
+    visited = tell(settling, "visit", [None if later is None else shown(ONE, OTHER, later, 0.0)])
+    assert Settling(MODEL, SETTINGS).lies_in_chaos(shown(ONE, OTHER, CLOSED, 0.0)) == in_chaos
+    ((_, start, *times, _),) = (arguments[:5] for arguments in measured)
+    assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
+    assert times == [TUNING.slow_time, 100 * TUNING.filling]
+    assert [arguments[2:4] for arguments in visited] == [(SETTINGS.time_limit, 100)] * (kind == MotionKind.CHAOTIC)
