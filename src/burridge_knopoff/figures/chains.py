@@ -17,9 +17,9 @@ TITLE = "Longer chains"
 CATEGORY = "Longer chains"
 INPUTS = ("chains", "two_blocks")
 CAPTION = """\
-Small panels: the fraction of sampled states that end in mirror synchrony against a, for each number of blocks N, with
-confidence intervals; squares mark where synchrony is stable. Below: ⟨J⟩ of two blocks under each law, shaded where one
-disagrees with the first one.
+Small panels: the fraction of sampled states, drawn anew at each a, that end in mirror synchrony, for each number of
+blocks N, with confidence intervals; squares mark where synchrony is stable. Below: ⟨J⟩ of what two blocks end on under
+each law, shaded where one disagrees with the first one.
 """
 
 COLUMNS = 3

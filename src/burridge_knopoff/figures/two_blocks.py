@@ -22,8 +22,8 @@ TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
-⟨J⟩ of two blocks against a under each law, from each sampled initial state. Shaded where one law disagrees with the
-first one for one of the states, in ⟨J⟩ or in the kind of motion.
+⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state. Shaded where one law disagrees
+with the first one for one of the states, in ⟨J⟩ or in the kind of motion.
 """
 
 
