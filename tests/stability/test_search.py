@@ -26,7 +26,7 @@ def add(monkeypatch):
     With what is found comes what has been asked: transients and windows, or an index and the least radius.
     """
 
-    def added(measured, lasting, radii, model=MODEL, mirror=OTHER, spacing=CLOSED, in_chaos=False):
+    def added(measured, lasting, radii, model=MODEL, mirror=OTHER, spacing=CLOSED, in_chaos=False, mirror_cloud=ONE):
         asked, answers = [], {"measure": measured, "visit": [lasting], "captured": radii}
 
         def tell(name, left):
@@ -41,7 +41,9 @@ def add(monkeypatch):
         monkeypatch.setattr(Search, "lies_in_chaos", lambda *_: in_chaos)
         monkeypatch.setattr(attractors, "bounded", lambda _, known, *__: list(known))
         monkeypatch.setattr(attractors, "midst", lambda *_: [])
-        monkeypatch.setattr(attractors, "spread", lambda _, motion, *__: replace(motion, returns=ONE))
+        monkeypatch.setattr(
+            attractors, "spread", lambda _, motion, *__: replace(motion, returns=ONE, mirror_returns=mirror_cloud)
+        )
         search = Search(model, SETTINGS)
         assert search._add(shown(ONE, mirror, spacing, 0.0)) == bool(search.attractors)
         names = [name for name, *_ in asked]
@@ -128,7 +130,11 @@ def test_what_attracts_as_a_whole_is_a_slow_set(add):
     drifting = motion(exponent=np.array([0.0, 0.99 * marginal, -0.2]))
     (slow,), asked = add([drifting], None, [0.0, 0.02])
     assert (slow.slow, slow.symmetry, slow.partner) == (True, SYMMETRIC, 0)
-    assert slow.motion.returns.tolist() == ONE.tolist()
+    assert slow.motion.returns.tolist() == [*ONE.tolist(), *ONE.tolist()]
+    # What pushed states show on one side only is a pair.
+    pair, _ = add([drifting], None, [0.0, 0.02], mirror_cloud=OTHER)
+    assert [(item.slow, item.symmetry, item.partner) for item in pair] == [(True, ASYMMETRIC, k) for k in (1, 0)]
+    assert pair[1].motion.returns.tolist() == OTHER.tolist()
     assert asked[1:] == [smallest] * 2
     # An orbit in the midst of chaos is not all of it, and may attract from nearby alone; as may one that pushes soon
     # fall back to, but what is no orbit may still lie on a set.

@@ -122,7 +122,7 @@ def test_mirror_images_of_a_motion():
     assert whole.returns.tolist() == whole.mirror_returns.tolist() == both
     assert whole.spacing == pytest.approx(np.quantile(nearest(whole.returns, whole.returns, 1), 0.95))
     alone = replace(motion, mirror_returns=np.zeros((0, 6)))
-    assert alone.with_returns(ROWS).mirror_returns.shape == (0, 6)
+    assert alone.symmetrized().mirror_returns.shape == (0, 6)
 
 
 def test_a_block_without_velocity_sticks():

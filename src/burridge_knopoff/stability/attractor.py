@@ -65,13 +65,13 @@ def pushed(start: Instant, size: float, generator: np.random.Generator) -> Insta
 
 
 def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning: Tuning = TUNING) -> SteadyMotion:
-    """Return a motion with the returns of trajectories that were pushed off it, and their mirror images, as its own.
+    """Return a motion with the returns of trajectories that were pushed off it as its own.
 
     Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
     itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
     """
     generator = np.random.default_rng(settings.seed)
-    clouds = []
+    clouds: list[Returns] = []
     blocks = motion.block, motion.mirror_block
     for k in generator.integers(len(motion.returns), size=tuning.slow_states):
         size = tuning.slow_push * settings.resolution * model.scale
@@ -83,6 +83,8 @@ def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning:
             and (found.block, found.mirror_block) == blocks
             and stops_alike(found.stop_count, motion.stop_rate, tuning)
         ):
-            clouds += [found.returns, found.mirror_returns]
+            clouds.append(found)
     # The last return, from which the motion is followed on, is its own.
-    return motion.with_returns(np.concatenate([*clouds, motion.mirror_returns, motion.returns]), tuning)
+    returns = np.concatenate([*(cloud.returns for cloud in clouds), motion.returns])
+    mirror_returns = np.concatenate([*(cloud.mirror_returns for cloud in clouds), motion.mirror_returns])
+    return motion.with_returns(returns, mirror_returns, tuning)

@@ -23,12 +23,7 @@ from burridge_knopoff.stability.radius import bounded, captured, midst, recovere
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.settling import Settling
-from burridge_knopoff.stability.steady import (
-    Returns,
-    is_near,
-    lies_on,
-    measure,
-)
+from burridge_knopoff.stability.steady import Returns, SteadyMotion, is_near, lies_on, measure
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 from burridge_knopoff.values import instance_of
 
@@ -205,21 +200,13 @@ class Search(Settling):
         found, motion = measured
         closed = found.closed(self.tolerance)
         mirror = self.model.chain.is_mirror_symmetric
-        index = len(self.attractors)
         synchronization_threshold = self.motion_settings.synchronization_threshold
         if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
             return self._add_slow_synchrony()
-        if not mirror:
-            new = [Attractor(motion, Symmetry.ASYMMETRIC, index)]
-        elif motion.mean_distance < synchronization_threshold:
-            new = [Attractor(motion, Symmetry.SYNCHRONIZED, index)]
-        elif self.is_symmetric(found) or self.changes_sides(found):
-            new = [Attractor(motion.symmetrized(tuning), Symmetry.SYMMETRIC, index)]
+        if mirror and motion.mean_distance < synchronization_threshold:
+            new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors))]
         else:
-            new = [
-                Attractor(motion, Symmetry.ASYMMETRIC, index + 1),
-                Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index),
-            ]
+            new = self._images(motion, self.is_symmetric(found) or self.changes_sides(found))
         new = [replace(item, close_returns=close_returns(found, self.tolerance, tuning)) for item in new]
         if self._accept(new, tuning.smallest_radius):
             return True
@@ -230,12 +217,23 @@ class Search(Settling):
             return False
         quick = motion.exponent[1] * tuning.slow_time * settings.transient < -1.0
         if not (closed and (quick or self.lies_in_chaos(found))):
-            symmetry = Symmetry.SYMMETRIC if mirror else Symmetry.ASYMMETRIC
             whole = spread(self.model, motion, settings, tuning)
-            slow = Attractor(whole, symmetry, index, slow=True, close_returns=tuning.close_returns)
-            if self._accept([slow], tuning.smallest_radius):
+            slow = [replace(item, slow=True) for item in self._images(whole, self.touches(whole))]
+            if self._accept(slow, tuning.smallest_radius):
                 return True
         return closed and self._accept(new, tuning.tiny_radius)
+
+    def _images(self, motion: SteadyMotion, symmetric: bool) -> list[Attractor]:
+        """Return a motion as an attractor to come, with its mirror image if that is another one."""
+        index = len(self.attractors)
+        if not self.model.chain.is_mirror_symmetric:
+            return [Attractor(motion, Symmetry.ASYMMETRIC, index)]
+        if symmetric:
+            return [Attractor(motion.symmetrized(self.tuning), Symmetry.SYMMETRIC, index)]
+        return [
+            Attractor(motion, Symmetry.ASYMMETRIC, index + 1),
+            Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index),
+        ]
 
     def _add_slow_synchrony(self) -> bool:
         """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.

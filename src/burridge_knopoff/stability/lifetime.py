@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -99,7 +99,8 @@ def _followed(
     attractor = attractors[index]
     time = tuning.exposure * settings.lifetime / tuning.followed
     returns = attractor.motion.returns
-    size = tuning.parting_push * settings.resolution * model.scale
+    # No farther than pushes have come back from.
+    size = min(tuning.parting_push * settings.resolution * model.scale, attractor.radius)
     chosen = generator.integers(len(returns), size=count)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
     others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
@@ -109,10 +110,18 @@ def _followed(
     gone, when = label(model, others, starts, late + time)
     known = gone != UNDETERMINED
 
+    # The radius of thin chaos may be smaller than the distances within it: by that it does not know its own states.
+    sets = [
+        replace(one, radius=max(one.radius, tuning.spacings * one.motion.spacing))
+        if k in (index, attractor.partner)
+        else one
+        for k, one in enumerate(attractors)
+    ]
+
     def nowhere(chosen: np.ndarray, at: float) -> np.ndarray:
         """Return which of the chosen trajectories come from where they are at a time to nothing that is known."""
         there = moved(model, [starts[k] for k in chosen], at) if len(chosen) else []
-        return chosen[label(model, attractors, there, settings.time_limit)[0] == UNDETERMINED]
+        return chosen[label(model, sets, there, settings.time_limit)[0] == UNDETERMINED]
 
     # Who gets nowhere that is known has left, at a time that nobody knows; some of them had by then already.
     lost = nowhere(np.flatnonzero(~known), late + time)

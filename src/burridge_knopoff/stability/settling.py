@@ -99,15 +99,15 @@ class Settling:
             return False
         return is_near(found.mirror_returns, found.returns, self._reach(found), self.tuning.near_share)
 
+    def touches(self, found: Returns | SteadyMotion) -> bool:
+        """Tell whether a motion comes to where its mirror image has been."""
+        if not len(found.mirror_returns) or found.block != found.mirror_block:
+            return False
+        return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
+
     def changes_sides(self, found: Returns) -> bool:
         """Tell whether a motion that touches its mirror image comes to cover it in a longer time."""
-        touches = (
-            len(found.mirror_returns)
-            and found.block == found.mirror_block
-            and not found.closed(self.tolerance)
-            and least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
-        )
-        if not touches:
+        if found.closed(self.tolerance) or not self.touches(found):
             return False
         longer = visit(self.model, found.instant(), 0.0, self.tuning.lasting * self.settings.transient, self.tuning)
         if longer is None or longer.block != found.block:

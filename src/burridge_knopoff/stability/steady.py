@@ -111,11 +111,11 @@ class SteadyMotion:
 
     def symmetrized(self, tuning: Tuning = TUNING) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
-        return self.with_returns(np.concatenate([self.returns, self.mirror_returns]), tuning)
+        both = np.concatenate([self.returns, self.mirror_returns])
+        return self.with_returns(both, both if len(self.mirror_returns) else self.mirror_returns, tuning)
 
-    def with_returns(self, returns: np.ndarray, tuning: Tuning = TUNING) -> SteadyMotion:
-        """Return the motion with these returns, a set that is its own mirror image if the chain is."""
-        mirror_returns = returns if len(self.mirror_returns) else self.mirror_returns
+    def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray, tuning: Tuning = TUNING) -> SteadyMotion:
+        """Return the motion with these returns, and these of its mirror image."""
         return replace(
             self, returns=returns, mirror_returns=mirror_returns, spacing=_spacing(returns, tuning.near_share)
         )
