@@ -152,3 +152,16 @@ def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
     assert low < 122_700
     assert high > 97_100
     assert lives[0].mean == pytest.approx(109_000, rel=0.35)
+
+
+def test_thin_chaos_is_begun_on_and_known_however_small_its_radius(tell):
+    """Pushes stay within the radius; what is as near to the set as its returns are to each other is on it."""
+    thin = stand_in(kind=MotionKind.CHAOTIC, radius=1e-6, spacing=0.01)
+    never, nowhere = (np.full(32, -1), np.zeros(32)), (np.zeros(32, int), None)
+    asked = tell(lifetime, "label", [never, nowhere, (np.zeros(0, int), None)])
+    (found,) = lifetimes(MODEL, [thin], SETTINGS)
+    assert found.ends == 0
+    returns = thin.motion.returns
+    away = [min(np.abs(start.vector() - row).max() for row in returns) for start in asked[0][2]]
+    assert 0.0 < max(away) <= 1e-6
+    assert [one.radius for one in asked[1][1]] == [pytest.approx(TUNING.spacings * 0.01)]
