@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
-from burridge_knopoff.stability import attractor, attractors, continuation, labels, radius, steady
+from burridge_knopoff.stability import attractor, attractors, continuation, labels, radius, settling, steady
 from burridge_knopoff.stability.tuning import Tuning
 
 PAGE = Path(__file__).parents[2] / "docs" / "attractors.md"
@@ -17,7 +17,7 @@ def test_the_diagram_names_functions_and_settings():
     numbers = re.findall(r"<i>(\w+)</i>", diagram)
     assert len(numbers) > 15
     assert set(numbers) <= known
-    places = [attractors.Search, attractor, attractors, continuation, labels, radius, steady]
+    places = [attractors.Search, settling.Settling, attractor, attractors, continuation, labels, radius, steady]
     names = {name for place in places for name in vars(place)}
     shown = {name for name in re.findall(r"\w+", diagram) if "_" in name} | {"label", "visit", "measure", "captured"}
     assert shown - known <= names

@@ -96,6 +96,7 @@ def test_attractors_and_basins(results):
         assert set(refined["branch"].values.ravel().tolist()) <= known | {-1}
     with xr.open_dataset(results / "summary" / "basins.nc") as basins:
         steps = {"separation": 13, "separation_step": 12}
+        steps["number"] = len(known)
         assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, **steps}
         laws = basins["law"].attrs["flag_meanings"].split()
         assert [(laws[law], a) for law, a in zip(basins["law"].values, basins["a"].values, strict=True)] == [

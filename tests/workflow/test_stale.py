@@ -149,7 +149,7 @@ def uncompiled(studied, tmp_path_factory):
         ("kernel/state.pxd", (*POINTS, *STABILITY, *SUMMARIES)),
         (
             "kernel/ensemble.py",
-            ("attractors_of_law", "basin_tile", "basin_pairs", "basins", "phases_of_law", "stick_slip"),
+            ("attractors_of_law", "basin_tile", "basin_pairs", "basins", "phases_of_law", "stick_slip", "two_blocks"),
         ),
     ],
 )
