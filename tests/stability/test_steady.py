@@ -157,6 +157,7 @@ def test_what_has_settled(spacing, drift, closed, settled):
         (0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
         (0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
         (0.0, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
+        (0.0, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
         (0.0, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
     ],
 )

@@ -330,12 +330,14 @@ def lies_on(
 ) -> bool:
     """Tell whether a settled motion lies on an attractor, as far as that is resolved.
 
-    A closed orbit may lie in the midst of a chaotic attractor, but not on it.
+    A closed orbit may lie in the midst of a chaotic attractor, but not on it, unless that is so thin that it looks like
+    one itself.
 
     resolution : distance below which attractors are not told apart
     tolerance : distance within which the returns of closed orbits repeat
     """
-    if found.block != attractor.block or (found.closed(tolerance) and attractor.kind == MotionKind.CHAOTIC):
+    chaotic = attractor.kind == MotionKind.CHAOTIC and attractor.spacing > tolerance
+    if found.block != attractor.block or (found.closed(tolerance) and chaotic):
         return False
     return is_near(
         found.returns, attractor.returns, max(resolution, tuning.spacings * attractor.spacing), tuning.near_share
