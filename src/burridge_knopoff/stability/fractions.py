@@ -14,6 +14,7 @@ from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.labels import UNDETERMINED, label_together
 from burridge_knopoff.stability.radius import midst
 from burridge_knopoff.stability.sampling import sample_states
+from burridge_knopoff.stability.settings import seed_at
 
 #: States that one process labels at a time; no label depends on it.
 PART = 250
@@ -52,7 +53,7 @@ def fraction_labels(
 def _drawn(search: Search, start: str, part: slice = slice(None)) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return some of the drawn states: x_i, U_i' and which blocks stick, each of shape (states, blocks)."""
     settings, model = search.settings, search.model
-    seed = [settings.seed, int(np.float64(model.a).view(np.uint64))]
+    seed = seed_at(settings.seed, model.a)
     box = settings.position, settings.velocity
     position, velocity = sample_states(model.blocks, settings.fraction_samples, *box, seed)
     position, velocity = position[part], velocity[part]

@@ -9,6 +9,7 @@ import numpy as np
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.stability.settings import seed_at
 
 
 def ends_are_neighbours(chain: Chain) -> bool:
@@ -83,13 +84,9 @@ def oscillating_states(
 
 def common_phases(a: float, shape: tuple[int, ...], seed: int) -> np.ndarray:
     """Return phases of the first block in degrees, uniform in [0, 360); those of different a are independent."""
-    return 360.0 * np.random.default_rng([seed, _bits(a)]).random(shape)
+    return 360.0 * np.random.default_rng(seed_at(seed, a)).random(shape)
 
 
 def inner_phases(a: float, shape: tuple[int, ...], seed: int) -> np.ndarray:
     """Return phases of the inner blocks as `common_phases` does, independent of those."""
-    return 360.0 * np.random.default_rng([seed, _bits(a), 1]).random(shape)
-
-
-def _bits(a: float) -> int:
-    return int(np.float64(a).view(np.uint64))
+    return 360.0 * np.random.default_rng([*seed_at(seed, a), 1]).random(shape)

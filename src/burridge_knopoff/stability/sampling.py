@@ -31,11 +31,6 @@ def sample_states(
     return states[:, 0], states[:, 1]
 
 
-def seed_at(seed: int, a: float) -> list[int]:
-    """Return a seed of samples that are drawn anew at each a: those of neighbours are not wrong together."""
-    return [seed, int(np.float64(a).view(np.uint64))]
-
-
 def sampled_states(
     blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int | Sequence[int]
 ) -> list[InitialState]:

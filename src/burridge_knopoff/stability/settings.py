@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
+import numpy as np
+
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.initial import COORDINATE, PAPER_STATES, InitialState
 from burridge_knopoff.model.model import START, STARTS
@@ -25,6 +27,11 @@ SHARE = Number(0.0, 1.0)
 TIME = Number(0.0, LONGEST, above=True)
 TOLERANCE = Number(0.0, 1.0, above=True)
 ERRORS = Number(0.0, 100.0)
+
+
+def seed_at(seed: int, a: float) -> list[int]:
+    """Return a seed of samples that are drawn anew at each a: those of neighbours are not wrong together."""
+    return [seed, int(np.float64(a).view(np.uint64))]
 
 
 @dataclass(frozen=True)
@@ -260,7 +267,7 @@ class Sample:
     def initial(self, blocks: int, a: float | None = None) -> list[InitialState]:
         """Return the initial states of a chain of that many blocks, those drawn for one a or those for every a."""
         # Here, as whoever reads a config should not wait for SciPy.
-        from burridge_knopoff.stability.sampling import sampled_states, seed_at
+        from burridge_knopoff.stability.sampling import sampled_states
 
         seed = self.seed if a is None else seed_at(self.seed, a)
         return sampled_states(blocks, self.samples, self.position, self.velocity, seed)

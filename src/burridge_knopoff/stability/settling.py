@@ -95,13 +95,13 @@ class Settling:
 
     def is_symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image, in the window in which it was seen."""
-        if not len(found.mirror_returns) or found.block != found.mirror_block:
-            return False
-        return is_near(found.mirror_returns, found.returns, self._reach(found), self.tuning.near_share)
+        return _sees_both(found) and is_near(
+            found.mirror_returns, found.returns, self._reach(found), self.tuning.near_share
+        )
 
     def touches(self, found: Returns | SteadyMotion) -> bool:
         """Tell whether a motion comes to where its mirror image has been."""
-        if not len(found.mirror_returns) or found.block != found.mirror_block:
+        if not _sees_both(found):
             return False
         return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
 
@@ -128,3 +128,8 @@ class Settling:
     def _reach(self, found: Returns) -> float:
         """Return how far from a motion a return that belongs to it may lie."""
         return max(self.resolution, 0.0 if found.closed(self.tolerance) else self.tuning.spacings * found.spacing)
+
+
+def _sees_both(found: Returns | SteadyMotion) -> bool:
+    """Tell whether a motion and its mirror image are seen at the stops of one block, so that they can be compared."""
+    return len(found.mirror_returns) > 0 and found.block == found.mirror_block
