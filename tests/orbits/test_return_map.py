@@ -18,7 +18,8 @@ def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
         model = Model(Chain(3), LAW.at(a))
         start = model.begin(PAPER_STATES["plus"])
         mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
-        return mapping.a_derivative(start, 1.0, mapping.end(start, 1.0))
+        end = mapping.end(start, 1.0)
+        return mapping.a_derivative(start, 1.0, end, len(mapping.event_rows()))
 
     assert np.abs(derivative(1.0)).max() > 0.05
     assert derivative(1.0) == pytest.approx(derivative(1.0 - 1e-6), abs=1e-4)

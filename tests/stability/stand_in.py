@@ -26,6 +26,7 @@ def stand_in(
         "kind": MotionKind.PERIODIC,
         "section_period": 1,
         "exponent": np.array([0.0, -0.1, -0.2]),
+        "exponent_error": np.zeros(3),
     }
     return Attractor(SteadyMotion(**{**motion, **told}), symmetry, partner, **{"radius": 0.01, **of_attractor})
 
@@ -49,3 +50,8 @@ def at(*places: float, ahead: float = 0.0, **told: Any) -> Attractor:
     tilt = np.array([ahead, 0.0, 0.0, 0.0, 0.0, 0.0])
     returns = np.repeat(np.array(places)[:, None], 6, axis=1)
     return stand_in(returns=returns + tilt, mirror_returns=returns + tilt[[2, 1, 0, 3, 4, 5]], **told)
+
+
+def nearest(first: np.ndarray, second: np.ndarray, rank: int) -> np.ndarray:
+    """Return, by all differences, how far each row of a set is from its nearest, or next but one, of another."""
+    return np.sort(np.abs(first[:, None] - second[None]).max(axis=2), axis=1)[:, rank]

@@ -6,7 +6,7 @@ import pytest
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
 from burridge_knopoff.stability import joining
 from burridge_knopoff.stability.joining import follow_law, joined
-from burridge_knopoff.stability.steady import least_distance
+from burridge_knopoff.stability.nearness import least_distance
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import shown
 

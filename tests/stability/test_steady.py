@@ -12,18 +12,13 @@ from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import instant_of, lies_on, measure, visit
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import shown, stand_in
+from tests.stability.stand_in import nearest, shown, stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 
 
 def model(threshold=1.0):
     return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08))
-
-
-def nearest(first, second, rank):
-    """Return, by all differences, how far each row of a set is from its nearest, or next but one, of another."""
-    return np.sort(np.abs(first[:, None] - second[None]).max(axis=2), axis=1)[:, rank]
 
 
 @pytest.mark.parametrize("threshold", [1.0, (1.0, 1.0, 0.9)])
@@ -177,46 +172,56 @@ def test_the_length_of_an_orbit(length, longest, expected):
     assert steady.orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
 
 
-def test_a_bound_changes_no_distance_within_it():
-    """And whether a set is near another is what its distance says, at the limit and either side of it."""
-    generator = np.random.default_rng(8)
-    for size in (9, 20, 21, 200):
-        first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))
-        least, far = steady.least_distance(first, second), steady.distance(first, second)
-        assert far == pytest.approx(np.quantile(nearest(first, second, 0), 0.95), rel=1e-12)
-        assert least == nearest(first, second, 0).min()
-        assert steady.least_distance(first, second, least) == least
-        assert steady.least_distance(first, second, 0.999 * least) == np.inf
-        for limit in (0.5 * far, 0.9999 * far, far, 1.0001 * far, 2.0 * far):
-            assert steady.is_near(first, second, limit) == (far <= limit)
-
-
 @pytest.mark.parametrize(
-    ("kind", "exponent", "longer", "expected"),
+    ("kind", "exponent", "longer", "asked_windows"),
     [
-        (MotionKind.QUASIPERIODIC, 1e-9, MotionKind.CHAOTIC, MotionKind.CHAOTIC),
-        (MotionKind.UNDETERMINED, 6e-4, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
-        (MotionKind.UNDETERMINED, 0.0, MotionKind.QUASIPERIODIC, MotionKind.QUASIPERIODIC),
-        (MotionKind.QUASIPERIODIC, 6e-4, None, MotionKind.QUASIPERIODIC),
-        (MotionKind.QUASIPERIODIC, 0.0, "not asked", MotionKind.QUASIPERIODIC),
-        (MotionKind.PERIODIC, 6e-4, "not asked", MotionKind.PERIODIC),
+        # In a window four times as long what is certain is taken.
+        (MotionKind.QUASIPERIODIC, 1e-9, [(MotionKind.CHAOTIC, 0.5, 1e-3)], [30.0, 120.0]),
+        (MotionKind.UNDETERMINED, 6e-4, [(MotionKind.PERIODIC, 0.0, 1e-3)], [30.0, 120.0]),
+        (MotionKind.UNDETERMINED, 0.0, [(MotionKind.QUASIPERIODIC, 5e-5, 5e-5)], [30.0, 120.0]),
+        # A torus whose largest exponent may be above 0.001/√20 = 2.236e-4 is not, nor is what is undetermined.
+        *(
+            (MotionKind.QUASIPERIODIC, 1e-9, [first, (MotionKind.CHAOTIC, 0.5, 1e-3)], [30.0, 120.0, 600.0])
+            for first in (
+                (MotionKind.QUASIPERIODIC, 5e-5, 6e-5),
+                (MotionKind.QUASIPERIODIC, 1.5e-4, 3e-5),
+                (MotionKind.QUASIPERIODIC, 0.0, np.nan),
+                (MotionKind.UNDETERMINED, 0.0, 0.0),
+            )
+        ),
+        (MotionKind.QUASIPERIODIC, 6e-4, [None], [30.0, 120.0]),
+        (MotionKind.QUASIPERIODIC, 0.0, [], [30.0]),
+        (MotionKind.PERIODIC, 6e-4, [], [30.0]),
     ],
 )
-def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longer, expected):
+def test_weak_chaos_is_looked_for_in_longer_windows(tell, kind, exponent, longer, asked_windows):
     first = stand_in(kind=kind, exponent=np.array([exponent])).motion
-    later = {"kind": longer, "exponent": np.array([0.5]), "section_period": 9, "returns": ROWS, "mean_distance": 5.0}
-    asked = tell(steady, "_measure", [first, replace(first, **later) if longer is not None else None])
+    told = [
+        one
+        and replace(
+            first,
+            kind=one[0],
+            exponent=np.array([one[1]]),
+            exponent_error=np.array([one[2]]),
+            section_period=9,
+            returns=ROWS,
+            mean_distance=5.0,
+        )
+        for one in longer
+    ]
+    asked = tell(steady, "_measure", [first, *told])
     tell(steady, "visit", [None])
     found = measure(model(), None, 50.0, 30.0, MOTION)
-    assert found.kind == expected
-    assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
-    if longer != "not asked":
+    assert [given[2:4] for given in asked] == [(50.0, window) for window in asked_windows]
+    for given in asked[1:]:
         # Twenty times as long a window shows exponents smaller by √20.
         names = ("zero_exponent", "chaotic_exponent", "period_tolerance")
-        ratios = [getattr(asked[1][4], name) / getattr(MOTION, name) for name in names]
-        assert ratios == pytest.approx([0.2236068, 0.2236068, 1.0])
-    taken = longer not in (None, "not asked")
-    assert (found.section_period, found.exponent.tolist()) == ((9, [0.5]) if taken else (1, [exponent]))
+        assert [getattr(given[4], name) / getattr(MOTION, name) for name in names] == pytest.approx(
+            [0.2236068, 0.2236068, 1.0]
+        )
+    last = next((one for one in reversed(told) if one), first)
+    seen = ("kind", "section_period", "exponent", "exponent_error")
+    assert [getattr(found, name) for name in seen] == [getattr(last, name) for name in seen]
     # The returns and the mean distance stay those of the usual window.
     assert found.returns is first.returns
     assert found.mean_distance == 0.1

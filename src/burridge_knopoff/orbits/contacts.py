@@ -88,21 +88,17 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
 
 def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
     """Return the shortest time from an event of a kind to the next one of the block; infinite if there is none."""
-    own = orbit.events_of(block)
-    following = [*own[1:], *((time + orbit.period, event) for time, event in own[:1])]
-    return min(
-        (later - time for (time, event), (later, _) in zip(own, following, strict=True) if event == kind),
-        default=np.inf,
-    )
+    time, event = orbit.events_of(block)
+    return float(np.diff(time, append=time[:1] + orbit.period)[event == kind].min(initial=np.inf))
 
 
 def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield for each block whether it sticks at each time, and how many of its events are over."""
     for block in range(orbit.model.blocks):
-        own = orbit.events_of(block)
-        over = np.searchsorted([at for at, _ in own], time)
-        first = 1 - own[0][1] if own else 1 - int(orbit.reference.stuck[block])
-        yield np.array([first, *(kind for _, kind in own)])[over] == 0, over
+        at, kind = orbit.events_of(block)
+        over = np.searchsorted(at, time)
+        first = 1 - kind[0] if len(kind) else 1 - int(orbit.reference.stuck[block])
+        yield np.concatenate([[first], kind])[over] == 0, over
 
 
 def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -47,7 +47,7 @@ class PeriodicOrbit:
 
     reference : a state between two events, well away from both
     return_time : after which the state returns: the period, or half of it for an orbit that is its own mirror image
-    residual : max norm of the state after a return minus the reference state
+    returned : the state after a return, in a mirror for an orbit that is its own mirror image
     monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
     event_rows : `events` as an array, shape (events, 3): thousands of orbits are kept of a branch
 
@@ -65,7 +65,7 @@ class PeriodicOrbit:
     symmetry: Symmetry
     reference: Instant
     return_time: float
-    residual: float
+    returned: Instant
     monodromy: np.ndarray
     event_rows: np.ndarray
 
@@ -74,15 +74,20 @@ class PeriodicOrbit:
         """Time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period."""
         return [(time, int(block), int(kind)) for time, block, kind in self.event_rows.tolist()]
 
-    def events_of(self, block: int) -> list[tuple[float, int]]:
-        """Return time and kind of the events of one block."""
-        rows = self.event_rows[self.event_rows[:, 1] == block]
-        return [(time, int(kind)) for time, _, kind in rows.tolist()]
+    def events_of(self, block: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return times and kinds of the events of one block, each of shape (events,)."""
+        time, moved, kind = self.event_rows.T
+        return time[moved == block], kind[moved == block]
 
     @property
     def a(self) -> float:
         """Friction parameter."""
         return self.model.a
+
+    @property
+    def residual(self) -> float:
+        """Max norm of the state after a return minus the reference state."""
+        return float(np.abs(self.returned.vector() - self.reference.vector()).max())
 
     @property
     def period(self) -> float:
@@ -106,10 +111,10 @@ class PeriodicOrbit:
 
     def start(self, block: int) -> Instant:
         """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
-        times = [time for time, kind in self.events_of(block) if kind == 0]
-        if not times:
+        time, kind = self.events_of(block)
+        if not (kind == 0).any():
             raise OrbitError(f"block = {block!r}: it never stops on this orbit")
-        state = flow(self.model, self.reference, times[0])[0].instant()
+        state = flow(self.model, self.reference, float(time[kind == 0][0]))[0].instant()
         stuck = state.stuck.copy()
         stuck[block] = True
         return Instant(state.position, np.where(stuck, 0.0, state.velocity), stuck)
@@ -136,9 +141,10 @@ def solve_return(
     first, last = start.vector(), np.inf
     state, blocks = first.copy(), model.blocks
     by_a: np.ndarray | None = None
+    mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
         here = Instant(state[:blocks], state[blocks:], start.stuck)
-        mapping = ReturnMap(model, symmetry)
+        mapping = mapping if mapping.model is model else ReturnMap(model, symmetry)
         end, changed = mapping.with_tangent(here, time)
         residual = float(np.abs(end.vector() - state).max())
         values = np.zeros(unknowns)
@@ -153,14 +159,15 @@ def solve_return(
             change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
             values[-1] = vector @ change - amount
             # Costly, and it changes little from one iteration to the next.
-            by_a = basis.T @ mapping.a_derivative(here, time, end) if by_a is None else by_a
+            if by_a is None:
+                by_a = basis.T @ mapping.a_derivative(here, time, end, len(mapping.event_rows()))
             jacobian[:count, -1] = by_a
             jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
         size = float(np.abs(values).max())
         if size <= ENOUGH or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
             if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
                 break
-            return PeriodicOrbit(model, symmetry, here, time, residual, changed, _event_rows(mapping, time))
+            return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
         if iteration > FIRST and size > last:
             break
         last = size
@@ -186,8 +193,7 @@ def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> P
     """
     mapping = ReturnMap(model, symmetry)
     end, changed = mapping.with_tangent(state, time)
-    residual = float(np.abs(end.vector() - state.vector()).max())
-    return PeriodicOrbit(model, symmetry, state, time, residual, changed, _event_rows(mapping, time))
+    return PeriodicOrbit(model, symmetry, state, time, end, changed, _event_rows(mapping, time))
 
 
 def safe_offset(orbit: PeriodicOrbit) -> float:
@@ -234,10 +240,10 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
 
 def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:
     """Return the events of a whole period, of which a return has just been made, shape (events, 3)."""
-    events, last = mapping.events(), mapping.model.blocks - 1
+    rows = mapping.event_rows()
     if mapping.symmetry != Symmetry.SYMMETRIC:
-        return np.reshape(events, (-1, 3))
-    return np.reshape([*events, *((time + at, last - block, kind) for at, block, kind in events)], (-1, 3))
+        return rows
+    return np.concatenate([rows, rows * (1, -1, 1) + (time, mapping.model.blocks - 1, 0)])
 
 
 def _safe_offset(times: list[float], period: float) -> float:

@@ -80,12 +80,12 @@ def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
     model, start, time = orbit.model, orbit.reference, orbit.return_time
     basis = directions(start.stuck, orbit.symmetry)
     count = basis.shape[1]
-    mapping = ReturnMap(model, orbit.symmetry)
-    end = mapping.end(start, time)
+    mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
+    events = int(np.count_nonzero(orbit.event_rows[:, 0] <= time))
     matrix = np.zeros((count + 1, count + 2))
     matrix[:count, :count] = basis.T @ orbit.monodromy @ basis - np.eye(count)
     matrix[:count, count] = basis.T @ mapping.time_derivative(end)
-    matrix[:count, count + 1] = basis.T @ mapping.a_derivative(start, time, end)
+    matrix[:count, count + 1] = basis.T @ mapping.a_derivative(start, time, end, events)
     matrix[count, :count] = rate(model, start) @ basis
     null = np.linalg.svd(matrix)[2][-1]
     vector = np.concatenate([basis @ null[:count], null[count:]])

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.orbit import OrbitError, after, model_at, rate
+from burridge_knopoff.orbits.orbit import OrbitError, after, flow, model_at, rate
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
@@ -50,17 +50,18 @@ class ReturnMap:
         end = self.end(start, time)
         return end, self._mirrored_rows(self._runner.perturbations)
 
-    def events(self) -> tuple[tuple[float, int, int], ...]:
-        """Return time, block (0 …) and kind (0 stop, 1 start) of the events of the last return, not mirrored."""
-        return tuple(zip(*(values[self._kept :].tolist() for values in self._runner.events()), strict=True))
+    def event_rows(self) -> np.ndarray:
+        """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, not mirrored."""
+        return np.stack(self._runner.events(), axis=1)[self._kept :]
 
-    def a_derivative(self, start: Instant, time: float, end: Instant) -> np.ndarray:
-        """Return how the end of the last return, that of this start after this time, changes with a, shape (2 blocks,).
+    def a_derivative(self, start: Instant, time: float, end: Instant, events: int) -> np.ndarray:
+        """Return how the end of a return changes with a, shape (2 blocks,).
+
+        start, time, end, events : of the return, with how many events
 
         From a finite difference: next to a grazing, where the derivative jumps, on the side of the orbit. Raises
         OrbitError if there is none.
         """
-        count = len(self.events())
         step = STEP
         while step > LEAST_STEP:
             for a in (self.model.a + step, self.model.a - step):
@@ -68,9 +69,9 @@ class ReturnMap:
                     model = model_at(self.model, a)
                 except OrbitError:
                     continue
-                other = ReturnMap(model, self.symmetry)
-                change = other.end(start, time).vector() - end.vector()
-                if len(other.events()) == count:
+                runner, passed = flow(model, start, time)
+                if len(passed) == events:
+                    change = self._mirrored(runner.instant()).vector() - end.vector()
                     return change / (a - self.model.a)
             step *= 0.1
         raise OrbitError(f"a = {self.model.a!r}: stops and starts change however little a does")

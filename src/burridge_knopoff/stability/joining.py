@@ -12,8 +12,9 @@ from scipy.spatial import cKDTree
 from burridge_knopoff.laws.blend import blend
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.stability.nearness import is_near
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import Returns, is_near, visit
+from burridge_knopoff.stability.steady import Returns, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 #: {branch: the states on it}, with the models that they belong to by position: at each of them one state.

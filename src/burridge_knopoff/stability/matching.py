@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.labels import UNDETERMINED
-from burridge_knopoff.stability.steady import distance
+from burridge_knopoff.stability.nearness import distance
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 

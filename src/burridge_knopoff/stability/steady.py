@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
@@ -22,6 +20,7 @@ from burridge_knopoff.stability.motion import (
     motion_kind,
     section_period,
 )
+from burridge_knopoff.stability.nearness import distance, is_near, spacing_of
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
@@ -73,7 +72,8 @@ class SteadyMotion:
 
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
     stop_rate : stops of each block in a unit of time, shape (blocks,)
-    kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
+    kind : see stability.motion
+    exponent, exponent_error : Lyapunov exponents, the largest first, and their standard errors
 
     returns, mirror_returns, spacing, block, mirror_block : see `Returns`
 
@@ -95,6 +95,7 @@ class SteadyMotion:
     kind: MotionKind
     section_period: int
     exponent: np.ndarray
+    exponent_error: np.ndarray
     block: int = 1
     mirror_block: int = 1
 
@@ -117,7 +118,7 @@ class SteadyMotion:
     def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray, tuning: Tuning = TUNING) -> SteadyMotion:
         """Return the motion with these returns, and these of its mirror image."""
         return replace(
-            self, returns=returns, mirror_returns=mirror_returns, spacing=_spacing(returns, tuning.near_share)
+            self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns, tuning.near_share)
         )
 
     def instant(self) -> Instant:
@@ -160,7 +161,7 @@ def _returns(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarr
     return Returns(
         returns=stops,
         mirror_returns=mirror_returns,
-        spacing=_spacing(second, tuning.near_share),
+        spacing=spacing_of(second, tuning.near_share),
         drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),
         stop_count=stop_count,
         block=section,
@@ -199,8 +200,8 @@ def measure(
 
     Where only the errors of the exponents leave open which kind it is, or may hide weak chaos, it is measured in a
     longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
-    windows. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
-    exponent shows it have closed by then.
+    windows, and in a shorter one where that is certain already. What may be a torus is followed on for `lasting`
+    transients: closed orbits that attract so weakly that no exponent shows it have closed by then.
     """
     settings = settings.at_speed(model.v)
     found = _measure(model, start, transient, window, settings, tuning)
@@ -208,10 +209,16 @@ def measure(
         return found
     if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > 0.0:
         finer = settings.scaled(tuning.longer_window**-0.5)
-        longer = _measure(model, start, transient, tuning.longer_window * window, finer, tuning)
-        if longer is not None:
+        for times in (tuning.long_window, tuning.longer_window):
+            longer = _measure(model, start, transient, times * window, finer, tuning)
+            if longer is None:
+                break
             # The returns stay those of the usual window: their number decides how attractors are told apart.
-            found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+            seen = ("kind", "section_period", "exponent", "exponent_error")
+            found = replace(found, **{name: getattr(longer, name) for name in seen})
+            most = longer.exponent[0] + finer.standard_errors * longer.exponent_error[0]
+            if longer.kind not in OPEN or (longer.kind != MotionKind.UNDETERMINED and most <= finer.chaotic_exponent):
+                break
     if found.kind in OPEN:
         late = visit(model, found.instant(), tuning.lasting * transient, window, tuning)
         if late is not None and late.closed(settings.period_tolerance):
@@ -262,26 +269,10 @@ def _measure(
         kind=kind,
         section_period=period,
         exponent=exponent,
+        exponent_error=error,
         block=found.block,
         mirror_block=found.mirror_block,
     )
-
-
-def distance(
-    first: np.ndarray, second: np.ndarray | cKDTree, share: float = TUNING.near_share, bound: float = np.inf
-) -> float:
-    """Return how far the returns of the first set lie from the second: the distance within which that share does.
-
-    bound : what is farther may be given as infinitely far: neighbours beyond it are hardly looked for
-    """
-    tree = second if isinstance(second, cKDTree) else cKDTree(second)
-    nearest = _nearest(first, tree, bound)
-    near = int(np.count_nonzero(np.isfinite(nearest)))
-    # The quantile lies between two of the sorted distances; only where the bound parts these does their size matter.
-    below = math.floor(share * (len(first) - 1)) + 1
-    if near < below:
-        return np.inf
-    return float(np.quantile(_nearest(first, tree, np.inf) if near == below < len(first) else nearest, share))
 
 
 def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) -> bool:
@@ -293,12 +284,6 @@ def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) 
     return bool(np.abs(np.subtract(*shares)).max() <= tuning.same_stops)
 
 
-def _spacing(returns: np.ndarray, share: float) -> float:
-    """Return the distance within which that share of the returns have a neighbour."""
-    nearest, _ = cKDTree(returns).query(returns, k=2, p=np.inf)
-    return float(np.quantile(nearest[:, 1], share))
-
-
 def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
     """Return after how many returns a closed orbit repeats within the tolerance; `longest` if it takes more."""
     settled = returns[len(returns) // 3 :]
@@ -306,23 +291,6 @@ def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
         if np.abs(settled[length:] - settled[:-length]).max() <= tolerance:
             return length
     return longest
-
-
-def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = TUNING.near_share) -> bool:
-    """Tell whether `distance(first, second)` is at most the limit."""
-    return distance(first, second, share, limit) <= limit
-
-
-def least_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
-    """Return the distance between the two nearest returns of two sets; infinite if it is beyond the bound."""
-    return float(_nearest(first, cKDTree(second), bound).min())
-
-
-def _nearest(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
-    """Return how far each of the first returns is from the nearest in a tree; infinite beyond the bound."""
-    # The tree leaves out what lies just at the bound. Where two sets are far apart it hardly looks.
-    nearest, _ = tree.query(first, p=np.inf, distance_upper_bound=np.nextafter(bound, np.inf))
-    return nearest
 
 
 def lies_on(

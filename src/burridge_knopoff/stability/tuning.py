@@ -32,6 +32,8 @@ class Tuning:
     #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
     #: 0.001 is then beyond its error.
     longer_window: float = 20.0
+    #: In a window this many times longer most of it is certain already: a torus shows hardly any exponent by then.
+    long_window: float = 4.0
 
     # When two sets of returns are one.
 
