@@ -22,7 +22,7 @@ rule attractors_of_law:
         f"{RESULTS}/logs/attractors/{{law}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/attractors/{{law}}.tsv"
-    # The longest jobs of a study: begun first, so that none is left alone at its end.
+    # The longest jobs of a study: before all others that fit into the cores that are free.
     priority: 10
     threads: SHARED_CORES
     resources:

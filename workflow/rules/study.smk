@@ -123,6 +123,10 @@ def prepare_results():
             "basins: no map: give basins.a; none of its usual values is in the grid",
             file=sys.stderr,
         )
+    # Snakemake would look at all jobs that are ready a second after each look as well, so often after hundreds of jobs that
+    # it takes a fifth of a core (its issue 3804). Programs that submit jobs are to be asked less often.
+    if not workflow.non_local_exec:
+        workflow.scheduler.job_rate_limiter = None
     PLAN.announce()
 
 

@@ -45,6 +45,8 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
             )
         if shares[state] < 1.0:
             apart.append(f"they disagree {at_values(found['a'].values, agrees == 0)} ({state})")
+        if not known.all():
+            apart.append(f"it is not known {at_values(found['a'].values, ~known)} ({state})")
     verdict, text = judge_shares(shares, loose_share)
     reason = f"The laws agree in ⟨J⟩ and kind of motion at {text} of the values of a with {a}."
     return Verdict(verdict, reason, measured, "; ".join(apart))

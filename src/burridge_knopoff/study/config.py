@@ -79,11 +79,11 @@ AGREEMENT = {
     "relative_tolerance": Field(
         SHARE,
         "a law agrees with the first one if its motion is of the same kind, periodic and quasiperiodic counting as "
-        "one, and <J> differs by no more than this share of the larger one, …",
+        "one, and <J> differs by no more than this share of the larger one, or than synchronization_threshold, …",
         0.1,
     ),
     "standard_errors": Field(
-        ERRORS, "… or by no more than this many standard errors, or than synchronization_threshold", 3.0
+        ERRORS, "… for certain: nobody knows where the difference is within this many standard errors of that", 3.0
     ),
 }
 COMPARED = {

@@ -226,5 +226,5 @@ def _parting(row: xarray.Dataset) -> str:
         )
     if failed := int((verdict < 0).sum()):
         values = f"{counted(failed, 'value')} of a {'is' if failed == 1 else 'are'} undetermined"
-        text += f" {values}: a run did not complete, or its kind of motion is not clear."
+        text += f" {values}: a run did not complete, its kind is not clear, or <J> differs by about the tolerance."
     return text

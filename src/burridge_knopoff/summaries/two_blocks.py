@@ -25,7 +25,7 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import OF_GIVEN_STATES, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import Answer, allowed, compare
+from burridge_knopoff.summaries.judgement import Answer, compare, excess
 
 BLOCKS = 2
 
@@ -51,7 +51,7 @@ PAIR_VARIABLES = {
     "margin": Variable(
         _PAIR,
         "f8",
-        "how far |difference| lies beyond what agreement allows, in standard errors of the difference",
+        "how far |difference| lies beyond the tolerance of agreement, in standard errors of the difference",
         {"comment": "negative where it is allowed; within agreement_standard_errors of 0 the verdict is left open"},
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
@@ -117,8 +117,10 @@ def summarize(
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
         pair = {name: values[name][[0, i + 1]] for name in MOTION_VARIABLES}
         both = {**pair, **compared}
-        compare(both, np.asarray(grid), motion.synchronization_threshold, agreement, certain=True)
-        compared["margin"][...] = _margin(both, motion.synchronization_threshold, agreement)
+        compare(both, np.asarray(grid), motion.synchronization_threshold, agreement)
+        with np.errstate(divide="ignore"):
+            beyond = excess(both, motion.synchronization_threshold, agreement)
+            compared["margin"][...] = beyond / compared["difference_error"]
         for k, column in enumerate(compared["agrees"].T):
             interval = fraction_interval(int((column == 1).sum()), int((column >= 0).sum()))
             for name, value in zip(("agreeing_fraction", "agreeing_low", "agreeing_high"), interval, strict=True):
@@ -148,13 +150,6 @@ def summarize(
         },
         module=__name__,
     )
-
-
-def _margin(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
-    """Return how far differences of ⟨J⟩ lie beyond what is allowed, in their standard errors; infinite without one."""
-    beyond = np.abs(values["difference"]) - allowed(values, threshold, agreement)
-    with np.errstate(divide="ignore"):
-        return beyond / values["difference_error"]
 
 
 def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
