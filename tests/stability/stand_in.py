@@ -26,7 +26,6 @@ def stand_in(
         "kind": MotionKind.PERIODIC,
         "section_period": 1,
         "exponent": np.array([0.0, -0.1, -0.2]),
-        "exponent_error": np.zeros(3),
     }
     return Attractor(SteadyMotion(**{**motion, **told}), symmetry, partner, **{"radius": 0.01, **of_attractor})
 

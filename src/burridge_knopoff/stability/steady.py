@@ -72,8 +72,7 @@ class SteadyMotion:
 
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
     stop_rate : stops of each block in a unit of time, shape (blocks,)
-    kind : see stability.motion
-    exponent, exponent_error : Lyapunov exponents, the largest first, and their standard errors
+    kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
 
     returns, mirror_returns, spacing, block, mirror_block : see `Returns`
 
@@ -95,7 +94,6 @@ class SteadyMotion:
     kind: MotionKind
     section_period: int
     exponent: np.ndarray
-    exponent_error: np.ndarray
     block: int = 1
     mirror_block: int = 1
 
@@ -200,8 +198,8 @@ def measure(
 
     Where only the errors of the exponents leave open which kind it is, or may hide weak chaos, it is measured in a
     longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
-    windows, and in a shorter one where that is certain already. What may be a torus is followed on for `lasting`
-    transients: closed orbits that attract so weakly that no exponent shows it have closed by then.
+    windows. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
+    exponent shows it have closed by then.
     """
     settings = settings.at_speed(model.v)
     found = _measure(model, start, transient, window, settings, tuning)
@@ -209,16 +207,10 @@ def measure(
         return found
     if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > 0.0:
         finer = settings.scaled(tuning.longer_window**-0.5)
-        for times in (tuning.long_window, tuning.longer_window):
-            longer = _measure(model, start, transient, times * window, finer, tuning)
-            if longer is None:
-                break
+        longer = _measure(model, start, transient, tuning.longer_window * window, finer, tuning)
+        if longer is not None:
             # The returns stay those of the usual window: their number decides how attractors are told apart.
-            seen = ("kind", "section_period", "exponent", "exponent_error")
-            found = replace(found, **{name: getattr(longer, name) for name in seen})
-            most = longer.exponent[0] + finer.standard_errors * longer.exponent_error[0]
-            if longer.kind not in OPEN or (longer.kind != MotionKind.UNDETERMINED and most <= finer.chaotic_exponent):
-                break
+            found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
     if found.kind in OPEN:
         late = visit(model, found.instant(), tuning.lasting * transient, window, tuning)
         if late is not None and late.closed(settings.period_tolerance):
@@ -269,7 +261,6 @@ def _measure(
         kind=kind,
         section_period=period,
         exponent=exponent,
-        exponent_error=error,
         block=found.block,
         mirror_block=found.mirror_block,
     )
