@@ -144,7 +144,6 @@ def solve_return(
     mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
         here = Instant(state[:blocks], state[blocks:], start.stuck)
-        mapping = mapping if mapping.model is model else ReturnMap(model, symmetry)
         end, changed = mapping.with_tangent(here, time)
         residual = float(np.abs(end.vector() - state).max())
         values = np.zeros(unknowns)
@@ -183,6 +182,7 @@ def solve_return(
             break
         if constraint is not None:
             model = model_at(model, model.a + float(step[-1]))
+            mapping = ReturnMap(model, symmetry)
     raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
 
 

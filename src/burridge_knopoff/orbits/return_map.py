@@ -10,6 +10,8 @@ Reference: J. W. Swift and K. Wiesenfeld, "Suppression of period doubling in sym
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
@@ -32,9 +34,12 @@ class ReturnMap:
         self.model = model
         self.symmetry = symmetry
         self._free = np.eye(2 * model.blocks)
-        # To make a runner takes longer than most returns do.
-        self._runner = Runner(model, keep_events=True, perturbations=self._free)
         self._kept = 0
+
+    @cached_property
+    def _runner(self) -> Runner:
+        # To make one takes longer than most returns do.
+        return Runner(self.model, keep_events=True, perturbations=self._free)
 
     def end(self, start: Instant, time: float) -> Instant:
         """Return the state that a state comes to; raises OrbitError if the run does not complete."""

@@ -30,8 +30,7 @@ class Tuning:
     #: 100 000 time units, ten times as long as a run of the paper.
     lasting: int = 33
     #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
-    #: 0.001 is then beyond its error. In one four times longer exponents tell most of it, but 28 orbits of the default
-    #: study have not closed.
+    #: 0.001 is then beyond its error. In one four times longer closed orbits that hardly attract have not closed.
     longer_window: float = 20.0
 
     # When two sets of returns are one.

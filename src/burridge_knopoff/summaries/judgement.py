@@ -46,8 +46,8 @@ def compare(
     together = determined & ((beyond <= -margin) | (kind == MotionKind.SYNCHRONIZED).all(axis=0))
     values["agrees"][...] = np.select([apart, together], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
     for j, agrees in enumerate(values["agrees"]):
-        apart = a[agrees == Answer.NO]
-        values["parting_a"][j] = apart[0] if len(apart) else np.nan
+        parted = a[agrees == Answer.NO]
+        values["parting_a"][j] = parted[0] if len(parted) else np.nan
 
 
 def excess(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
