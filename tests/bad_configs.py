@@ -1,6 +1,6 @@
 """Configs that are not allowed, as they would stand in a file, and what the one line says: key, value, what is allowed.
 
-tests/study/test_config.py has more of them, as changes to a good one.
+tests/study/bad_changes.py has more of them, as changes to a good one.
 """
 
 from burridge_knopoff.laws import LAWS

@@ -32,7 +32,7 @@ def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str],
     assert kept == []
 
 
-# Those that Snakemake reads before the Snakefile does, and some of the others: tests/study/test_config.py has them all.
+# Those that Snakemake reads before the Snakefile does, and some others: tests/study/test_config.py tries them all.
 FILES, KEYS = (list(BAD_FILES)[part] for part in (slice(FIRST_OF_KEYS), slice(FIRST_OF_KEYS, None, 9)))
 
 
