@@ -37,7 +37,8 @@ def parts_of(results, job):
 def on(cores, jobs, seconds, parts):
     """Return the jobs and their seconds on so many cores.
 
-    A part that is shared among k processes takes at most its sum / k and, of its longest piece, the rest.
+    A part that is shared among k processes takes at most its sum / k and, of its longest piece, the rest. The jobs were
+    recorded with as many processes as they had threads.
     """
     laws = sum(job.kind.startswith("attractors_of_law") for job in jobs.values())
     processes = max(1, cores // max(1, laws))
@@ -45,7 +46,7 @@ def on(cores, jobs, seconds, parts):
     wide = {number: replace(job, threads=processes if number in shared else 1) for number, job in jobs.items()}
     took = dict(seconds)
     for number, found in shared.items():
-        spared = sum((total - longest) * (1.0 - 1.0 / processes) for total, longest in found)
+        spared = sum((total - longest) * (1.0 / jobs[number].threads - 1.0 / processes) for total, longest in found)
         took[number] = max(0.0, seconds[number] - spared)
     return wide, took
 
@@ -55,10 +56,8 @@ def main():
     for results in sys.argv[1:]:
         record = recorded(results)
         jobs, seconds = planned(record)
-        if any(job.threads > 1 and LONG.fullmatch(job.kind) for job in jobs.values()):
-            sys.exit(f"{results}: its long jobs have shared their work already: run it with -c2 or less")
         parts = {number: parts_of(results, job) for number, job in jobs.items()}
-        alone = sum(seconds.values())
+        alone = sum(on(1, jobs, seconds, parts)[1].values())
         print(f"{results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")
         for cores in (2**power for power in range(9)):
             took = max(schedule(*on(cores, jobs, seconds, parts), cores).values())
