@@ -49,27 +49,41 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
     assert words(bifurcation.draw(points)) == [[]]
 
 
-def test_differences_of_0_lie_at_the_foot_and_are_said():
+def compared(agrees: list[int]) -> xr.Dataset:
+    """Return a summary of two laws without any difference, with these answers at two values of a."""
     names = ("other_law", "initial", "a")
-    zeros = np.zeros((1, 1, 2))
-    found = dict.fromkeys(("difference", "difference_error", "section_distance"), (names, zeros))
-    summary = xr.Dataset(
+    found = dict.fromkeys(("difference", "difference_error", "section_distance"), (names, np.zeros((1, 1, 2))))
+    return xr.Dataset(
         {
             **found,
             "event_order_time": (names, [[[10.0, 20.0]]]),
-            "agrees": (names, [[[1, 0]]]),
+            "agrees": (names, [[agrees]]),
             "mean_distance": (("law", "initial", "a"), np.zeros((2, 1, 2))),
         },
         {**GRID, "other_law": ["nonlinear"]},
         {"relative_tolerance": 0.1, "standard_errors": 3.0},
     )
-    figure = agreement.draw(summary)
+
+
+def test_differences_of_0_lie_at_the_foot_and_are_said():
+    figure = agreement.draw(compared(agrees=[1, 0]))
     assert words(figure) == [["0 at all $a$"], [], []]
     for panel, floor in zip(figure.axes, agreement.FLOORS, strict=False):
         assert panel.get_lines()[0].get_ydata().tolist() == [floor] * 2
         assert panel.get_ylim()[0] < floor
     # The shading leaves the columns alike.
     assert np.allclose(figure.axes[0].get_xlim(), (0.05, 0.25))
+    (legend,) = figure.legends
+    assert "not known" not in [text.get_text() for text in legend.get_texts()]
+
+
+def test_laws_of_which_nobody_knows_whether_they_agree_have_open_symbols():
+    figure = agreement.draw(compared(agrees=[1, -1]))
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()][-1] == "not known"
+    for panel in figure.axes:
+        (hollow,) = [line for line in panel.get_lines() if line.get_markerfacecolor() == "white"]
+        assert np.isfinite(hollow.get_ydata()).tolist() == [False, True]
 
 
 def test_a_distance_of_0_is_said():

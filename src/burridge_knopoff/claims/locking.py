@@ -68,7 +68,8 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
 
     On a closed orbit the blocks stop in a ratio of whole numbers: they are locked. On a torus they are not. What a
     branch is like before it turns chaotic is taken at the value of a next below. Chaos that was there before is no
-    beginning of chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change.
+    beginning of chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change. A
+    torus may be chaos that is weaker than the search resolves, or lock between the values of a, which the verdict says.
 
     loose_share : share of the beginnings of chaos from which on the claim holds loosely
     """
@@ -104,7 +105,8 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             others.append(f"what comes before is not known at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")
         torus = sorted(place for (place, _), right in zip(places, locked, strict=True) if not right)
         if torus:
-            others.append(f"a torus before chaos above a = {', '.join(f'{value:g}' for value in torus)} ({name})")
+            tori = ", ".join(f"{value:g}" for value in torus)
+            others.append(f"a torus, or chaos too weak to tell from one, before chaos above a = {tori} ({name})")
     reason = (
         "Where a branch of attractors becomes chaotic as a grows, a closed orbit comes before, not a torus: "
         f"{', '.join(texts)}."

@@ -8,6 +8,7 @@ import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import (
     color,
@@ -23,6 +24,7 @@ from burridge_knopoff.figures.style import (
     shade_entry,
     styled,
 )
+from burridge_knopoff.summaries.judgement import Answer
 
 TITLE = "Agreement of the laws"
 CATEGORY = "Friction laws"
@@ -32,11 +34,15 @@ CAPTION = """\
 Each law compared with the first one of the study, for each initial state, against a: the difference of ⟨J⟩ with both
 tolerances, the Wasserstein distance between the section points W', and the time until which both laws have the same
 order of events. What is 0, or below 1e-17 and 1e-7 in the first two, lies at the foot. Shaded where the two disagree,
-in ⟨J⟩ or in the kind of motion.
+in ⟨J⟩ or in the kind of motion; open symbols where that is not known: ⟨J⟩ differs by about the tolerance, or a kind of
+motion is not clear.
 """
 
 # Smaller differences of ⟨J⟩ and distances of section points set the scale of nothing: they are drawn here, as is 0.
 FLOORS = (1e-17, 1e-7)
+
+POINT: dict[str, Any] = {"marker": "o", "markersize": 2.2, "color": color(0)}
+UNKNOWN: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 0.6}
 
 LABELS = (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")
 
@@ -46,7 +52,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
     """Draw, for each initial state, |Δ⟨J⟩| against both tolerances, the section distance, and the common event order.
 
     Three rows for each law that is compared with the first one. Shaded: the two disagree, in ⟨J⟩ (by more than both
-    tolerances) or in the kind of motion.
+    tolerances) or in the kind of motion. Open symbols: it is not known whether they do.
     """
     states, others = agreement["initial"].values, agreement["other_law"].values
     first = agreement["law"].values[0]
@@ -66,8 +72,10 @@ def draw(agreement: xarray.Dataset) -> Figure:
         names = (rf"difference of $\langle J\rangle$ {pair}", "distance of the section points $W'$", "event order")
         titles += [f"{initial}: {name}" for name in names for initial in states]
     handles, _ = legend_entries(panels)
-    if (agreement["agrees"] == 0).any():
+    if (agreement["agrees"] == Answer.NO).any():
         handles.append(shade_entry("the laws disagree"))
+    if (agreement["agrees"] == Answer.UNDETERMINED).any():
+        handles.append(Line2D([], [], **POINT, **UNKNOWN, linestyle="", label="not known"))
     legend_below(figure, handles)
     label_panels(panels, titles)
     return figure
@@ -77,7 +85,8 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     """Draw the comparison of one law with the first, from one initial state, into three panels."""
     a = run["a"].values
     difference, sections, order = panels
-    _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), label="difference")
+    unknown = run["agrees"].values == Answer.UNDETERMINED
+    _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown, label="difference")
     if not run["difference"].any():
         say(difference, "0 at all $a$")
     noise = (settings["standard_errors"] * run["difference_error"]).clip(min=FLOORS[0])
@@ -87,13 +96,14 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     share = (settings["relative_tolerance"] * pair.max("law")).clip(min=FLOORS[0])
     name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
     difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name)
-    _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]))
-    _curve(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0))
+    _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]), unknown)
+    _curve(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0), unknown)
     for panel in panels:
-        shade(panel, a, run["agrees"].values == 0)
+        shade(panel, a, run["agrees"].values == Answer.NO)
 
 
-def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, **look: Any) -> None:
-    panel.plot(a, values, "-o", markersize=2.2, linewidth=0.8, color=color(0), **look)
+def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, unknown: np.ndarray, **look: Any) -> None:
+    panel.plot(a, values, "-", linewidth=0.8, **POINT, **look)
+    panel.plot(a, values.where(unknown), "", **POINT, **UNKNOWN)
     if not values.notnull().any():
         say(panel, "not known at any $a$")
