@@ -128,3 +128,13 @@ def test_what_is_no_orbit_is_refused(orbits):
         orbits["symmetric"].start(1)
     with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found within 20"):
         closed_motion(orbit.model, orbit.reference, window=20.0)
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_events_that_were_forgotten_are_found_again(orbits, name):
+    orbit = orbits[name]
+    known, signature = orbit.event_rows, orbit.signature
+    orbit.forget_events()
+    assert orbit.signature == signature
+    assert orbit.event_rows is not known
+    assert np.array_equal(orbit.event_rows, known)

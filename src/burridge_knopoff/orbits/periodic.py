@@ -13,7 +13,7 @@ C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical System
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -49,7 +49,7 @@ class PeriodicOrbit:
     return_time : after which the state returns: the period, or half of it for an orbit that is its own mirror image
     returned : the state after a return, in a mirror for an orbit that is its own mirror image
     monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
-    event_rows : `events` as an array, shape (events, 3): thousands of orbits are kept of a branch
+    known_events : `event_rows`, where they are known
 
     Times are in units of 1/ω, states in those of `Model`.
 
@@ -67,7 +67,24 @@ class PeriodicOrbit:
     return_time: float
     returned: Instant
     monodromy: np.ndarray
-    event_rows: np.ndarray
+    known_events: InitVar[np.ndarray | None] = None
+
+    def __post_init__(self, known_events: np.ndarray | None) -> None:
+        """Take over the events that are known."""
+        if known_events is not None:
+            self.__dict__["event_rows"] = known_events
+
+    @cached_property
+    def event_rows(self) -> np.ndarray:
+        """`events` as an array, shape (events, 3)."""
+        mapping = ReturnMap(self.model, self.symmetry)
+        mapping.end(self.reference, self.return_time)
+        return _event_rows(mapping, self.return_time)
+
+    def forget_events(self) -> None:
+        """Free what the events take, a megabyte on the longest orbits: they are found again when they are asked for."""
+        _ = self.signature
+        self.__dict__.pop("event_rows", None)
 
     @property
     def events(self) -> list[tuple[float, int, int]]:

@@ -131,9 +131,11 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
     try:
         found = closed_motion(model, state)
         # Newton's method may come to another orbit beside one that attracts slowly.
-        return closed_motion(model, state, LATER) if multipliers(found).unstable else found
+        found = closed_motion(model, state, LATER) if multipliers(found).unstable else found
     except OrbitError as error:
         return error
+    found.forget_events()
+    return found
 
 
 def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitError:
@@ -147,6 +149,8 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitErr
         _ = [point.orbit.mean_distance for point in found.shown]
     except OrbitError as error:
         return error
+    for point in found.orbits:
+        point.orbit.forget_events()
     return found
 
 
