@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray
@@ -17,7 +17,7 @@ from burridge_knopoff.stability.attractor import Attractor, spread
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
-from burridge_knopoff.stability.steady import measure
+from burridge_knopoff.stability.steady import measure_once
 from burridge_knopoff.stability.tuning import TUNING
 
 CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
@@ -53,7 +53,8 @@ def known_attractors(
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         closed = one["kind"].item() in CLOSED
         window = settings.window * (1 if closed else TUNING.filling)
-        steady = measure(model, start, settings.transient, window, motion)
+        # The search has seen which kind it is, in longer windows.
+        steady = measure_once(model, start, settings.transient, window, motion.at_speed(model.v), TUNING)
         if steady is None:
             raise ValueError(
                 f"attractors.nc: branch {one['branch'].item()} of the {law} law at a = {a} is not an attractor: its "
@@ -66,7 +67,7 @@ def known_attractors(
                 f"{steady.mean_distance:.5f} now and {one['mean_distance'].item():.5f} in the file: motion that does "
                 "not last has no basin; leave this a out of basins and phases"
             )
-        slow = bool(one["slow"].item())
+        steady, slow = replace(steady, kind=MotionKind(one["kind"].item())), bool(one["slow"].item())
         if slow:
             steady = spread(model, steady, settings)
         elif one["symmetry"].item() == Symmetry.SYMMETRIC:

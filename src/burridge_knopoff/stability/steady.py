@@ -198,21 +198,23 @@ def measure(
 
     Where only the errors of the exponents leave open which kind it is, or may hide weak chaos, it is measured in a
     longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
-    windows. What may be a torus is followed on for `lasting` transients: closed orbits that attract so weakly that no
-    exponent shows it have closed by then.
+    windows. What may be a torus is followed on for `lasting` transients at least: closed orbits that attract so weakly
+    that no exponent shows it have closed by then.
     """
     settings = settings.at_speed(model.v)
-    found = _measure(model, start, transient, window, settings, tuning)
+    found = measure_once(model, start, transient, window, settings, tuning)
     if found is None or found.kind not in OPEN:
         return found
+    last, left = found.instant(), tuning.lasting * transient
     if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > 0.0:
         finer = settings.scaled(tuning.longer_window**-0.5)
-        longer = _measure(model, start, transient, tuning.longer_window * window, finer, tuning)
+        longer = measure_once(model, start, transient, tuning.longer_window * window, finer, tuning)
         if longer is not None:
             # The returns stay those of the usual window: their number decides how attractors are told apart.
             found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+            last, left = longer.instant(), max(0.0, left - tuning.longer_window * window)
     if found.kind in OPEN:
-        late = visit(model, found.instant(), tuning.lasting * transient, window, tuning)
+        late = visit(model, last, left, window, tuning)
         if late is not None and late.closed(settings.period_tolerance):
             found = replace(
                 found, kind=closed_kind(judged_distance(found.mean_distance, model.chain.is_mirror_symmetric), settings)
@@ -220,10 +222,10 @@ def measure(
     return found
 
 
-def _measure(
+def measure_once(
     model: Model, start: Instant, transient: float, window: float, settings: MotionSettings, tuning: Tuning
 ) -> SteadyMotion | None:
-    """Measure the motion in one window, by settings for its speed; see `measure`."""
+    """Do the work of `measure` in one window, by settings that are for the speed of the driver already."""
     position = start.position + model.sliding_offset
     initial = InitialState("continued", tuple(position), tuple(start.velocity))
     options = Settings(
