@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from burridge_knopoff import Chain, Instant, Model, law_of
 from burridge_knopoff.running.runner import Runner
@@ -17,6 +18,7 @@ from burridge_knopoff.summaries import phases
 PHASES = PhaseSettings(
     amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
 )
+ATTRACTORS = xr.Dataset(coords={"law": ["linearized", "nonlinear"], "a": [0.05, 0.08]})
 MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinear")]
 
 
@@ -42,7 +44,7 @@ def ruled(monkeypatch):
 
 
 def test_states_are_counted_by_what_they_reach(ruled):
-    parts = [phases.one_law(None, model, [0.05, 0.08], PHASES, SEARCH, MOTION) for model in MODELS]
+    parts = [phases.one_law(ATTRACTORS, model, [0.05, 0.08], PHASES, SEARCH, MOTION) for model in MODELS]
     found = phases.merge(parts)
     assert found["branch"].dims == ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
     assert found["branch"].shape == (2, 2, 2, 2, 3, 5)
@@ -78,8 +80,8 @@ def test_states_are_counted_by_what_they_reach(ruled):
 
 def test_a_state_is_the_same_whatever_other_shares_there_are(ruled):
     """So that those on which the inner blocks slide uniformly stay when others are added."""
-    alone = phases.one_law(None, MODELS[0], [0.05], replace(PHASES, inner_share=(0.5,)), SEARCH, MOTION)
-    both = phases.one_law(None, MODELS[0], [0.05], PHASES, SEARCH, MOTION)
+    alone = phases.one_law(ATTRACTORS, MODELS[0], [0.05], replace(PHASES, inner_share=(0.5,)), SEARCH, MOTION)
+    both = phases.one_law(ATTRACTORS, MODELS[0], [0.05], PHASES, SEARCH, MOTION)
     assert both.sel(inner_share=[0.5]).drop_attrs().equals(alone.drop_attrs())
 
 

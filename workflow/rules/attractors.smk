@@ -1,10 +1,5 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
 
-# Cores for the long job of each law, which shares them out among processes: two at least, since laws that run side by side
-# on one core each do not end together. Where no job is to run, as for --unlock, there need be no number of cores.
-SHARED_CORES = max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
-
-
 OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
 
 

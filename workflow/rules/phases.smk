@@ -12,7 +12,10 @@ rule phases_of_law:
         f"{RESULTS}/logs/phases/{{law}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/phases/{{law}}.tsv"
+    threads: SHARED_CORES
     resources:
+        cpus_per_task=lambda wildcards, threads: threads,
+        mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=60,
     params:
         **keys("attractors"),

@@ -13,7 +13,10 @@ rule two_blocks:
         f"{RESULTS}/benchmarks/two_blocks.tsv"
     # A long job that waits for nothing: begun early, so that it is not left alone at the end.
     priority: 5
+    threads: SHARED_CORES
     resources:
+        cpus_per_task=lambda wildcards, threads: threads,
+        mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=30,
     params:
         **keys("agreement"),

@@ -1,8 +1,10 @@
 """Summary: two blocks under each law."""
 
+import logging
 import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+logging.basicConfig(level=logging.INFO, format="%(message)s")
 
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.stability.settings import MotionSettings, Sample, SearchSettings
@@ -13,6 +15,7 @@ params = snakemake.params
 grid, samples = params.two_blocks["a"], params.two_blocks["samples"]
 models = [model_of(params.model, law, grid[0], BLOCKS) for law in params.model["laws"]]
 initial = Sample(samples=samples, symmetric_samples=0, **params.sample).initial(BLOCKS)
-settings, motion = run_settings(**params.settings), MotionSettings(**params.motion)
-search = SearchSettings(**params.search)
-write_summary(summarize(models, initial, grid, settings, search, motion, params.agreement), snakemake.output[0])
+settings = run_settings(**params.settings)
+judged = SearchSettings(**params.search), MotionSettings(**params.motion), params.agreement
+found = summarize(models, initial, grid, settings, *judged, processes=snakemake.resources.cpus_per_task)
+write_summary(found, snakemake.output[0])

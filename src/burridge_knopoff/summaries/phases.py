@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.basins import KnownAttractors, known_attractors
@@ -76,37 +78,23 @@ def one_law(
     phases: PhaseSettings,
     settings: SearchSettings,
     motion: MotionSettings,
+    processes: int = 1,
 ) -> xarray.Dataset:
     """Label states by their phases under one law.
 
     attractors : the summary of that name, made with these settings of the search and of kinds of motion
     model : under that law, at any a; grid : values of a, of those of the summary
+    processes : that work at once; no result depends on them
     """
-    shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
-    amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
+    at_each = [attractors.sel(law=[model.law.name], a=[a]).load() for a in grid]
+    with shared_out(processes) as each:
+        of_one = partial(_at, phases=phases, settings=settings, motion=motion)
+        found = each("phases", of_one, at_each, [model.at(a) for a in grid])
     inner = model.chain.blocks - 2
-    found: dict[str, list[np.ndarray]] = {name: [] for name in (*VARIABLES, *COMMON_VARIABLES)}
-    for a in grid:
-        known = known_attractors(attractors, model.at(a), settings, motion)
-        correlations = [velocity_correlation(known.model, item.motion.instant()) for item in known.attractors]
-        common = common_phases(a, shape, phases.seed)
-        of_inner = inner_phases(a, (*shape, inner), phases.seed)
-        told = amplitude.ravel(), difference.ravel(), common.ravel()
-        cells = []
-        for share in phases.inner_share:
-            states = oscillating_states(known.model, *told, share, of_inner.reshape(-1, inner))
-            position, velocity, standing = states
-            # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
-            labels, _ = label_states(known.model, known.attractors, position, velocity, time_limit=settings.label_limit)
-            cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
-            cells.append({**cell, **_reached(known, correlations, labels.reshape(shape))})
-        values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
-        for name, value in {"common_phase": common, "inner_phase": of_inner, **values}.items():
-            found[name].append(value)
     coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}
     for name, item in COORDINATES.items():
         coordinates[name] = (name, np.array(getattr(phases, name)), item.all_attributes())
-    coordinates["state"] = ("state", np.arange(1, shape[2] + 1, dtype=STATE.dtype), STATE.all_attributes())
+    coordinates["state"] = ("state", np.arange(1, phases.samples + 1, dtype=STATE.dtype), STATE.all_attributes())
     coordinates["inner_block"] = ("inner_block", np.arange(2, inner + 2, dtype="i2"), INNER_BLOCK)
     attributes = {
         "law": model.law.name,
@@ -117,9 +105,32 @@ def one_law(
         "label_limit": settings.label_limit,
     }
     variables = {**VARIABLES, **COMMON_VARIABLES}
-    arrays = {name: np.array(values) for name, values in found.items()}
+    arrays = {name: np.array([values[name] for values in found]) for name in found[0]}
     arrays["slipping_amplitude"] = np.array([slipping_amplitude(model, share) for share in phases.inner_share])
     return summary(TITLE, variables, arrays, coordinates, attributes, module=__name__)
+
+
+def _at(
+    attractors: xarray.Dataset, model: Model, phases: PhaseSettings, settings: SearchSettings, motion: MotionSettings
+) -> dict[str, np.ndarray]:
+    """Return the values of all variables at one a, but for the slipping amplitude."""
+    shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
+    amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
+    inner = model.chain.blocks - 2
+    known = known_attractors(attractors, model, settings, motion)
+    correlations = [velocity_correlation(model, item.motion.instant()) for item in known.attractors]
+    common = common_phases(model.a, shape, phases.seed)
+    of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
+    told = amplitude.ravel(), difference.ravel(), common.ravel()
+    cells = []
+    for share in phases.inner_share:
+        position, velocity, standing = oscillating_states(model, *told, share, of_inner.reshape(-1, inner))
+        # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
+        labels, _ = label_states(model, known.attractors, position, velocity, time_limit=settings.label_limit)
+        cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
+        cells.append({**cell, **_reached(known, correlations, labels.reshape(shape))})
+    values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
+    return {"common_phase": common, "inner_phase": of_inner, **values}
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
@@ -85,6 +87,7 @@ def summarize(
     search: SearchSettings,
     motion: MotionSettings,
     agreement: Mapping[str, Any],
+    processes: int = 1,
 ) -> xarray.Dataset:
     """Compare what two blocks end on from each initial state at each a of an ascending grid under each law.
 
@@ -92,6 +95,7 @@ def summarize(
     settings : of the runs for the order of events, see `run_settings`, and how all motion begins
     search, motion : how attractors are looked for, and how kinds of motion are told apart
     agreement : the config's section of that name
+    processes : that work at once; no result depends on them
     """
     laws = [model.law.name for model in models]
     sizes = {"law": len(laws), "other_law": len(laws) - 1, "state": len(initial), "a": len(grid), "block": BLOCKS}
@@ -101,18 +105,11 @@ def summarize(
     }
     for j, state in enumerate(initial):
         values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
-    for k, a in enumerate(grid):
-        here = [model.at(a) for model in models]
-        for i, model in enumerate(here):
-            for j, found in enumerate(endings(model, initial, search, motion, start=settings.start)):
-                for name in MOTION_VARIABLES:
-                    values[name][i, j, k] = getattr(found, name)
-        for j, state in enumerate(initial):
-            runs = [run(model, state, settings) for model in here]
-            for i, trajectory in enumerate(runs[1:]):
-                count, until = common_order(_sequence(runs[0]), _sequence(trajectory))
-                values["event_order_count"][i, j, k] = count
-                values["event_order_time"][i, j, k] = min(until, runs[0].end_time, trajectory.end_time)
+    with shared_out(processes) as each:
+        of_one = partial(_at, models, initial=initial, settings=settings, search=search, motion=motion)
+        for k, found in enumerate(each("two blocks", of_one, grid)):
+            for name, value in found.items():
+                values[name][..., k] = value
     for i in range(len(laws) - 1):
         compared = {name: values[name][i] for name in PAIR_VARIABLES}
         pair = {name: values[name][[0, i + 1]] for name in MOTION_VARIABLES}
@@ -150,6 +147,27 @@ def summarize(
         },
         module=__name__,
     )
+
+
+def _at(
+    models: Sequence[Model],
+    a: float,
+    initial: Sequence[InitialState],
+    settings: Settings,
+    search: SearchSettings,
+    motion: MotionSettings,
+) -> dict[str, np.ndarray]:
+    """Return at one a what each state ends on, shape (law, state), and the common order, (other law, state)."""
+    here = [model.at(a) for model in models]
+    ends = [endings(model, initial, search, motion, start=settings.start) for model in here]
+    values = {name: np.array([[getattr(found, name) for found in row] for row in ends]) for name in MOTION_VARIABLES}
+    count, until = (np.zeros((len(here) - 1, len(initial))) for _ in range(2))
+    for j, state in enumerate(initial):
+        first, *others = (run(model, state, settings) for model in here)
+        for i, other in enumerate(others):
+            count[i, j], time = common_order(_sequence(first), _sequence(other))
+            until[i, j] = min(time, first.end_time, other.end_time)
+    return {**values, "event_order_count": count, "event_order_time": until}
 
 
 def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
