@@ -16,7 +16,7 @@ from burridge_knopoff.summaries import edge_entries
 @pytest.mark.parametrize("processes", [1, 4, 8])
 @pytest.mark.parametrize(
     ("failing", "expected", "numbers"),
-    [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.0001, 1.01, 0.99], {1: 0, 2: 1, 3: 2})],
+    [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.01, 1.0001, 0.99], {1: 1, 2: 0, 3: 2})],
 )
 def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
     """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
@@ -44,3 +44,10 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     found, of_slot = edge_entries.followed(orbit.model, one, [], processes)
     assert of_slot == {(0, slot): number for slot, number in numbers.items()}
     assert [item.upward.orbits[0].orbit.period / orbit.period for item in found] == pytest.approx(expected)
+
+
+def test_the_longest_orbits_are_followed_first_and_neighbours_late():
+    periods = [6.0] * 8 + [100.0, 6.3, 90.0]
+    placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
+    # Their places within an octave are those of the van der Corput sequence.
+    assert [k for (k, _), _ in edge_entries._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]

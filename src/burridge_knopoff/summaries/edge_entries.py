@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
+import scipy
 import xarray
 
 from burridge_knopoff.model.model import Model
@@ -39,6 +41,10 @@ SAME_PERIOD = 1e-3
 
 # Least error that is told: how far rounding changes a root differs between linear-algebra libraries.
 LEAST_ERROR = 1e-10
+
+
+#: A closed orbit with its number in a and its slot there.
+Placed = tuple[tuple[int, int], PeriodicOrbit]
 
 
 @dataclass(frozen=True)
@@ -100,22 +106,24 @@ def followed(
 
     with shared_out(processes, folder) as each:
         orbits = each("closed orbits", _closed, models, *states)
-        left = list(zip(places, orbits, strict=True))
+        for error in orbits:
+            if isinstance(error, OrbitError):
+                print(f"{model.law.name}: {error}")
+        pairs = zip(places, orbits, strict=True)
+        left = _in_turn([(place, orbit) for place, orbit in pairs if not isinstance(orbit, OrbitError)])
         while left:
-            # Those next in order that have not been followed: what one of them shows of the others is seen afterwards.
-            following: list[tuple[tuple[int, int], PeriodicOrbit]] = []
-            while left and len(following) < max(1, processes // 2):
+            # Those next in turn that have not been followed: what one of them shows of the others is seen afterwards.
+            following: list[Placed] = []
+            while left and len(following) < processes:
                 place, orbit = left.pop(0)
-                if isinstance(orbit, OrbitError):
-                    print(f"{model.law.name}: {orbit}")
-                elif not held(place, orbit):
+                if not held(place, orbit):
                     following.append((place, orbit))
-            known = len(found)
+            before = len(found)
             twice, upward = [orbit for _, orbit in following for _ in range(2)], [False, True] * len(following)
             halves = each("followed", partial(_half, largest=float(np.nanmax(a_values))), twice, upward)
             for (place, orbit), *both in zip(following, halves[::2], halves[1::2], strict=True):
                 failed = [item for item in both if isinstance(item, OrbitError)]
-                if held(place, orbit, known):
+                if held(place, orbit, before):
                     continue
                 if failed:
                     print(f"{model.law.name}: {failed[0]}")
@@ -123,6 +131,17 @@ def followed(
                 of_slot[place] = len(found)
                 found.append(Stretch(*both))
     return found, of_slot
+
+
+def _in_turn(orbits: Sequence[Placed]) -> list[Placed]:
+    """Return orbits, given with a ascending, in the order in which they are followed.
+
+    The longest first, by octaves of their period: they take the most time, and in one round each waits for all. Then
+    those far from each other: neighbours along a mostly lie on one stretch.
+    """
+    apart = scipy.stats.qmc.Halton(1, scramble=False).random(len(orbits))[:, 0]
+    turns = np.lexsort([apart, [-math.floor(math.log2(orbit.period)) for _, orbit in orbits]])
+    return [orbits[k] for k in turns]
 
 
 def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
