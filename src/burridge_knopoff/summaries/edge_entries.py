@@ -33,6 +33,9 @@ BEYOND = 4
 #: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
 LEAST_A = 0.0
 
+# Orbits in a round, for each process: enough that none waits long for the others, and few that turn out to be followed.
+ROUND = 4
+
 # Time after which a motion has come nearer to an orbit that attracts slowly than to any other beside it.
 LATER = 100_000.0
 
@@ -114,7 +117,7 @@ def followed(
         while left:
             # Those next in turn that have not been followed: what one of them shows of the others is seen afterwards.
             following: list[Placed] = []
-            while left and len(following) < processes:
+            while left and len(following) < ROUND * processes:
                 place, orbit = left.pop(0)
                 if not held(place, orbit):
                     following.append((place, orbit))
