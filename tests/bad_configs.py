@@ -172,7 +172,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "two_lengths": (
         f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, 0]}}, plus: {{}}}}\n",
-        ["initial: states of one study", "m: 2, plus: 3"],
+        ["initial: all states of a study", "m: 2, plus: 3"],
     ),
     "backward": (
         f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, -0.1]}}}}\n",

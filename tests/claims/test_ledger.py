@@ -183,6 +183,7 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
 def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
     assert shown(0.140640595, 9.5e-6) == "0.1406406 ± 0.0000095"
     assert shown(5.7, 0.2) == "5.70 ± 0.20"
+    assert shown(1.0, 0.0995) == "1.00 ± 0.10"
     assert shown(123.4, 20.0) == "123 ± 20"
     assert shown(-0.25, 0.01) == "−0.250 ± 0.010"
     assert shown(-1 / 3) == "−0.333333"

@@ -13,7 +13,7 @@ from tests.refused import refused
 
 def test_what_is_taken_if_nothing_is_said():
     defaults = {"pixels": 64, "samples": 100, "seed": 1, "threads": 1}
-    defaults |= {"v": 0.1, "contact": "one_sided", "start": "moving"}
+    defaults |= {"v": None, "contact": None, "start": "moving"}
     parameters = inspect.signature(basin_map).parameters
     assert {name: parameters[name].default for name in defaults} == defaults
 

@@ -75,6 +75,7 @@ def test_states_that_cannot_be_labelled(attractors, given, message):
         lambda: closed_motion(MODEL, STATE, float("nan")),
         lambda: closed_motion(MODEL, STATE, -5.0),
         lambda: find_periodic_orbit(MODEL, STATE, float("nan"), Symmetry.ASYMMETRIC),
+        lambda: find_periodic_orbit(MODEL, STATE, 0.0, Symmetry.ASYMMETRIC),
         lambda: find_periodic_orbit(MODEL, STATE, 10.0, "none"),
         lambda: transverse_exponent(MODEL, STATE, -5.0, 100.0),
         lambda: transverse_exponent(MODEL, STATE, 5.0, -100.0),

@@ -75,9 +75,12 @@ def test_settings_are_those_of_both_ways():
     assert len({run.mean_distance for run in ways}) == 1
 
 
-@pytest.mark.parametrize("options", [{"v": 0.2}, {"chain": Chain(3)}, {"contact": "symmetric"}, {"a": 0.1}])
+@pytest.mark.parametrize(
+    "options",
+    [{"v": 0.2}, {"v": 0.1}, {"chain": Chain(3)}, {"contact": "one_sided"}, {"contact": "symmetric"}, {"a": 0.1}],
+)
 def test_what_a_model_has_is_refused_beside_it(options):
-    """It would have no effect."""
+    """It would have no effect, and what is given may be the default of a law."""
     with pytest.raises(ValueError, match="not allowed beside a model"):
         simulate(MODEL, initial="plus", **options)
 

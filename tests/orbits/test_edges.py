@@ -63,6 +63,11 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
     assert not edge.turns
 
 
+def test_an_orbit_is_followed_within_a_range_that_it_lies_in(families, law):
+    with pytest.raises(OrbitError, match=r"a = 0\.08: not within the range 0\.2 to 0\.3"):
+        follow(synchronized(families, law, 0.08), (0.2, 0.3))
+
+
 @pytest.mark.parametrize(
     ("unstable", "loses", "keeps"),
     [((0, 0), False, True), ((0, 1), True, False), ((0, None), True, False), ((1, 0), False, False)],

@@ -89,6 +89,14 @@ def test_the_synchronized_orbit_and_its_multipliers(families, law, a):
     assert sorted(np.abs(found.keeping[:2])) == pytest.approx(sorted(np.abs(expected[2:4])), abs=1e-11)
 
 
+def test_uniform_sliding_is_no_orbit(families, law):
+    """It returns after any time; Newton's method comes to it from a guess that returns too early."""
+    known = families[law].at(0.08)
+    orbit = find_periodic_orbit(known.model, known.reference, known.period, SYNCHRONIZED)
+    with pytest.raises(OrbitError, match="no block stops there"):
+        find_periodic_orbit(orbit.model, orbit.reference, 1e-6, SYNCHRONIZED)
+
+
 def test_orbits_that_branch_off_at_the_pitchfork(families, law):
     family = families[law]
     known = branch_orbit(family, critical_a(family), 1e-3)

@@ -31,6 +31,8 @@ CALLS = [
     (first, 1),
     (second, 1),
     (first, 1, 2),
+    (first, 1, 23),
+    (first, 12, 3),
     (first, [1, 2]),
     (first, (1, [2])),
     (first, 1.0),

@@ -24,8 +24,8 @@ from burridge_knopoff.claims.verdict import (
     with_error,
     worst,
 )
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.judgement import Answer
 from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:

@@ -155,7 +155,7 @@ def with_error(value: float, error: float | None = None) -> str:
         return str(value)
     if error is None or not math.isfinite(error) or error <= 0.0:
         return f"{value:.6g}".replace("-", "−")
-    digits = max(0, 1 - math.floor(math.log10(error)))
+    digits = max(0, 1 - math.floor(math.log10(float(f"{error:.1e}"))))
     if digits > 12:
         return f"{value:.12g}".replace("-", "−")
     return f"{value:z.{digits}f} ± {error:.{digits}f}".replace("-", "−")

@@ -44,6 +44,16 @@ def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[st
     return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
 
 
+class Answer(IntEnum):
+    """Whether something is so, as whether two laws agree or a run has settled, numbered as in netCDF files."""
+
+    UNDETERMINED = -1
+    NO = 0
+    YES = 1
+
+
+ANSWER = flag("i1", Answer)
+YES_OR_NO = flag("i1", {0: "no", 1: "yes"})
 KIND = flag("i1", {0: "stop", 1: "start"})
 DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.figures.style import (
     color,
     label_panels,
@@ -24,7 +25,6 @@ from burridge_knopoff.figures.style import (
     shade_entry,
     styled,
 )
-from burridge_knopoff.summaries.judgement import Answer
 
 TITLE = "Agreement of the laws"
 CATEGORY = "Friction laws"
@@ -51,8 +51,8 @@ LABELS = (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event or
 def draw(agreement: xarray.Dataset) -> Figure:
     """Draw, for each initial state, |Δ⟨J⟩| against both tolerances, the section distance, and the common event order.
 
-    Three rows for each law that is compared with the first one. Shaded: the two disagree, in ⟨J⟩ (by more than both
-    tolerances) or in the kind of motion. Open symbols: it is not known whether they do.
+    Three rows for each law that is compared with the first one. Shaded: the two disagree, in ⟨J⟩ (by more than the
+    tolerance and the errors together) or in the kind of motion. Open symbols: it is not known whether they do.
     """
     states, others = agreement["initial"].values, agreement["other_law"].values
     first = agreement["law"].values[0]

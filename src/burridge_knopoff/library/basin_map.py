@@ -25,8 +25,8 @@ def basin_map(
     first_position: Sequence[float] = POSITIONS,
     last_position: Sequence[float] = POSITIONS,
     chain: Chain | None = None,
-    v: float = 0.1,
-    contact: str = "one_sided",
+    v: float | None = None,
+    contact: str | None = None,
     start: str = "moving",
     samples: int = 100,
     seed: int = 1,
@@ -39,7 +39,8 @@ def basin_map(
     law : a Model, which has its own a, chain, v and contact; or a law at this a, as `simulate`
         takes it
     initial : gives all but U_1(0) and U_N(0), in any form that `simulate` takes; minus has three blocks
-    chain : without one the paper's springs, as many blocks as the initial state has; v, contact : see `Model`
+    chain : without one the paper's springs, as many blocks as the initial state has; v, contact : as `simulate` takes
+        them
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
     samples, seed : initial states from which attractors are looked for; an attractor that none of them reaches stays

@@ -62,7 +62,7 @@ def _plain(values: Any) -> Any:
 
 
 def given_model(
-    law: Model | GivenLaw, a: float | None, blocks: int, chain: Chain | None, v: float, contact: str
+    law: Model | GivenLaw, a: float | None, blocks: int, chain: Chain | None, v: float | None, contact: str | None
 ) -> Model:
     """Return a model that is given as one, or as a law with what else belongs to it.
 
@@ -70,12 +70,13 @@ def given_model(
     Raises ValueError, one line, for anything that is not allowed, and for what a model has already.
     """
     if isinstance(law, Model):
-        if (a, chain, v, contact) != (None, None, 0.1, "one_sided"):
+        if any(own is not None for own in (a, chain, v, contact)):
             raise ValueError("a, chain, v, contact: not allowed beside a model, which has its own")
         return law
     if a is None:
-        raise ValueError("a: None is not allowed but beside a model: 0 or more")
+        raise ValueError("a: None is not allowed without a Model: a number ≥ 0")
     if isinstance(law, Mapping):
         law = law_of(law.get("law", "formula"), a, law)
     chain = Chain(blocks) if chain is None else chain
-    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), v, contact)
+    own: dict[str, Any] = {name: value for name, value in (("v", v), ("contact", contact)) if value is not None}
+    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), **own)

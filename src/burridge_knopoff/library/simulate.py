@@ -55,8 +55,8 @@ def simulate(
     settings: Settings | None = None,
     *,
     chain: Chain | None = None,
-    v: float = 0.1,
-    contact: str = "one_sided",
+    v: float | None = None,
+    contact: str | None = None,
     **by_name: Any,
 ) -> Trajectory:
     """Run one simulation and return its trajectory: `simulate(law, a, initial)` or `simulate(model, initial)`.
@@ -68,7 +68,7 @@ def simulate(
         {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,)
     settings : of the run; by_name : some of them, or all, by name (see `Settings`)
     chain : without one the paper's springs, as many blocks as the initial state has
-    v, contact : see `Model`
+    v, contact : see `Model`, whose defaults they are if none is given
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
     ValueError, one line, for anything that the model or the solver does not allow. docs/model.md derives the equations

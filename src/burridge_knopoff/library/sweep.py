@@ -32,8 +32,8 @@ def sweep(
     settings: Settings | None = None,
     *,
     chain: Chain | None = None,
-    v: float = 0.1,
-    contact: str = "one_sided",
+    v: float | None = None,
+    contact: str | None = None,
     cores: int | None = None,
     **by_name: Unpack[RunSettings],
 ) -> xarray.Dataset:

@@ -56,7 +56,8 @@ def follow(
     Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
     The branch also ends where it joins one of simpler orbits, and where no step is short enough.
 
-    Raises OrbitError if it cannot begin, ValueError for a range that is none.
+    Raises OrbitError if it cannot begin, as where the orbit is not within the range, and ValueError for a range that is
+    none.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
     docs/edges.md says how a branch goes on where its orbit grazes.
@@ -73,6 +74,8 @@ def follow(
     low, high = a_range
     if not low <= high:
         raise ValueError(f"a_range: {a_range!r} is not allowed: (low, high) with low ≤ high")
+    if not low <= orbit.a <= high:
+        raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
     points = [begin_branch(orbit, upward)]
     length = settings.first_step
     while len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points):

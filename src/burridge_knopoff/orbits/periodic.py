@@ -19,11 +19,12 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.orbits.orbit import OrbitError, flow, model_at, rate
 from burridge_knopoff.orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
-from burridge_knopoff.running.settings import DURATION
+from burridge_knopoff.running.settings import LONGEST
 
 #: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
 #: long as it gains, down to where rounding begins to count.
@@ -224,8 +225,9 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     model, guess : the state, in the model whose orbit is sought
     return_time : after which the state about returns: a period, or half of one for SYMMETRIC, in a mirror
 
-    Raises OrbitError if none is found, ValueError for a time or a symmetry that is not allowed, as where the chain has
-    no mirror image and the symmetry needs one.
+    Raises OrbitError if none is found on which a block stops: a chain that slides uniformly returns after any time.
+    Raises ValueError for a time or a symmetry that is not allowed, as where the chain has no mirror image and the
+    symmetry needs one.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
@@ -237,7 +239,7 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     >>> near.a, round(near.period, 4)
     (0.081, 157.2682)
     """
-    return_time, symmetry = DURATION.form(return_time, "return_time"), Symmetry(symmetry)
+    return_time, symmetry = Number(0.0, LONGEST, above=True).form(return_time, "return_time"), Symmetry(symmetry)
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(
             f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image"
@@ -252,7 +254,10 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
         guess = Instant(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
-    return solve_return(model, guess, return_time, symmetry)
+    found = solve_return(model, guess, return_time, symmetry)
+    if not any(found.signature):
+        raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess: no block stops there")
+    return found
 
 
 def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:

@@ -41,8 +41,7 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
         if abs(found.return_time - time) > SAME_TIME * time:
             continue
         turns = round(orbit.period / found.period)
-        # A state at rest relative to the driver returns after any time, however short.
-        if any(found.signature) and tuple(turns * stops for stops in found.signature) == orbit.signature:
+        if tuple(turns * stops for stops in found.signature) == orbit.signature:
             return simplest(found, tolerance)
     return orbit
 

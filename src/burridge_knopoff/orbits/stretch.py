@@ -10,7 +10,6 @@ import numpy as np
 
 from burridge_knopoff.orbits.edges import Edge, locate_edges
 from burridge_knopoff.orbits.following import FOLLOWING, Following, follow
-from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
 
@@ -126,8 +125,6 @@ def half(
 
     Raises OrbitError if it cannot be followed at all.
     """
-    if a_range[0] > orbit.a or a_range[1] < orbit.a:
-        raise OrbitError(f"a = {orbit.a!r}: not within the range {a_range[0]!r} to {a_range[1]!r}")
     return Half(follow(orbit, a_range, settings, upward=upward, enough=_enough(beyond)))
 
 

@@ -48,8 +48,8 @@ def write_sealed(path: str | Path, write: Callable[[str], object], about: str, s
 def seal(path: str | Path, about: str, status: str = "made") -> None:
     """Put the seal at the end of a file that has just been written; about : see `identity`."""
     head = f"\n#seal {about} {status} ".encode()
-    digest = hashlib.sha256(Path(path).read_bytes() + head).hexdigest()
-    with open(path, "ab") as file:
+    with open(path, "r+b") as file:
+        digest = hashlib.sha256(file.read() + head).hexdigest()
         file.write(head + f"{digest}\n".encode())
 
 

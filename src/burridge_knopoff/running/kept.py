@@ -72,4 +72,5 @@ def _parts(value: Any) -> Iterator[bytes]:
             for item in fields(value):
                 yield from _parts(getattr(value, item.name))
         case _:
-            yield repr(value).encode()
+            # With an end: 12 and 3 are not 1 and 23.
+            yield f"{value!r},".encode()

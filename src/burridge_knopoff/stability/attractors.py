@@ -48,8 +48,8 @@ def find_attractors(
 
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
     nothing that settles. What no state reaches is not found, nor is a motion on which no block ever stops: attractors
-    are known by the states at the stops of the block nearest to an end that does not hardly ever stop. Raises
-    ValueError if an initial state does not fit the model.
+    are known by the states at the stops of the outermost block that stops regularly. Raises ValueError if an initial
+    state does not fit the model.
 
     Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
 

@@ -123,7 +123,7 @@ def _followed(
         there = moved(model, [starts[k] for k in chosen], at) if len(chosen) else []
         return chosen[label(model, sets, there, settings.time_limit)[0] == UNDETERMINED]
 
-    # Who gets nowhere that is known has left, at a time that nobody knows; some of them had by then already.
+    # A trajectory that reaches no known set has left at an unknown time; some had left already by then.
     lost = nowhere(np.flatnonzero(~known), late + time)
     early = nowhere(lost, late)
     if count - np.count_nonzero(known & (when <= late)) - len(early) < tuning.fewest_left:

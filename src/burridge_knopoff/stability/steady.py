@@ -40,8 +40,8 @@ class Returns:
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
     stop_count : stops of each block in the window, shape (blocks,)
-    block, mirror_block : the block of these returns, the nearest to an end that does not hardly ever stop, and that of
-        the mirrored motion: the same if both of the pair stop
+    block, mirror_block : the block of these returns, the outermost one that stops regularly, and that of the mirrored
+        motion: the same if both of the pair stop
     """
 
     returns: np.ndarray

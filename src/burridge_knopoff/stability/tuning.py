@@ -105,7 +105,7 @@ class Tuning:
     followed: int = 32
     exposure: float = 4.0
     #: Where these leave open whether the lifetime is below or beyond, or where fewer than `fewest_ends` leave, so many
-    #: times more are followed: who stops at few ends stops where by chance they were many.
+    #: times more are followed: stopping at few ends would favour samples in which, by chance, many left.
     undecided: int = 10
     fewest_ends: int = 30
     #: Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are

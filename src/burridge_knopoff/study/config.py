@@ -79,11 +79,11 @@ AGREEMENT = {
     "relative_tolerance": Field(
         SHARE,
         "a law agrees with the first one if its motion is of the same kind, periodic and quasiperiodic counting as "
-        "one, and <J> differs by no more than this share of the larger one, or than synchronization_threshold, …",
+        "one, and <J> differs by at most this share of the larger one, or by at most synchronization_threshold",
         0.1,
     ),
     "standard_errors": Field(
-        ERRORS, "… for certain: nobody knows where the difference is within this many standard errors of that", 3.0
+        ERRORS, "no verdict is given where the difference lies within this many standard errors of that tolerance", 3.0
     ),
 }
 COMPARED = {

@@ -51,7 +51,7 @@ def fill_states(config: Mapping[str, Any]) -> None:
             state.update(position=list(PAPER_STATES[name].position), velocity=list(PAPER_STATES[name].velocity))
     if len({len(state["position"]) for state in states.values()}) > 1:
         counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in states.items())
-        raise ValueError(f"initial: states of one study have the same number of positions ({counts})")
+        raise ValueError(f"initial: all states of a study must have the same number of positions ({counts})")
 
 
 def fill_names(config: dict[str, Any]) -> None:

@@ -11,11 +11,11 @@ import scipy
 import xarray
 
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.stability.motion import OPEN, REGULAR, MotionKind, same_result
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import Answer, compare
+from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 from burridge_knopoff.summaries.reached import reached
 
@@ -24,7 +24,6 @@ DIGITS = 12
 
 _POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
-_ANSWER = flag("i1", Answer)
 # ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
 SAME_MEAN = 0.01
 KIND_COMMENT = (
@@ -41,7 +40,7 @@ RUN_VARIABLES = {
         _POINT,
         "i1",
         "whether the run ended on the attractor that its initial state reaches",
-        _ANSWER | {"comment": "no: its transient was too short, or its chaos died within the window"},
+        ANSWER | {"comment": "no: its transient was too short, or its chaos died within the window"},
     ),
 }
 PAIR_VARIABLES = {
@@ -52,8 +51,8 @@ PAIR_VARIABLES = {
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
-    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _ANSWER),
-    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _ANSWER),
+    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
+    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
 }
 VARIABLES = {**POINT_VARIABLES, **RUN_VARIABLES, **PAIR_VARIABLES}

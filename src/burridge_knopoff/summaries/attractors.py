@@ -15,7 +15,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.running.processes import shared_out
@@ -52,7 +52,7 @@ VARIABLES = {
         ("a",),
         "i1",
         "whether uniform sliding attracts: it has no stops and is not looked for",
-        flag("i1", {0: "no", 1: "yes"}),
+        YES_OR_NO,
     ),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch"),

@@ -14,7 +14,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.stretch import Stretch
@@ -25,11 +25,10 @@ from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries,
 PARTS = ("real", "imaginary")
 _EDGE, _ORBIT = ("edge",), ("orbit",)
 _V = Variable
-_YES = flag("i1", {-1: "undetermined", 0: "no", 1: "yes"})
 VARIABLES = {
     "law": _V(_EDGE, "i1", "friction law, by its number in the attribute laws"),
     "a": _V(_EDGE, "f8", "friction parameter a of the edge"),
-    "a_error": _V(_EDGE, "f8", "its error: half the width within which it has been held"),
+    "a_error": _V(_EDGE, "f8", "its error: half the width of the interval that brackets it"),
     "kind": _V(_EDGE, "i1", "what happens there", flag("i1", EdgeKind)),
     "change": _V(_EDGE, "i1", "what the branch of attractors does there", flag("i1", Change)),
     "from_branch": _V(_EDGE, "i2", "branch below the edge, or reached from above it", {"comment": "-1 undetermined"}),
@@ -38,7 +37,7 @@ VARIABLES = {
     "grid_high": _V(_EDGE, "f8", "smallest a of refined.nc at which it is as after, NaN for none"),
     "motion_before": _V(_EDGE, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
     "motion_after": _V(_EDGE, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
-    "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the edge lie at a on one side of it", _YES),
+    "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the edge lie at a on one side of it", ANSWER),
     "period": _V(_EDGE, "f8", "period of the orbit at the edge"),
     "stops": _V(("edge", "block"), "i4", "stops of each block in a period of the stable orbits"),
     "stops_beyond": _V(("edge", "block"), "i4", "the same of the orbits beyond the edge"),
@@ -53,7 +52,7 @@ VARIABLES = {
     "orbit_branch": _V(_ORBIT, "i2", "branch of the attractors that they began from"),
     "orbit_a": _V(_ORBIT, "f8", "friction parameter a of the periodic orbit"),
     "orbit_stable": _V(
-        _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", _YES
+        _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", ANSWER
     ),
     "orbit_period": _V(_ORBIT, "f8", "period of the orbit"),
     "orbit_stops": _V(("orbit", "block"), "i4", "stops of each block in a period of the orbit"),

@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.stability.motion import MotionKind, same_result
-
-
-class Answer(IntEnum):
-    """Whether something is so, as whether two laws agree or a run has settled, numbered as in netCDF files."""
-
-    UNDETERMINED = -1
-    NO = 0
-    YES = 1
 
 
 def compare(

@@ -11,7 +11,7 @@ import xarray
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.stability.motion import SECTION, MotionKind, motion_of_run, zero_exponents
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
@@ -30,9 +30,7 @@ VARIABLES = {
     "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
     "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
-    "unstable": Variable(
-        _AXES, "i1", "whether the run has stayed on a closed orbit that repels", flag("i1", {0: "no", 1: "yes"})
-    ),
+    "unstable": Variable(_AXES, "i1", "whether the run has stayed on a closed orbit that repels", YES_OR_NO),
     "section_period": Variable(
         _AXES, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
     ),

@@ -10,7 +10,7 @@ import xarray
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
 
@@ -27,7 +27,7 @@ VARIABLES = {
         {"ancillary_variables": "mean_distance_error status"},
     ),
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
-    "synchronized": Variable(_AXES, "i1", "whether <J> is below the threshold", flag("i1", {0: "no", 1: "yes"})),
+    "synchronized": Variable(_AXES, "i1", "whether <J> is below the threshold", YES_OR_NO),
     "least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the whole run"),
     "window_least_spring_force": Variable(_AXES, "f8", "least spring force s on a stuck block in the window"),
     "event_count": Variable(_AXES, "i8", "number of stops and starts in the whole run"),

@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.settings import MotionSettings, Refine, SearchSettings
 from burridge_knopoff.summaries import attractors
@@ -18,7 +18,7 @@ from burridge_knopoff.summaries.slots import slot_coordinates, slot_values, slot
 
 VARIABLES = {
     "a": Variable(("value",), "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
-    "in_grid": Variable(("value",), "i1", "whether a is in the grid of the study", flag("i1", {0: "no", 1: "yes"})),
+    "in_grid": Variable(("value",), "i1", "whether a is in the grid of the study", YES_OR_NO),
     **slot_variables("value"),
 }
 

@@ -15,7 +15,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import STATE, axes, summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import shared_out
@@ -27,14 +27,13 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import OF_GIVEN_STATES, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import Answer, compare, excess
+from burridge_knopoff.summaries.judgement import compare, excess
 
 BLOCKS = 2
 
 _MOTION = ("law", "state", "a")
 _PAIR = ("other_law", "state", "a")
 _FRACTION = ("other_law", "a")
-_ANSWER = flag("i1", Answer)
 MOTION_VARIABLES = {
     "mean_distance": Variable(
         _MOTION,
@@ -58,8 +57,8 @@ PAIR_VARIABLES = {
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
-    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", _ANSWER),
-    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", _ANSWER),
+    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
+    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "least a at which the laws disagree, NaN if there is none"),
     "agreeing_fraction": Variable(_FRACTION, "f8", "fraction of the initial states for which the laws agree"),
     "agreeing_low": Variable(_FRACTION, "f8", "lower end of the confidence interval of this fraction"),
