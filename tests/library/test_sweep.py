@@ -44,6 +44,7 @@ def test_a_run_that_does_not_complete_is_there():
     [
         ({"a": []}, "a: no value"),
         ({"a": [0.1, -0.1]}, "a: -0.1"),
+        ({"a": [0.1, 0.2, 0.1]}, "a: 0.1 is not allowed twice"),
         ({"a": [0.1, "x"]}, "a: 'x'"),
         ({"a": [0.1, 2.0], "solver": "map"}, "a = 2.0: solver: 'map'"),
         ({"cores": 0}, "cores: 0"),

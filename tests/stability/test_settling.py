@@ -72,3 +72,18 @@ def test_what_surrounds_an_orbit_is_seen_from_a_push(tell, kind, later, in_chaos
     assert 0.0 < np.abs(start.position - ONE[0, :3]).max() <= TUNING.slow_push * 1e-3
     assert times == [TUNING.slow_time, 100 * TUNING.filling]
     assert [arguments[2:4] for arguments in visited] == [(SETTINGS.time_limit, 100)] * (kind == MotionKind.CHAOTIC)
+
+
+def test_a_motion_that_has_left_for_another_one_is_not_listed(tell):
+    """The other one is measured in its place, from where it has come to; nothing, if that leaves again and again."""
+    left, there = instant_of(OTHER[0]), shown(OTHER, OTHER, CLOSED, 0.0)
+    first, other = motion(kind=MotionKind.UNDETERMINED, left_for=left), motion()
+    visited = tell(settling, "visit", [there])
+    tell(settling, "measure", [first, other])
+    found, measured = Settling(MODEL, SETTINGS).measured(shown(ONE, ONE, WIDE, 0.0))
+    assert found is there
+    assert measured.returns is other.returns
+    assert [(arguments[1], *arguments[2:4]) for arguments in visited] == [(left, 0.0, 100)]
+    tell(settling, "visit", [there] * (TUNING.trials + 1))
+    tell(settling, "measure", [first] * (TUNING.trials + 1))
+    assert Settling(MODEL, SETTINGS).measured(shown(ONE, ONE, WIDE, 0.0)) is None

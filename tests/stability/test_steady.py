@@ -223,10 +223,33 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
 )
 def test_what_closes_when_it_is_followed_on_is_no_torus(tell, kind, threshold, mean, closes, expected):
     first = stand_in(kind=kind, mean_distance=mean, exponent=np.zeros(3)).motion
-    tell(steady, "measure_once", [first, None])
+    longer = [None] * (kind == MotionKind.UNDETERMINED)
+    tell(steady, "measure_once", [first, *longer, replace(first, mean_distance=mean + 1e-4)])
     late = None if closes is None else shown(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
     asked = tell(steady, "visit", [late])
     found = measure(model(threshold), None, 50.0, 30.0, MOTION)
     assert found.kind == (kind if expected is None else expected)
     assert asked[0][2:4] == (TUNING.lasting * 50.0, 30.0)
     assert found.returns is first.returns
+    assert found.left_for is None
+
+
+@pytest.mark.parametrize("by_exponent", [True, False])
+@pytest.mark.parametrize(("difference", "stays"), [(1.03e-3, True), (1.05e-3, False)])
+def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(tell, by_exponent, difference, stays):
+    """Its ⟨J⟩, of an earlier time, would be listed with the exponents of the orbit; errors of 1e-5 each are allowed."""
+    told = {"exponent": np.array([6e-4, 0.0, -0.1]), "mean_distance_error": 1e-5}
+    first = stand_in(kind=MotionKind.UNDETERMINED, **told).motion
+    kind = MotionKind.PERIODIC if by_exponent else MotionKind.UNDETERMINED
+    longer = replace(first, kind=kind, returns=ROWS, exponent=np.array([0.0, -0.1, -0.2]))
+    after = replace(first, mean_distance=0.1 + difference)
+    tell(steady, "measure_once", [first, longer, after])
+    tell(steady, "visit", [] if by_exponent else [shown(ROWS[::-1], ROWS, 0.0, 0.0)])
+    found = measure(model(), None, 50.0, 30.0, MOTION)
+    assert found.kind == (MotionKind.PERIODIC if stays else MotionKind.UNDETERMINED)
+    if stays:
+        assert found.left_for is None
+        assert found.exponent is longer.exponent
+    else:
+        assert found.left_for.vector().tolist() == (ROWS if by_exponent else ROWS[::-1])[-1].tolist()
+        assert found.exponent is first.exponent

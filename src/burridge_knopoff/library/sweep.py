@@ -61,6 +61,8 @@ def sweep(
     values = np.asanyarray(a, dtype=object).ravel().tolist()
     if not values:
         raise ValueError("a: no value is not allowed: at least one")
+    if twice := [value for k, value in enumerate(values) if value in values[:k]]:
+        raise ValueError(f"a: {twice[0]!r} is not allowed twice")
     if cores is not None:
         cores = Whole(1, 1024).form(cores, "cores")
     if isinstance(law, Model):

@@ -54,7 +54,8 @@ def follow(
     enough : told after each orbit, with all orbits so far
 
     Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
-    The branch also ends where it joins one of simpler orbits, and where no step is short enough.
+    The branch also ends where it joins one of simpler orbits, where no step is short enough, and with the
+    `settings.most_orbits`-th orbit: if a is still within the range then, the rest of it was not looked at.
 
     Raises OrbitError if it cannot begin, as where the orbit is not within the range, and ValueError for a range that is
     none.

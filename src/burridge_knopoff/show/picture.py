@@ -97,11 +97,15 @@ def draw_point(point: xarray.Dataset) -> Figure:
     panels[1].legend(loc="lower right", handlelength=1.2)
     upward = point["crossing_velocity"].values[point["crossing_direction"].values > 0]
     if len(upward) > 1:
-        size = 2.5 if len(upward) > FEW else 5.0
+        size = 2.5 if len(np.unique(upward.round(6))) > FEW else 5.0
         panels[2].plot(
             upward[:-1], upward[1:], ".", markersize=size, markeredgewidth=0, color=color(0), rasterized=True
         )
-        panels[2].set(xlabel="$W'$ at an upward crossing of $W=0$", ylabel="$W'$ at the next")
+        # Of a closed orbit the points differ by rounding, which is no range to be shown.
+        middle, half = 0.5 * (upward.min() + upward.max()), 0.55 * max(np.ptp(upward), 0.02 * np.abs(upward).max())
+        limits = middle - half, middle + half
+        panels[2].set(xlabel="$W'$ at an upward crossing of $W=0$", ylabel="$W'$ at the next", xlim=limits, ylim=limits)
+        panels[2].locator_params(nbins=5)
     else:
         say_nothing(panels[2], "W crosses 0 less than twice in the window")
     if np.isfinite(point["velocity"].values).any():

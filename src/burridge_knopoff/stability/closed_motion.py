@@ -20,8 +20,8 @@ from burridge_knopoff.stability.steady import instant_of
 #: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
 CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 
-#: Time for which returns are looked for, three times the longest period that has been met; and how much farther than it
-#: returned the orbit that is found may lie.
+#: Time for which returns are looked for: longer orbits, as locked tori may have, are not found; and how much farther
+#: than it returned the orbit that is found may lie.
 WINDOW = 8000.0
 FARTHER = 30.0
 

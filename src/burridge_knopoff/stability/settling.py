@@ -70,6 +70,9 @@ class Settling:
         motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, tuning)
         if motion is None:
             return None
+        if motion.left_for is not None:
+            later = visit(self.model, motion.left_for, 0.0, settings.window, tuning)
+            return None if later is None or again == tuning.trials else self.measured(later, again + 1)
         chaotic = motion.kind == MotionKind.CHAOTIC
         if closed and not chaotic:
             # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.

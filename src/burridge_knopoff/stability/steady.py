@@ -75,6 +75,7 @@ class SteadyMotion:
     kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
 
     returns, mirror_returns, spacing, block, mirror_block : see `Returns`
+    left_for : a state on the other motion that this one came to in a longer time; None if it stayed
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -96,6 +97,7 @@ class SteadyMotion:
     exponent: np.ndarray
     block: int = 1
     mirror_block: int = 1
+    left_for: Instant | None = None
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
@@ -199,13 +201,14 @@ def measure(
     Where only the errors of the exponents leave open which kind it is, or may hide weak chaos, it is measured in a
     longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
     windows. What may be a torus is followed on for `lasting` transients at least: closed orbits that attract so weakly
-    that no exponent shows it have closed by then.
+    that no exponent shows it have closed by then. If the closed orbit has another ⟨J⟩, the motion was on its way there:
+    its kind is left open, and `left_for` is set.
     """
     settings = settings.at_speed(model.v)
     found = measure_once(model, start, transient, window, settings, tuning)
     if found is None or found.kind not in OPEN:
         return found
-    last, left = found.instant(), tuning.lasting * transient
+    usual, last, left = found, found.instant(), tuning.lasting * transient
     if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > 0.0:
         finer = settings.scaled(tuning.longer_window**-0.5)
         longer = measure_once(model, start, transient, tuning.longer_window * window, finer, tuning)
@@ -215,11 +218,23 @@ def measure(
             last, left = longer.instant(), max(0.0, left - tuning.longer_window * window)
     if found.kind in OPEN:
         late = visit(model, last, left, window, tuning)
-        if late is not None and late.closed(settings.period_tolerance):
-            found = replace(
-                found, kind=closed_kind(judged_distance(found.mean_distance, model.chain.is_mirror_symmetric), settings)
-            )
-    return found
+        if late is None or not late.closed(settings.period_tolerance):
+            return found
+        mean = judged_distance(found.mean_distance, model.chain.is_mirror_symmetric)
+        found, last = replace(found, kind=closed_kind(mean, settings)), late.instant()
+    if found.kind == MotionKind.CHAOTIC:
+        return found
+    later = measure_once(model, last, transient, window, settings, tuning)
+    return (
+        replace(usual, left_for=last) if later is not None and _differ(found, later, model, settings, tuning) else found
+    )
+
+
+def _differ(one: SteadyMotion, other: SteadyMotion, model: Model, settings: MotionSettings, tuning: Tuning) -> bool:
+    """Tell whether ⟨J⟩ of two motions differs beyond its errors."""
+    error = float(np.hypot(one.mean_distance_error, other.mean_distance_error))
+    allowed = settings.standard_errors * error + tuning.same_mean * model.scale
+    return abs(one.mean_distance - other.mean_distance) > allowed
 
 
 def measure_once(

@@ -22,9 +22,6 @@ FITTED_FROM = 4
 _FEWEST_PAIRS = 8
 _FEWEST_SEPARATIONS = 4
 
-_RESAMPLES = 1000
-_SEED = 1
-
 # There is no single exponent where its change over the fitted separations is larger than this, and than so many
 # standard errors. A fractal repeats itself at a ratio of separations: around its exponent the local one swings by less.
 _CHANGE = 0.3
@@ -41,7 +38,7 @@ class ExponentKind(IntEnum):
 
 @dataclass(frozen=True)
 class Exponent:
-    """f and its exponents; all but the kind as (value, standard error), from a bootstrap over the batches of pairs.
+    """f and its exponents; all but the kind as (value, standard error), from a jackknife over the batches of pairs.
 
     fraction : f, shape (separations,)
     local : slope of log f against log ε between neighbouring separations, shape (separations − 1,)
@@ -58,13 +55,13 @@ class Exponent:
 
 def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     """Return the exponents of a boundary from pairs at each of SEPARATIONS; NaN what too few pairs tell."""
-    picked = np.random.default_rng(_SEED).integers(BATCHES, size=(_RESAMPLES, BATCHES))
     every = np.arange(BATCHES)[None]
+    all_but_one = np.array([np.delete(every, batch) for batch in range(BATCHES)])
     x = np.log(SEPARATIONS)
     # NaN where no pair is known, or none differs: the logarithm of 0 tells nothing.
-    share, shares = (_share(pairs, batches) for batches in (every, picked))
-    y, resampled = (np.log(np.where(values > 0.0, values, np.nan)) for values in (share, shares))
-    local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, resampled))
+    share, shares = (_share(pairs, batches) for batches in (every, all_but_one))
+    y, without = (np.log(np.where(values > 0.0, values, np.nan)) for values in (share, shares))
+    local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, without))
     nothing = np.nan, np.nan
     found = _with_error(share, shares), _with_error(local, locals_)
     # Without gaps: a separation at which by chance many pairs differ tells nothing among others.
@@ -73,9 +70,8 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     if count < _FEWEST_SEPARATIONS:
         return Exponent(ExponentKind.UNKNOWN, *found, nothing, nothing)
     fitted = slice(FITTED_FROM, FITTED_FROM + count)
-    whole = np.isfinite(resampled[:, fitted]).all(axis=1)
-    line, lines = (_fit(x[fitted], values[:, fitted], 1) for values in (y, resampled[whole]))
-    parabola, parabolas = (_fit(x[fitted], values[:, fitted], 2) for values in (y, resampled[whole]))
+    line, lines = (_fit(x[fitted], values[:, fitted], 1) for values in (y, without))
+    parabola, parabolas = (_fit(x[fitted], values[:, fitted], 2) for values in (y, without))
     span = 2.0 * (x[fitted][-1] - x[fitted][0])
     (alpha,), (alpha_error,) = _with_error(line, lines)
     (change,), (change_error,) = _with_error(span * parabola, span * parabolas)
@@ -95,8 +91,8 @@ def _fit(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
     return np.polyfit(x, y.T, degree)[0][:, None]
 
 
-def _with_error(value: np.ndarray, resampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the only row of a value, and the standard deviation of resampled rows; NaN with a NaN among them."""
-    error = resampled.std(axis=0, ddof=1) if len(resampled) > 1 else np.full(value.shape[1], np.nan)
+def _with_error(value: np.ndarray, without: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the only row of a value, and its error from the rows without one batch each; NaN with a NaN among them."""
+    error = np.sqrt(len(without) - 1.0) * without.std(axis=0)
     # LAPACK's last bits depend on where in memory its arguments lie.
     return value[0].round(10), error.round(10)

@@ -35,25 +35,25 @@ PAIR_VARIABLES = {
         "fraction f of all pairs of states of the plane that reach different attractors",
         {"ancillary_variables": "uncertain_fraction_error"},
     ),
-    "uncertain_fraction_error": _V(("separation",), "f8", "standard error of f, from a bootstrap"),
+    "uncertain_fraction_error": _V(("separation",), "f8", "standard error of f, from a jackknife"),
     "local_exponent": _V(
         ("separation_step",),
         "f8",
         "slope of log f against log separation, from each separation to the next",
         {"ancillary_variables": "local_exponent_error"},
     ),
-    "local_exponent_error": _V(("separation_step",), "f8", "standard error of the slope, from a bootstrap"),
+    "local_exponent_error": _V(("separation_step",), "f8", "standard error of the slope, from a jackknife"),
     "uncertainty_exponent": _V(
         (),
         "f8",
         "uncertainty exponent alpha of the basin boundary, NaN unless it is known and a single one",
         {"ancillary_variables": "uncertainty_exponent_error"},
     ),
-    "uncertainty_exponent_error": _V((), "f8", "standard error of alpha, from a bootstrap"),
+    "uncertainty_exponent_error": _V((), "f8", "standard error of alpha, from a jackknife"),
     "exponent_change": _V(
         (), "f8", "by how much the local exponent changes over the fitted separations, by a parabola"
     ),
-    "exponent_change_error": _V((), "f8", "standard error of that change, from a bootstrap"),
+    "exponent_change_error": _V((), "f8", "standard error of that change, from a jackknife"),
     "exponent_kind": _V((), "i1", "whether the boundary has a single exponent", flag("i1", ExponentKind)),
 }
 MAP_VARIABLES = {

@@ -25,6 +25,8 @@ PADDING = 8
 # Time between two samples of the velocities in the event window.
 INTERVAL = 0.1
 
+AGAIN = "followed once more from the first stop: in chaos another trajectory than that of the run, soon"
+
 _POINT = ("law", "initial", "a")
 _BLOCK = (*_POINT, "block")
 VARIABLES = {
@@ -40,14 +42,18 @@ VARIABLES = {
     "velocity_frequency": Variable(
         _BLOCK,
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the events with states",
-        {"ancillary_variables": "velocity_frequency_error"},
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the time of events with "
+        "states",
+        {"ancillary_variables": "velocity_frequency_error", "comment": AGAIN},
     ),
     "velocity_frequency_error": Variable(
         _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a length T"
     ),
     "velocity_correlation": Variable(
-        _POINT, "f8", "Pearson correlation of the velocities U' of the end blocks over the events with states"
+        _POINT,
+        "f8",
+        "Pearson correlation of the velocities U' of the end blocks over the time of events with states",
+        {"comment": AGAIN},
     ),
     "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
 }
