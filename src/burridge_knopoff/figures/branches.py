@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray
 
@@ -24,6 +26,12 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     colors = dict.fromkeys(ranked, OTHER_COLOR)
     colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
     return {**({0: COLORS[0]} if (branch == 0).any() else {}), **colors}
+
+
+def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:
+    """Return the colours of branches by their names, for a legend; the one that several share comes last."""
+    own = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_COLOR}
+    return own | ({"other branches": OTHER_COLOR} if len(own) < len(colors) else {})
 
 
 def side_color(color: str, side: int) -> tuple[float, float, float]:

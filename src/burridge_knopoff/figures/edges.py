@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     cells,
@@ -23,6 +23,7 @@ from burridge_knopoff.figures.style import (
     styled,
 )
 from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Edges of the attractors"
 CATEGORY = "Attractors"
@@ -81,7 +82,7 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
             panel.set_ylim(*ROAD[1])
     for panel in panels[:: len(laws)]:
         panel.set_ylabel(r"$\langle J\rangle$")
-    _legend(figure, edges)
+    _legend(figure, edges, colors, branch_names(attractors))
     label_panels(panels, [f"{law} law{end}" for end in ("", ", the road to chaos")[:rows] for law in laws])
     return figure
 
@@ -149,8 +150,9 @@ def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
         panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
-def _legend(figure: Figure, edges: xarray.Dataset) -> None:
+def _legend(figure: Figure, edges: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
     """Put a legend of what is drawn below all panels."""
+    drawn = {int(number): colors.get(int(number), OTHER_COLOR) for number in edges["orbit_branch"].values}
     kind, stable = edges["kind"].values, edges["orbit_stable"].values
     located = kind[np.isfinite(edges["mean_distance"].values)]
     orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
@@ -168,5 +170,6 @@ def _legend(figure: Figure, edges: xarray.Dataset) -> None:
             if one in located
         ),
         *(Patch(linestyle=line, label=name, **BAR) for one, (line, name) in UNLOCATED.items() if one in kind),
+        *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
     ]
     legend_below(figure, handles)

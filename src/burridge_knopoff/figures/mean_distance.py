@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
+from burridge_knopoff.figures.branches import branch_colors, named_colors
 from burridge_knopoff.figures.style import begin_at_zero, cells, label_panels, legend_below, page_width, styled
 from burridge_knopoff.summaries.slots import branch_names
 
@@ -124,13 +124,8 @@ def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names:
         )
         for n, name in enumerate(runs["initial"].values)
     ]
-    shown: dict[str, str] = {}
-    for branch, color in sorted(colors.items()):
-        shown.setdefault("other branches" if color == OTHER_COLOR else names[branch], color)
-    # The colour that branches of small basins share comes last.
-    shown = dict(sorted(shown.items(), key=lambda item: item[1] == OTHER_COLOR))
     handles += [
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
-        for name, color in shown.items()
+        for name, color in named_colors(colors, names).items()
     ]
     legend_below(figure, handles)
