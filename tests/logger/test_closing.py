@@ -10,7 +10,7 @@ import xarray as xr
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.study.job_log import SILENT
+from burridge_knopoff.study.job_log import INTERRUPTED, SILENT
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
 
@@ -87,8 +87,12 @@ def test_a_damaged_summary_gives_a_line_and_no_error(content):
     assert [line.partition(": cannot be read (")[0] for line in said] == [str(FOLDER / n) for n in RULES.values()]
 
 
-def test_jobs_that_ctrl_c_has_ended():
-    Path("log.txt").write_text("Traceback (most recent call last):\n  File\nKeyboardInterrupt\n")
+@pytest.mark.parametrize(
+    "log",
+    ["Traceback (most recent call last):\n  File\nKeyboardInterrupt\n", f"bk simulate: {INTERRUPTED}\n"],
+)
+def test_jobs_that_ctrl_c_has_ended(log):
+    Path("log.txt").write_text(log)
     jobs = [("simulate a=0.1", FAILED, [], ["log.txt"]), ("simulate a=0.2", WAITING, [], [])]
     told = ["study paper: stopped after 1 s: 1 job interrupted, 1 job did not run", "made: nothing", AGAIN]
     assert lines(*jobs, stopped=True) == told

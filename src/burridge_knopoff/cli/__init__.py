@@ -99,7 +99,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"bk {options.command}: not enough memory for what is to be kept or computed", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"bk {options.command}: interrupted, nothing was written", file=sys.stderr)
+        from burridge_knopoff.study.job_log import INTERRUPTED
+
+        print(f"bk {options.command}: {INTERRUPTED}", file=sys.stderr)
         return 130
     return code
 

@@ -22,6 +22,8 @@ _TRACEBACK = "Traceback (most recent call last):\n"
 
 SILENT = "nothing in its log: it was killed, or could not begin"
 FULL = "nothing in its log: no space left on its disk"
+#: What `bk` says at Ctrl-C, after the name of its command.
+INTERRUPTED = "interrupted, nothing was written"
 #: Of a disk with fewer bytes left a log may have had no room.
 ROOM = 1 << 16
 
@@ -44,7 +46,8 @@ def last_words(log: str | Path) -> str:
 
 def interrupted(logs: Sequence[str | Path]) -> bool:
     """Tell whether a job was ended by Ctrl-C."""
-    return any(last_words(log) == "KeyboardInterrupt" for log in logs)
+    # `bk` has a line for it, and scripts have a traceback, as `bk` has before it has read its command.
+    return any(last_words(log).endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for log in logs)
 
 
 def failure(job: str, logs: Sequence[str | Path]) -> str:
