@@ -127,6 +127,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "formula_number": (f"{GOOD}laws: {{m: {{formula: 1}}}}\n", ["laws.m.formula: 1 is not allowed: text"]),
     "formula_name": (f"{GOOD}laws: {{m: {{formula: 1 - b*u}}}}\n", ["laws.m: ", "b: unknown name"]),
     "formula_unused": (f"{GOOD}laws: {{m: {{formula: 1 - a*u, b: 2}}}}\n", ["laws.m.b: not in the formula"]),
+    "formula_law": (
+        f"{GOOD}laws: {{m: {{formula: 1 - a*u, law: linearized}}}}\n",
+        ["laws.m.law: not allowed beside formula"],
+    ),
     "formula_call": (f"{GOOD}laws: {{m: {{formula: open(u)}}}}\n", ["laws.m: 'open(u)'", "not allowed in a formula"]),
     "formula_lines": (f'{GOOD}laws: {{m: {{formula: "1 - a*(u\\n)"}}}}\n', ["laws.m: ", "not a formula"]),
     "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "at u = 0 it is 1.1"]),

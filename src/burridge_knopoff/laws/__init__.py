@@ -46,6 +46,8 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
     if "name" in values:
         raise ValueError(f"{name}.name: not a number of a law")
     if "formula" in values:
+        if "law" in values:
+            raise ValueError(f"{name}.law: not allowed beside formula")
         return FormulaLaw(a, values.pop("formula"), name=name, **values)
     kind = values.pop("law", name)
     if not isinstance(kind, str) or kind not in LAWS:
