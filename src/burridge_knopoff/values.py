@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from typing import Any, TypeVar
 
 import numpy as np
@@ -55,9 +54,7 @@ def instance_of(value: Any, kind: type[_T], key: str) -> _T:
 
 def refusal(key: str, value: Any, allowed: object) -> ValueError:
     """Return the error of a value that is not allowed: key, value, what is."""
-    hint = isinstance(value, str) and re.fullmatch(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+", value)
-    words = " (YAML takes this for text: write it with a point and a sign, like 1.0e-6)" if hint else ""
-    return ValueError(f"{key}{': ' if key else ''}{cut(repr(value))} is not allowed: {allowed}{words}")
+    return ValueError(f"{key}{': ' if key else ''}{cut(repr(value))} is not allowed: {allowed}")
 
 
 def cut(text: str) -> str:

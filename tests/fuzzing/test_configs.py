@@ -39,6 +39,7 @@ some_keys = st.lists(st.sampled_from(KEYS), max_size=8, unique=True).map(
 
 #: What is written in place of a key, a value or a part of one.
 PIECES = """
+1e-6 2E+3 -3e2
 0 -0 -1 1 2 3 7 64 1024 1025 010 0x1F 1:30 1_0 .5 5. 1e5 1.0e-9 1.0e-6 1.0e+3 1.0e+9 1.0e+400 .nan .inf -.inf ~ null
 true no on '' "" "\\n" '0.1' 0.05 0.08 0.15 0.3 1.9999999999999998 2020-01-01 {} [] [[]] [0.1,0.1] [-1,1] [1,2] [1,2,3]
 {from: 0, to: 1, step: 1.0e-6} {from: 0.1, to: 0.1, step: 1} {position: [0,0], velocity: [0,0]} ? - --- ... # | > map
@@ -130,7 +131,7 @@ def is_study(tmp_path_factory):
         except ConfigError as error:
             check_refusal(str(error).removeprefix(f"{path.parent}/"), "fuzzed.yaml: ")
             return False
-        check_study(study, yaml.safe_load(content.decode("utf-8-sig")))
+        check_study(study, read_config(path))
         return True
 
     return check

@@ -83,7 +83,7 @@ BAD_CHANGES = [
     ({"sampling": 0}, ["sampling: 0"]),
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"synchronization_threshold": 0}, ["synchronization_threshold: 0"]),
-    ({"synchronization_threshold": "1e-6"}, ["synchronization_threshold: '1e-6'", "1.0e-6"]),
+    ({"synchronization_threshold": "1e-6"}, ["synchronization_threshold: '1e-6'", "a number"]),
     ({"agreement ": {}}, ["'agreement ': unknown key"]),
     ({"agreement": []}, ["agreement: []"]),
     ({"lyapunov_exponents": -1}, ["lyapunov_exponents: -1", "≥ 0"]),

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.provenance.command import difference
 from burridge_knopoff.study.study import all_points, load_study
-from burridge_knopoff.study.yaml_file import ConfigError, read_config
+from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from tests.bad_configs import BAD_FILES
 from tests.study.bad_changes import BAD_CHANGES
 
@@ -46,6 +46,21 @@ def test_bad_files_get_one_line(tmp_path, case):
     path = tmp_path / "study.yaml"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     refused(words, "study.yaml", lambda: load_study(read_config(path), str(path)))
+
+
+@pytest.mark.parametrize("number", ["1e-6", "1e5", "2E+3", "-3e2", "1.5e3", "+.5e-1", "7.", "0.1"])
+def test_numbers_are_those_of_a_reader(tmp_path, number):
+    """YAML itself takes those with an exponent for text if they have no point, or it has no sign."""
+    (tmp_path / "file").write_text(f"[{number}]")
+    (read,) = read_yaml(tmp_path / "file")
+    assert type(read) is float
+    assert read == float(number)
+
+
+@pytest.mark.parametrize("text", ["010", "1_0", "1:30", "0x1F", "1e", "e5", "1e5.0", "1_0e5", "."])
+def test_what_may_be_no_number_is_text(tmp_path, text):
+    (tmp_path / "file").write_text(f"[{text}]")
+    assert read_yaml(tmp_path / "file") == [text]
 
 
 @pytest.mark.parametrize("name", ["paper", "smoke"])

@@ -21,7 +21,8 @@ class ConfigError(ValueError):
 class _Loader(yaml.SafeLoader):
     """Numbers are decimals, and the keys of a mapping different texts.
 
-    YAML also takes 010 for eight, 1:30 for ninety and 1_0 for ten: these are texts here.
+    YAML takes 1e-6 for text, and 010 for eight, 1:30 for ninety and 1_0 for ten: the first is a number here, these are
+    texts.
     """
 
     yaml_implicit_resolvers = {  # noqa: RUF012
@@ -42,7 +43,7 @@ class _Loader(yaml.SafeLoader):
         return node
 
 
-_FLOAT = r"[-+]?([0-9]+\.[0-9]*|\.[0-9]+)([eE][-+][0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"
+_FLOAT = r"[-+]?([0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"
 _Loader.add_implicit_resolver(f"{_TAG}int", re.compile(r"[-+]?(0|[1-9][0-9]*)$"), list("-+0123456789"))
 _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("-+0123456789."))
 
