@@ -1,19 +1,24 @@
 """`bk check`: every kind of trouble is found in its file, and nothing else is."""
 
 import json
+import re
 import shutil
+from functools import reduce
+from operator import getitem
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.check.study import check_study, recorded_study
+from burridge_knopoff import open_study
+from burridge_knopoff.check.study import check_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries import mean_distance, points
@@ -117,7 +122,7 @@ def test_points_of_other_solvers_are_looked_at_as_well(results):
 
 def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys, monkeypatch):
     assert not check_study(results).findings
-    _, study, _ = recorded_study(results)
+    _, study = recorded_study(results)
     trajectory = run(study.model("linearized", 0.05), study.state("minus"), study.settings("linearized"))
     object.__setattr__(trajectory, "status", "accumulating_events")
     write_point(trajectory, point(results))
@@ -266,14 +271,23 @@ def test_a_study_whose_config_has_changed_is_not_pruned(results, capsys):
     assert left.exists()
 
 
-def test_a_study_of_another_version_is_refused_in_a_line(results, capsys):
+@pytest.mark.parametrize("key", ["laws", "solvers", "figures.a", "motion.colour", "chains.two_blocks.a", "basins"])
+def test_a_study_of_another_version_is_refused_in_a_line(results, capsys, key):
     record = results / "study.json"
     content = json.loads(record.read_text())
-    del content["config"]["solvers"]
+    *sections, name = key.split(".")
+    section = reduce(getitem, sections, content["config"])
+    if key == "basins":
+        section[name] = 3
+    elif section.pop(name, None) is None:
+        section[name] = "red"
     record.write_text(json.dumps(content))
+    line = f"{record}: not a study of this version ({key}); run snakemake again"
     for command in ("check", "prune"):
         assert main([command, str(results)]) == 2
-        assert "study.json: not a study of this version" in capsys.readouterr().err
+        assert capsys.readouterr().err == f"bk {command}: {line}\n"
+    with pytest.raises(ValueError, match=re.escape(line)):
+        open_study(results)
 
 
 WRONG = b'{"software": "", "git_commit": "", "arguments": "", "config_file": "", "given": {}, "config": 6, "grid": {}}'

@@ -10,11 +10,11 @@ from matplotlib.image import imread
 
 from burridge_knopoff import simulate
 from burridge_knopoff.check.leftovers import leftovers
-from burridge_knopoff.check.study import recorded_study
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 
 GRID = [0.05, 0.08, 0.2, 0.22]
@@ -217,7 +217,7 @@ def test_logs_and_benchmarks(results):
 @pytest.mark.parametrize(("key", "name"), [("initial", "plus"), ("laws", "nonlinear"), ("grid", "0.0800")])
 def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, name):
     """`bk prune` knows all that the rules have written of a state, a law or an a that is no more."""
-    record, study, _ = recorded_study(results)
+    record, study = recorded_study(results)
     assert leftovers(results, study) == []
     config, grid = record["config"], record["grid"]
     del (grid if key == "grid" else config[key])[name]

@@ -10,9 +10,10 @@ from typing import Any
 
 from burridge_knopoff.check.leftovers import leftovers, run_files
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.provenance.record import NAME, read_study_record, remake_command
+from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.study.job_log import last_words
+from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
@@ -92,7 +93,8 @@ def check_study(results: str | Path) -> Check:
     Raises ValueError, one line, if the folder holds no study.
     """
     results = Path(results)
-    record, study, points = recorded_study(results)
+    record, study = recorded_study(results)
+    points = _points(results, study)
     left = leftovers(results, study)
     notes = []
     if study.name != results.resolve().name:
@@ -122,22 +124,13 @@ def check_study(results: str | Path) -> Check:
     )
 
 
-def recorded_study(results: Path) -> tuple[dict[str, Any], Study, dict[Path, tuple[str, Path]]]:
-    """Return the record of a folder of results, the study that it describes, and its {point file: (command, log)}.
-
-    Raises ValueError, one line, if the folder holds no study, or one that this version cannot read.
-    """
-    record = read_study_record(results)
-    study = Study(record["config"], record["grid"])
-    try:
-        points = {
-            results / f"{file}.nc".format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
-            for file, log, runs in run_files(study)
-            for run in runs
-        }
-    except (LookupError, TypeError, AttributeError, ValueError) as error:
-        raise ValueError(f"{results / NAME}: not a study of this version ({error}); run snakemake again") from None
-    return record, study, points
+def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
+    """Return {point file: (command, log)} of all runs of a study."""
+    return {
+        results / f"{file}.nc".format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
+        for file, log, runs in run_files(study)
+        for run in runs
+    }
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:

@@ -22,12 +22,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Delete what is left over, and print it."""
     from burridge_knopoff.check.leftovers import delete, leftovers
-    from burridge_knopoff.check.study import changed, recorded_study
+    from burridge_knopoff.check.study import changed
+    from burridge_knopoff.study.recorded import recorded_study
     from burridge_knopoff.study.words import counted
 
     studies = []
     for folder in map(Path, options.results):
-        record, study, _ = recorded_study(folder)
+        record, study = recorded_study(folder)
         if (found := changed(folder, record)) and found.kind == "stale":
             raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
         studies.append((folder, study))

@@ -11,8 +11,8 @@ import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import AXES, axes
-from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.values import refusal
 
 # HDF5 is not safe for threads, and xarray's own lock does not cover all that opening reads.
@@ -36,7 +36,7 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
     Several threads may open studies, one after the other; while one opens, others must not read: HDF5 would crash.
 
-    Raises ValueError, one line, if the folder holds no study, or a file that cannot be read.
+    Raises ValueError, one line, if the folder holds no study of this version, or a file that cannot be read.
 
     >>> from burridge_knopoff import open_study
     >>> study = open_study("results/paper")
@@ -52,10 +52,9 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
 
 
 def _tree(results: Path, points: bool) -> xarray.DataTree:
-    record = read_study_record(results)
-    config, values = record["config"], record["grid"]
-    laws, states = list(config["laws"]), list(config["initial"])
-    nodes = {"/": xarray.Dataset(attrs=config)}
+    record, study = recorded_study(results)
+    laws, states, values = study.laws, study.initial, study.grid
+    nodes = {"/": xarray.Dataset(attrs=record["config"])}
     if points:
         found = {name: np.full((len(laws), len(states), len(values)), _absent(name)) for name in NUMBERS}
         for i, law in enumerate(laws):
@@ -72,7 +71,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
         )
     for path in sorted(results.glob("summary/*.nc")):
         nodes[f"summary/{path.stem}"] = _opened(path)
-    return xarray.DataTree.from_dict(nodes, name=config["study"])
+    return xarray.DataTree.from_dict(nodes, name=study.name)
 
 
 def _absent(name: str) -> Any:

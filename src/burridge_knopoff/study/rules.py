@@ -121,13 +121,14 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     basins["a"] = {law: list(values) for law, values in chosen.items()}
     phases["a"] = sorted(phases.get("a", [a for a in PAPER_PHASES if a in grid and of_paper]))
     solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown]))
+    config["figures"].setdefault("a", shown)
     if phases["a"] and ends_are_neighbours(chain):
         raise refusal("phases.a", phases["a"], "[] where a spring joins the end blocks: two blocks, or a ring")
     for key, values in (
         *((f"basins.a.{law}", values) for law, values in basins["a"].items()),
         ("phases.a", phases["a"]),
         ("solvers.a", solvers["a"]),
-        ("figures.a", [config["figures"].get("a", shown)]),
+        ("figures.a", [config["figures"]["a"]]),
     ):
         for a in values:
             if a not in grid:
