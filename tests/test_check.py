@@ -177,7 +177,7 @@ def test_a_changed_config_and_points_of_no_grid(results, capsys):
     said = capsys.readouterr().out
     assert "small.yaml: has changed since the last run, whose config is checked" in said
     left = point(results, a="0.0600")
-    assert f"leftover {left}: belongs to no point of the study\n" in said
+    assert f"leftover {left}: not part of this study\n" in said
     assert f"left over, with logs and benchmarks: 1 file; delete: bk prune {results}\n" in said
     assert main(["check", "--paths", str(results)]) == 1
     assert capsys.readouterr().out == ""
@@ -216,12 +216,12 @@ def test_a_folder_of_another_name_is_said_to_be_that_study(results, capsys):
     assert f"this is study {name} under another name: Snakemake looks for it in a folder {name}\n" in said
 
 
-#: Of another state, law or a than those of the study, or where none is computed.
+#: Of another state, law, a or number of blocks than those of the study, or where none is computed.
 LEFT_OVER = """
 points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc
 solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc attractors/other.nc edges/other.nc
 basins/nonlinear/a0.0500/tile0.nc basins/other/a0.0800/pairs.nc basins/linearized/a0.0800/tile2.nc
-figures/motion_wave.pdf figures/motion_wave.png
+figures/motion_wave.pdf figures/motion_wave.png chains/blocks11.nc logs/chains/blocks11.log
 logs/simulate/linearized/wave/a0.0500.log benchmarks/simulate/linearized/wave/a0.0500.tsv
 logs/simulate_solver/rk4/other/minus/a0.0800.log logs/figure_motion_wave.log
 """
@@ -230,10 +230,42 @@ NOT_LEFT_OVER = """
 attractors/nonlinear.nc basins/linearized/a0.0800/tile1.nc figures/motion_minus.png figures/mine.png summary/other.nc
 points/notes.txt points/linearized/minus/a0.0500_copy.nc
 logs/simulate/linearized/minus/a0.0500.log logs/attractors.log report.html
+chains/blocks10.nc summary/chains.nc figures/chains.png summary/attractors.txt summary/claims.md
+"""
+#: Of the attractors, of stages that need them, and of the proof.
+OF_STAGES = """
+attractors/linearized.nc refined/linearized.nc edges/nonlinear.nc phases/nonlinear.nc basins/linearized/a0.0800/tile0.nc
+summary/attractors.nc summary/attractors.txt summary/refined.nc summary/edges.nc summary/basins.txt summary/proof.nc
+figures/basin_fractions.pdf figures/windows.png logs/attractors.log logs/attractors/linearized.log logs/figure_edges.log
+benchmarks/proof.tsv benchmarks/basins/linearized/a0.0800/pairs.tsv
 """
 
 
-def test_what_belongs_to_no_point_is_pruned_and_nothing_else(results, capsys):
+def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
+    """They are not checked, since no command makes them again, and not opened."""
+    kept = ("summary/claims.json", "figures/mean_distance.png", "figures/chains.png", "logs/agreement.log")
+    for name in (*OF_STAGES.split(), *kept):
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).write_text("")
+    file, given = results.parent.parent / "small.yaml", f"{CONFIG}without: [attractors, proof]\n"
+    assert main(["check", str(results)]) == 1
+    file.write_text(given)
+    study = load_study(read_yaml(file), "small.yaml")
+    write_study_record(results, study, "small.yaml", read_yaml(file), "--configfile small.yaml")
+    capsys.readouterr()
+    assert main(["check", str(results)]) == 0
+    said = capsys.readouterr().out
+    shown = [name for name in OF_STAGES.split() if not name.startswith(("logs", "benchmarks"))]
+    assert said.count("leftover ") == len(shown)
+    assert all(f"leftover {results / name}: not part of this study\n" in said for name in shown)
+    assert f"{results}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed\n" in said
+    assert set(open_study(results)["summary"].children) == {"mean_distance"}
+    assert main(["prune", str(results)]) == 0
+    assert not any((results / name).exists() for name in OF_STAGES.split())
+    assert all((results / name).exists() for name in kept)
+
+
+def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     gone, kept = LEFT_OVER.split(), NOT_LEFT_OVER.split()
     before = {path for path in results.rglob("*") if path.is_file()}
     for name in (*gone, *kept):

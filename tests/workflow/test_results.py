@@ -15,7 +15,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.study import Study, load_study
 
 GRID = [0.05, 0.08, 0.2, 0.22]
 NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]
@@ -223,10 +223,32 @@ def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, na
     del (grid if key == "grid" else config[key])[name]
     maps = config["basins"].pop("a")
     config["basins"]["a"] = {law: [a for a in maps[law] if a in grid.values()] for law in maps if law != name}
-    named = re.compile(rf".*(/a?|motion_){name}(/.*|\.[a-z]+)")
+    # With one law there is nothing to compare it with.
+    compared = "|.*figures?[/_](agreement|two_blocks).*" if key == "laws" else ""
+    named = re.compile(rf".*(/a?|motion_){name}(/.*|\.[a-z]+){compared}")
     assert {*leftovers(results, Study(config, grid))} == {
         path for path in results.rglob("*") if path.is_file() and named.fullmatch(str(path))
     }
+
+
+@pytest.mark.parametrize(
+    ("stage", "names"),
+    [
+        ("attractors", "(figure_)?(attractors|refined|windows|edges|basins|basin_fractions|phases)"),
+        ("edges", "(figure_)?edges"),
+        ("solvers", "(figure_)?solvers|simulate_solver"),
+        # Longer chains need the summary.
+        ("two_blocks", "figure_two_blocks|figures/two_blocks"),
+        ("proof", "proof"),
+        ("claims", "claims"),
+    ],
+)
+def test_what_a_stage_that_is_left_out_leaves_over_is_known_by_its_names(results, stage, names):
+    record, _ = recorded_study(results)
+    study = load_study({**record["given"], "without": [stage]}, "tiny.yaml")
+    named = re.compile(rf"(.*/)?({names})(/.*|\.[a-z]+)")
+    paths = {path.relative_to(results).as_posix(): path for path in results.rglob("*") if path.is_file()}
+    assert {*leftovers(results, study)} == {path for name, path in paths.items() if named.fullmatch(name)}
 
 
 def test_the_data_dictionary_names_every_variable(results, repository):

@@ -1,8 +1,8 @@
 # Figures: a rule for each module of burridge_knopoff.figures that has a caption, as PDF for print and PNG for the screen.
 from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.study.stages import CHAIN_SUMMARIES
 
 # Those of the summaries that the study has, and of longer chains, which have a target of their own.
-CHAIN_SUMMARIES = ["chains", "two_blocks"]
 DESCRIPTIONS = [
     figure
     for described in figure_descriptions()

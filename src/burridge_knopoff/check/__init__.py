@@ -1,1 +1,1 @@
-"""What is wrong with the files of a study, and which of them belong to no point of it."""
+"""What is wrong with the files of a study, and which of them are not part of it."""

@@ -1,4 +1,4 @@
-"""Files with a law, a state or a value of a in their names: those of a study, and those that its config had once."""
+"""Files that not every study has: those of a study, and those that its config had once."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.figures.description import Description, figure_descriptions
 from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 #: What stands in the names of files; of any other name no file is ever held for left over.
@@ -17,18 +18,23 @@ _WILDCARDS = {
     "a": r"\d+\.\d+",
     "solver": r"\w+",
     "tile": r"(?:0|[1-9]\d*)",
+    "blocks": r"[1-9]\d*",
 }
 
-#: The forms of a file below the results and of its log, both without suffix, and all wildcards that a study has there.
+#: What the files of a folder end with, if it is not .nc.
+_SUFFIXES = {"figures": "pdf|png", "summary": "nc|txt|json|csv|md"}
+
+#: The forms of a file below the results and of its log, both without suffix, and all wildcards that a study has there:
+#: one without any for a file that it has, none for a file that it has not.
 Named = tuple[str, str, list[dict[str, str]]]
 
 
 def leftovers(results: Path, study: Study) -> list[Path]:
-    """Return the results, logs and benchmarks that belong to no point of a study."""
+    """Return the results, logs and benchmarks of points, stages and figures that a study does not have."""
     patterns: list[str] = []
     known: set[str] = set()
     for file, log, named in (*run_files(study), *_other_files(study)):
-        suffix = "pdf|png" if file.startswith("figures/") else "nc"
+        suffix = _SUFFIXES.get(file.partition("/")[0], "nc")
         for form, ends in ((file, suffix), (f"logs/{log}", "log"), (f"benchmarks/{log}", "tsv")):
             patterns.append(rf"{form.format(**_WILDCARDS)}\.(?:{ends})")
             known.update(form.format(**wildcards) for wildcards in named)
@@ -60,10 +66,25 @@ def _other_files(study: Study) -> Iterator[Named]:
     for form, known in (("basins/{law}/a{a}/pairs", maps), ("basins/{law}/a{a}/tile{tile}", tiles)):
         yield form, form, known
     for folder in ("attractors", "refined", "edges", "phases"):
-        yield f"{folder}/{{law}}", f"{folder}/{{law}}", [{"law": law} for law in study.laws]
+        laws = study.laws if folder in study.stage_summaries else ()
+        yield f"{folder}/{{law}}", f"{folder}/{{law}}", [{"law": law} for law in laws]
+    numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
+    yield "chains/blocks{blocks}", "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
+    absent = study.absent_summaries
+    for name in sorted(OPTIONAL_SUMMARIES):
+        log = "chains_summary" if name == "chains" else name
+        yield f"summary/{name}", log, [{}] if name not in absent else []
+    yield "summary/claims", "claims", [{}] if "claims" in study.stages else []
     # A picture of a single run is named for its state.
-    for picture in (figure.file for figure in figure_descriptions() if "{initial}" in figure.file):
-        yield f"figures/{picture}", f"figure_{picture}", [{"initial": initial} for initial in study.initial]
+    for figure in figure_descriptions():
+        states = study.initial if _is_drawn(figure, study) else ()
+        yield f"figures/{figure.file}", f"figure_{figure.file}", [{"initial": initial} for initial in states]
+
+
+def _is_drawn(figure: Description, study: Study) -> bool:
+    there = study.chain_summaries if "chains" in figure.inputs else study.stage_summaries
+    has_summaries = OPTIONAL_SUMMARIES.intersection(figure.inputs) <= {*there}
+    return has_summaries and (not figure.condition or getattr(study, figure.condition))
 
 
 def delete(results: Path, paths: list[Path]) -> None:

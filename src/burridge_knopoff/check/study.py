@@ -20,8 +20,8 @@ from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
 
 KINDS = ("missing", "corrupt", "stale", "failed")
-#: How results end, and no log.
-RESULTS = (".nc", ".pdf", ".png")
+#: How logs and benchmarks end, and no result.
+LOGS = (".log", ".tsv")
 #: Files that a command is printed with; more are left to --paths.
 MOST_IN_COMMAND = 8
 
@@ -116,7 +116,7 @@ def check_study(results: str | Path) -> Check:
         f"{counted(len(points), 'point')} and {counted(len(summaries), 'other file')}",
         sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
         [
-            *(Finding("leftover", path, "belongs to no point of the study") for path in left if path.suffix in RESULTS),
+            *(Finding("leftover", path, "not part of this study") for path in left if path.suffix not in LOGS),
             *(Finding("unknown", path, "no point of a study has that name") for path in sorted(unknown)),
             *filter(None, [changed(results, record)]),
         ],

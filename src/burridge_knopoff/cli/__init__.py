@@ -29,7 +29,7 @@ COMMANDS = {
     "basins": "which attractor each state of a plane reaches",
     "show": "what is in a point file or a summary, in words and as a picture",
     "check": "look for points of a study that are missing, corrupt, stale or failed",
-    "prune": "delete results that belong to no point of a study",
+    "prune": "delete results that are not part of a study any more",
     "completion": "print what completes commands and options in a shell",
 }
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, and results
-that belong to no point. Exit code: 0 nothing is wrong, 1 something is missing, corrupt or stale, 3 runs have failed but
-nothing else is wrong."""
+that are not part of them. Exit code: 0 nothing is wrong, 1 something is missing, corrupt or stale, 3 runs have failed
+but nothing else is wrong."""
 
 EXAMPLES = """  bk check results/paper
   bk check --paths results/*

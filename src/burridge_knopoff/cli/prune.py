@@ -1,12 +1,12 @@
-"""`bk prune`: delete results that belong to no point of a study."""
+"""`bk prune`: delete results that are not part of a study any more."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-DESCRIPTION = """Delete the files of studies that belong to a law, an initial state or a value of a that is not in the
-config of the last run, with their logs and benchmarks, and say which. Files of any other name stay."""
+DESCRIPTION = """Delete the files of studies that belong to a law, an initial state, a value of a or a stage that the
+config of the last run does not have, with their logs and benchmarks, and say which. Files of any other name stay."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper

@@ -30,8 +30,9 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
 
     `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file, and
     `tree["grid"]` has what is one number a point over (law, initial, a): NaN, or −1 among whole numbers, where a point
-    is not there. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. No file is held
-    against the sources that made it: `bk check` does that.
+    is not there. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. What the study had
+    once and has no more, as summaries of a stage that is left out now, is not opened. No file is held against the
+    sources that made it: `bk check` does that.
 
     The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
     Several threads may open studies, one after the other; while one opens, others must not read: HDF5 would crash.
@@ -69,8 +70,10 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
             {name: (tuple(AXES), found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
             axes(law=laws, initial=states, a=list(values.values())),
         )
+    absent = study.absent_summaries
     for path in sorted(results.glob("summary/*.nc")):
-        nodes[f"summary/{path.stem}"] = _opened(path)
+        if path.stem not in absent:
+            nodes[f"summary/{path.stem}"] = _opened(path)
     return xarray.DataTree.from_dict(nodes, name=study.name)
 
 

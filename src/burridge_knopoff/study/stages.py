@@ -1,4 +1,4 @@
-"""Stages that a config can leave out, and the summaries that each of them makes."""
+"""Stages that not every study has, and the summaries that each of them makes."""
 
 #: {stage that can be left out: the stage whose results it takes, or nothing}
 OPTIONAL = {
@@ -14,3 +14,9 @@ OPTIONAL = {
 
 #: Summaries of a stage, if they are not the one that has its name.
 SUMMARIES = {"attractors": ("attractors", "refined"), "claims": ()}
+
+#: Summaries of longer chains, which have a target of their own.
+CHAIN_SUMMARIES = ("chains", "two_blocks")
+
+#: All summaries that not every study has.
+OPTIONAL_SUMMARIES = {name for stage in OPTIONAL for name in SUMMARIES.get(stage, (stage,))} | {*CHAIN_SUMMARIES}

@@ -125,6 +125,16 @@ class Study:
         return tuple(name for stage in self.stages for name in stages.SUMMARIES.get(stage, (stage,)))
 
     @property
+    def chain_summaries(self) -> tuple[str, ...]:
+        """Names of the netCDF summaries of longer chains, whether they are asked for or not."""
+        return () if self.single_length_key else stages.CHAIN_SUMMARIES
+
+    @property
+    def absent_summaries(self) -> set[str]:
+        """Names of the netCDF summaries that only other studies have."""
+        return stages.OPTIONAL_SUMMARIES - {*self.stage_summaries, *self.chain_summaries}
+
+    @property
     def basin_maps(self) -> list[tuple[str, str]]:
         """Law and name of a of every map of basins."""
         names = {value: name for name, value in self.grid.items()}
