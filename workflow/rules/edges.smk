@@ -14,7 +14,7 @@ rule edges_of_law:
     threads: SHARED_CORES
     resources:
         cpus_per_task=lambda wildcards, threads: threads,
-        mem_mb=lambda wildcards, threads: 500 + 100 * threads,
+        mem_mb=lambda wildcards, threads: 350 + 100 * threads,
         runtime=60,
     params:
         model=lambda wildcards: model_config([wildcards.law]),
