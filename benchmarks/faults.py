@@ -91,7 +91,7 @@ class Trials:
         self.rows.append([fault, moment, hit, str(whole), str(left), shown, "yes" if good else "NO"])
         print(" | ".join(self.rows[-1]), file=sys.stderr, flush=True)
 
-    def stopped(self, study: Study, fault: str, good: bool) -> None:
+    def stopped(self, fault: str, good: bool) -> None:
         """Add a row for a fault whose run must stop, and did or did not, as it should."""
         if not good:
             self.rows.append([fault, "", "", "", "", "did not stop with its reason", "NO"])
@@ -155,7 +155,7 @@ def jobs_killed(trials: Trials) -> None:
         os.kill(victim, signal.SIGKILL)
         process.wait()
         screen = (study.folder / "screen").read_text()
-        trials.stopped(study, f"a job of {stage} killed", process.returncode == 1 and bool(failures(screen)))
+        trials.stopped(f"a job of {stage} killed", process.returncode == 1 and bool(failures(screen)))
         trials.judge(
             study, f"a job of {stage} killed", hit=", ".join(sorted({path.split("/")[0] for path in running(study)}))
         )
@@ -172,7 +172,7 @@ def disks(trials: Trials) -> None:
             run = study.run()
             reasons = failures(run.stderr).values() if run.returncode else []
             full = sum("No space left on device" in reason for reason in reasons)
-            trials.stopped(study, f"disk of {folder} full", full > 0)
+            trials.stopped(f"disk of {folder} full", full > 0)
             ballast.unlink()
             trials.judge(study, f"disk of {folder} full", f"{free // 1000} kB left", f"{full} jobs failed")
     study = trials.new()
@@ -180,7 +180,7 @@ def disks(trials: Trials) -> None:
     wait_for_stages(study, {"points"}, process)
     with read_only(study.folder / "results"):
         process.wait()
-    trials.stopped(study, "results read-only", process.returncode == 1)
+    trials.stopped("results read-only", process.returncode == 1)
     trials.judge(study, "results read-only", "while points are made", ", ".join(sorted(stages_running(study))))
 
 
@@ -196,7 +196,7 @@ def damages(trials: Trials) -> None:
             run = study.run()
             reasons = failures(run.stderr) if run.returncode else {}
             named = {found[1] for reason in reasons.values() if (found := re.search("; remake it: (.*)$", reason))}
-            trials.stopped(study, f"point: {name}", len(named) == 1 and "mean_distance.log" in reasons)
+            trials.stopped(f"point: {name}", len(named) == 1 and "mean_distance.log" in reasons)
             remake = min(named, default="")
         trials.judge(study, f"point: {name}", remake=remake)
 

@@ -36,7 +36,7 @@ solvers: {a: [0.08], step: 0.02}
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory, repository):
+def whole(tmp_path_factory):
     """The results of a study as Snakemake leaves them: points, points of other solvers, a summary, the record."""
     import yaml
 
@@ -120,7 +120,7 @@ def test_points_of_other_solvers_are_looked_at_as_well(results):
     assert "is another run: --solver rk4 instead of --solver map" in reasons
 
 
-def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys, monkeypatch):
+def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys):
     assert not check_study(results).findings
     _, study = recorded_study(results)
     trajectory = run(study.model("linearized", 0.05), study.state("minus"), study.settings("linearized"))

@@ -111,7 +111,7 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing(famil
     assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
 
 
-def test_what_branches_off_joins_only_where_it_is_near(families):
+def test_what_branches_off_joins_only_where_it_is_near():
     """At the root of a multiplier's function an orbit far from any simpler one is at a fold."""
     (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
     assert edges._kind(point, (EdgeKind.FOLD, "keeping")) == EdgeKind.FOLD

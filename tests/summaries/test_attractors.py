@@ -85,7 +85,7 @@ def test_what_initial_states_and_sweeps_reach(one_law):
     np.testing.assert_array_equal(mean.sel(direction="downward"), [[0.14, 0.15, np.nan]] * 2)
 
 
-def test_chaos_that_is_shown_to_last_is_chaos(one_law):
+def test_chaos_that_is_shown_to_last_is_chaos():
     lasting = replace(continuation("linearized"), lifetimes=[[None] * 2, [None], [Lifetime(0, 1e5)] * 2, []])
     found = attractors.one_law(lasting, STATES, SETTINGS, MOTION, "tested")
     assert found["kind"].values[1].tolist() == [MotionKind.CHAOTIC] * 2

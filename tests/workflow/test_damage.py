@@ -90,7 +90,7 @@ DAMAGES = {
 
 
 @pytest.fixture(scope="module")
-def grids(repository):
+def grids():
     """A function from a folder of results to the grid of its points at a = 0.2, and that of other solvers."""
     config = yaml.safe_load(TINY)
     study = load_study(config, "study.yaml")
@@ -203,7 +203,7 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
         ("summary/orbits.nc", "report"),
     ],
 )
-def test_a_bad_file_as_old_as_it_was(finished, copy, path, rule):
+def test_a_bad_file_as_old_as_it_was(copy, path, rule):
     """Nothing tells Snakemake that it has changed: whoever reads it next finds out."""
     target = copy.folder / "results" / "tiny" / path
     times = target.stat()
