@@ -182,7 +182,7 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
             raise ValueError(f"{missing}: missing; needed for other than three blocks: numbers, one a block")
         name, given = OWN, (given[0] or usual.position, given[1] or usual.velocity)
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
-        raise ValueError(f"initial: {name!r} is the paper's state and takes no other numbers: another name, or none")
+        raise ValueError(f"initial: {name!r} is not allowed with other numbers than the paper's: another name, or none")
     return initial_state(name, *given)
 
 
