@@ -103,7 +103,8 @@ BASINS = {
     "a": Field(
         Named(Text(), SOME_VALUES),
         "values of the grid with a map of basins, for each law; by default those that are in the grid of "
-        + "; ".join(f"{law}: {', '.join(map(str, values))}" for law, values in PAPER_BASINS.items()),
+        + "; ".join(f"{law}: {', '.join(map(str, values))}" for law, values in PAPER_BASINS.items())
+        + "; all other laws: as the first of these",
         {},
     ),
     "pixels": fields_of(BasinSettings)["pixels"],
