@@ -3,14 +3,16 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, MotionKind, closed_motion, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, closed_motion, law_of, simulate, synchronized_orbit
 from burridge_knopoff.stability import endings as module
 from burridge_knopoff.stability.endings import Ending, endings
 from burridge_knopoff.stability.labels import UNDETERMINED, moved
 from burridge_knopoff.stability.lifetime import Lifetime
-from burridge_knopoff.stability.settings import SEARCH, Sample
+from burridge_knopoff.stability.settings import MOTION, SEARCH, Sample
+from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.test_chains import two_block_exponent
 
 STATES = Sample(samples=8, symmetric_samples=0).initial(2)
@@ -29,6 +31,16 @@ def test_slow_synchrony_is_synchrony(law, a):
     assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
     assert found.mean_distance < 1e-8
     assert simulate(pair(law, a), APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
+
+
+@pytest.mark.parametrize(("apart", "kind"), [(0.9e-3, MotionKind.SYNCHRONIZED), (1.1e-3, MotionKind.UNDETERMINED)])
+def test_only_what_is_next_to_synchrony_is_on_its_way_there(apart, kind):
+    """Within the distance that tells attractors apart."""
+    model = Model(Chain(3), law_of("linearized", 0.05))
+    on_it = synchronized_orbit(model).reference
+    end = replace(on_it, position=on_it.position + np.array([0.0, 0.0, apart]))
+    found = module._slow_synchrony(model, end, SEARCH, MOTION, TUNING)
+    assert found.kind == kind
 
 
 def test_what_synchrony_repels_does_not_synchronize():

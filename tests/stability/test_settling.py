@@ -39,7 +39,7 @@ def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, wind
 
 def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
     """In its window or, where it touches its mirror image, in a longer time."""
-    own, rows = Settling(MODEL, SETTINGS), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
+    own, rows = Settling(MODEL, replace(SETTINGS, transient=3)), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
     touching = rows - 0.9995
     for mirror, symmetric in ((rows + 0.01, True), (touching, False), (rows + 3.0, False)):
         assert own.is_symmetric(shown(rows, mirror, WIDE, 0.0)) == symmetric
@@ -47,7 +47,7 @@ def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
     for later, changes in ((both, True), (rows, False)):
         asked = tell(settling, "visit", [shown(later, later, WIDE, 0.0)])
         assert own.changes_sides(shown(rows, touching, WIDE, 0.0)) == changes
-        assert asked[0][2:4] == (0.0, TUNING.lasting * SETTINGS.transient)
+        assert asked[0][2:4] == (0.0, TUNING.lasting * 3)
     for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
         assert not own.changes_sides(apart)
     # Where only one block of a mirror pair stops again and again, the two show different sets.

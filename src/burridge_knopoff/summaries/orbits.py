@@ -225,9 +225,9 @@ def _compare(
     values["effective_a"] = np.array([effective_a(other, a) for a in grid])
     for name in ("critical_a", "grazing_a"):
         values[f"effective_{name}_difference"] = effective_a(other, values[name][other_row]) - values[name][first_row]
+    if first is None:
+        return
     for k, a in enumerate(values["effective_a"]):
-        if first is None or values["status"][other_row, k] != OrbitStatus.FOUND:
-            continue
         try:
             orbit = first.at(float(a))
         except OrbitError:
