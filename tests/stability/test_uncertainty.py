@@ -74,6 +74,12 @@ def test_exponent_of_counts():
     few = [500] * FITTED_FROM + [8, 8, 8, 8, 7] + [500] * (len(SEPARATIONS) - FITTED_FROM - 5)
     bent = np.where(np.arange(len(SEPARATIONS)) > FITTED_FROM + 3, 1e-3 * fraction, fraction)
     assert uncertainty_exponent(counted(bent, 0.0, few)).alpha[0] == pytest.approx(0.4, abs=1e-9)
+    pairs = counted(fraction)
+    pairs.different[1:, -1] = 0.0
+    alone = uncertainty_exponent(pairs)
+    pairs.different_count[-1] = 7
+    assert alone.alpha == uncertainty_exponent(pairs).alpha
+    assert np.isfinite(alone.alpha).all()
     few[FITTED_FROM + 3] = 7
     assert uncertainty_exponent(counted(bent, 0.0, few)).kind == ExponentKind.UNKNOWN
 

@@ -65,7 +65,9 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     nothing = np.nan, np.nan
     found = _with_error(share, shares), _with_error(local, locals_)
     # Without gaps: a separation at which by chance many pairs differ tells nothing among others.
-    enough = pairs.different_count[FITTED_FROM:] >= _FEWEST_PAIRS
+    # If all of them are in one batch, nothing is known without it, and no error.
+    enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different, axis=0) > 1)
+    enough = enough[FITTED_FROM:]
     count = len(enough) if enough.all() else int(np.argmin(enough))
     if count < _FEWEST_SEPARATIONS:
         return Exponent(ExponentKind.UNKNOWN, *found, nothing, nothing)
