@@ -72,8 +72,8 @@ except (ValueError, OSError) as error:
 
 SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
 
-# Cores for a long job of one law, which shares them out among processes: two at least, since laws that run side by side
-# on one core each do not end together. Where no job is to run, as for --unlock, there need be no number of cores.
+# Cores for a long job, which shares them out among processes: those of all laws run side by side, but each has two at
+# least, since on one core each they would not end together. Where no job is to run, as for --unlock, there need be no number of cores.
 SHARED_CORES = max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
 
 # How the study is named to `snakemake`, by its config alone and from another folder.

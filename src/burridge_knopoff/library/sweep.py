@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Unpack
@@ -61,14 +62,15 @@ def sweep(
     values = np.asanyarray(a, dtype=object).ravel().tolist()
     if not values:
         raise ValueError("a: no value is not allowed: at least one")
-    if twice := [value for k, value in enumerate(values) if value in values[:k]]:
-        raise ValueError(f"a: {twice[0]!r} is not allowed twice")
     if cores is not None:
         cores = Whole(1, 1024).form(cores, "cores")
     if isinstance(law, Model):
         models = [given_model(law, None, 0, chain, v, contact).at(value) for value in values]
     else:
         models = [given_model(law, value, len(state.position), chain, v, contact) for value in values]
+    value, count = Counter(model.a for model in models).most_common(1)[0]
+    if count > 1:
+        raise ValueError(f"a: {value!r} is not allowed twice")
     for model in models:
         chosen.check_chain(model.chain)
         model.begin(state, chosen.start)

@@ -74,6 +74,16 @@ class Edge:
     turns: bool
 
     @property
+    def period(self) -> float:
+        """Period of the stable orbits there: at a flip twice that of the orbit itself."""
+        return round(self.before.orbit.period / self.at.orbit.period) * self.at.orbit.period
+
+    @property
+    def mean_distance(self) -> float:
+        """⟨J⟩ over a period of the orbit there."""
+        return self.at.orbit.mean_distance
+
+    @property
     def stick_time(self) -> float:
         """Shortest stick of the orbit there; 0 where it shrinks to nothing."""
         shortest = float(self.at.contacts.stick.min())

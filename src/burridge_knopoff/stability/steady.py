@@ -225,9 +225,9 @@ def measure(
     if found.kind == MotionKind.CHAOTIC:
         return found
     later = measure_once(model, last, transient, window, settings, tuning)
-    return (
-        replace(usual, left_for=last) if later is not None and _differ(found, later, model, settings, tuning) else found
-    )
+    if later is None or not _differ(found, later, model, settings, tuning):
+        return found
+    return replace(usual, left_for=last)
 
 
 def _differ(one: SteadyMotion, other: SteadyMotion, model: Model, settings: MotionSettings, tuning: Tuning) -> bool:

@@ -168,7 +168,7 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitErr
         found = half(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
         # Found here, these go with the orbits to the process that asks for them.
         _ = (
-            [(edge.stick_time, edge.at.orbit.mean_distance) for edge in found.edges],
+            [(edge.stick_time, edge.mean_distance) for edge in found.edges],
             [point.multipliers for point in found.orbits],
         )
         _ = [point.orbit.mean_distance for point in found.shown]

@@ -141,15 +141,10 @@ def _append_edge(values: dict[str, list[Any]], entry: Entry, blocks: int) -> Non
     values["motion_after"].append(entry.motion[1])
     edge = entry.edge
     after = edge.after if edge else None
-    period = mean_distance = np.nan
-    if edge:
-        # At a flip the orbit there is that of the single period, which the stable ones go round twice.
-        turns = round(edge.before.orbit.period / edge.at.orbit.period)
-        period, mean_distance = turns * edge.at.orbit.period, edge.at.orbit.mean_distance
     values["a_error"].append(edge.a_error if edge else 1.0)
     values["turns"].append(int(edge.turns) if edge else -1)
-    values["period"].append(period)
-    values["mean_distance"].append(mean_distance)
+    values["period"].append(edge.period if edge else np.nan)
+    values["mean_distance"].append(edge.mean_distance if edge else np.nan)
     values["stick_time"].append(edge.stick_time if edge else np.nan)
     values["lifetime_low"].append(entry.lifetime[0])
     values["lifetime_high"].append(entry.lifetime[1])
