@@ -2,6 +2,7 @@ from burridge_knopoff.kernel.clouds cimport Clouds
 from burridge_knopoff.kernel.lane_events cimport LaneEvents
 from burridge_knopoff.kernel.lane_series cimport LaneSeries
 from burridge_knopoff.kernel.lanes cimport Lanes
+from burridge_knopoff.kernel.samples cimport Samples
 from burridge_knopoff.kernel.vector cimport Vectors, mask
 
 cdef class Ensemble:
@@ -9,7 +10,6 @@ cdef class Ensemble:
     cdef readonly LaneSeries series
     cdef readonly LaneEvents events
     cdef readonly Py_ssize_t blocks
-    cdef readonly long long steps
     cdef readonly long long rounds
     cdef mask active
     cdef mask fresh
@@ -26,19 +26,12 @@ cdef class Ensemble:
     cdef Py_ssize_t[::1] section
     cdef Vectors slipped
     cdef double[::1] point
-    cdef Vectors target
     cdef int[::1] label_of
-    cdef double[::1] sample_time
-    cdef double[:, :, ::1] sample_position
-    cdef double[:, :, ::1] sample_velocity
-    cdef signed char[:, :, ::1] sample_slip
+    cdef Samples samples
     cdef long long[::1] event_count
-    cdef Py_ssize_t[::1] next_sample
 
     cdef void _refill(self) noexcept nogil
     cdef void _run(self) noexcept nogil
     cdef void _move(self) noexcept nogil
     cdef void _finish(self, mask where, int status) noexcept nogil
-    cdef void _sample(self) noexcept nogil
-    cdef void _aim(self, int lane, Py_ssize_t k) noexcept nogil
     cdef void _visit(self, Py_ssize_t cloud, mask where) noexcept nogil

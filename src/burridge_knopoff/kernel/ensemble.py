@@ -14,7 +14,7 @@ from cython.cimports.burridge_knopoff.kernel.friction_series import FrictionSeri
 from cython.cimports.burridge_knopoff.kernel.lane_events import LaneEvents
 from cython.cimports.burridge_knopoff.kernel.lane_series import LaneSeries
 from cython.cimports.burridge_knopoff.kernel.lanes import Lanes
-from cython.cimports.burridge_knopoff.kernel.state import LONG
+from cython.cimports.burridge_knopoff.kernel.samples import Samples
 from cython.cimports.burridge_knopoff.kernel.vector import (
     LANES,
     Vectors,
@@ -27,7 +27,6 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     less,
     magnitude,
     mask,
-    put,
     select,
     splat,
     vec,
@@ -35,6 +34,8 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
 
 # Label of a trajectory that comes close to no cloud.
 UNDETERMINED = -1
+# Of the Taylor series; even, since their terms are summed in pairs.
+ORDER = 20
 
 
 class Ensemble:
@@ -42,16 +43,12 @@ class Ensemble:
 
     diagonal, left, right, threshold, sliding_force, v, symmetric, rate_limit : see `Lanes`
     code, first, second, alpha, beta, gamma, value : the friction law, see `FrictionSeries`
-    order : of the Taylor series, even
-
-    Raises ValueError for another order.
     """
 
     lanes: Lanes
     series: LaneSeries
     events: LaneEvents
     blocks: cython.Py_ssize_t
-    steps: cython.longlong
     rounds: cython.longlong
     active: mask
     fresh: mask
@@ -68,14 +65,9 @@ class Ensemble:
     section: cython.Py_ssize_t[::1]
     slipped: Vectors
     point: cython.double[::1]
-    target: Vectors
     label_of: cython.int[::1]
-    sample_time: cython.double[::1]
-    sample_position: cython.double[:, :, ::1]
-    sample_velocity: cython.double[:, :, ::1]
-    sample_slip: cython.schar[:, :, ::1]
+    samples: Samples
     event_count: cython.longlong[::1]
-    next_sample: cython.Py_ssize_t[::1]
 
     def __init__(
         self,
@@ -94,20 +86,14 @@ class Ensemble:
         gamma: np.ndarray,
         value: int,
         rate_limit: int,
-        order: int = 20,
     ) -> None:
-        if order % 2 or order < 10:
-            raise ValueError(f"order: {order} is not allowed: an even number of at least 10")
         self.blocks = len(diagonal)
-        friction = FrictionSeries(self.blocks, order, code, first, second, alpha, beta, gamma, value)
+        friction = FrictionSeries(self.blocks, ORDER, code, first, second, alpha, beta, gamma, value)
         self.lanes = Lanes(diagonal, left, right, threshold, sliding_force, v, symmetric, friction, rate_limit)
-        self.series = LaneSeries(self.blocks, order)
-        self.events = LaneEvents(order)
+        self.series = LaneSeries(self.blocks, ORDER)
+        self.events = LaneEvents(ORDER)
         self.point = np.zeros(2 * self.blocks)
-        self.target = Vectors(1)
         self.slipped = Vectors(self.blocks)
-        self.section = np.zeros(0, dtype=np.intp)
-        self.steps = 0
         self.rounds = 0
 
     def label(
@@ -135,7 +121,7 @@ class Ensemble:
         self.section = np.array(section, dtype=np.intp)
         self.streak = np.zeros((LANES, clouds.count), dtype=np.intp)
         self.label_of = labels
-        self.sample_time = np.zeros(0)
+        self.samples = Samples(n, [], self.blocks)
         self.lanes.kept = 0
         self.end = end
         self._begin(position, velocity, stuck, times, np.zeros(n, dtype=np.intc), np.zeros(n, dtype=np.int64))
@@ -154,30 +140,27 @@ class Ensemble:
         event_block (from 1) and event_kind (0 stop, 1 start) of shape (n, events), NaN or 0 where there was none.
         """
         n = len(position)
-        shape = (n, len(times), self.blocks)
-        result = {
-            "position": np.full(shape, np.nan),
-            "velocity": np.full(shape, np.nan),
-            "slip": np.zeros(shape, dtype=np.int8),
-            "status": np.zeros(n, dtype=np.intc),
-            "end": np.zeros(n),
-            "event_count": np.zeros(n, dtype=np.int64),
-            "event_time": np.full((n, events), np.nan),
-            "event_block": np.zeros((n, events), dtype=np.intc),
-            "event_kind": np.zeros((n, events), dtype=np.intc),
-        }
-        self.label_of = np.zeros(0, dtype=np.intc)
+        samples = Samples(n, times, self.blocks)
+        status, end = np.zeros(n, dtype=np.intc), np.zeros(n)
+        event_count = np.zeros(n, dtype=np.int64)
+        event_time = np.full((n, events), np.nan)
+        event_block, event_kind = np.zeros((n, events), dtype=np.intc), np.zeros((n, events), dtype=np.intc)
+        # No state is near any cloud where there is none.
         self.section = np.zeros(0, dtype=np.intp)
-        self.sample_time = np.array(times, dtype=float)
-        self.sample_position, self.sample_velocity = result["position"], result["velocity"]
-        self.sample_slip = result["slip"]
-        self.next_sample = np.zeros(LANES, dtype=np.intp)
+        self.samples = samples
         self.lanes.kept = events
-        self.lanes.event_time, self.lanes.event_block = result["event_time"], result["event_block"]
-        self.lanes.event_kind = result["event_kind"]
-        self.end = self.sample_time[len(times) - 1]
-        self._begin(position, velocity, stuck, result["end"], result["status"], result["event_count"])
-        return result
+        self.lanes.event_time, self.lanes.event_block, self.lanes.event_kind = event_time, event_block, event_kind
+        self.end = times[len(times) - 1]
+        self._begin(position, velocity, stuck, end, status, event_count)
+        return {
+            **samples.results(),
+            "status": status,
+            "end": end,
+            "event_count": event_count,
+            "event_time": event_time,
+            "event_block": event_block,
+            "event_kind": event_kind,
+        }
 
     def _begin(
         self,
@@ -233,8 +216,7 @@ class Ensemble:
         self._finish(self.active & ~ended, DIVERGED)
         self.events.find(self.lanes, self.series, self.active)
         length = self.events.time.at[0]
-        if len(self.sample_time) > 0:
-            self._sample()
+        self.samples.take(self.lanes, self.series, length, self.active)
         left = (self.end - self.lanes.clock.at[0]) - self.lanes.clock_rest.at[0]
         ended = self.active & at_most(left, length)
         if bits(ended):
@@ -258,40 +240,6 @@ class Ensemble:
             self._visit(
                 cloud, event & self.active & ~equal(self.slipped.at[i], zero) & equal(self.lanes.slip.at[i], zero)
             )
-
-    def _sample(self) -> None:
-        """Keep the states at the times that lie within the coming step."""
-        i: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        lane: cython.int
-        due: cython.int
-        ahead: vec
-        x: vec
-        w: vec
-        while True:
-            ahead = (self.target.at[0] - self.lanes.clock.at[0]) - self.lanes.clock_rest.at[0]
-            due = bits(self.active & at_most(ahead, self.events.time.at[0]))
-            if not due:
-                return
-            for i in range(self.blocks):
-                x = self.series.at_time(self.series.position, i, ahead)
-                w = self.series.at_time(self.series.velocity, i, ahead)
-                for lane in range(LANES):
-                    if due >> lane & 1:
-                        k = self.next_sample[lane]
-                        self.sample_position[self.lanes.member[lane], k, i] = lane_of(x, lane)
-                        self.sample_velocity[self.lanes.member[lane], k, i] = lane_of(w, lane)
-                        self.sample_slip[self.lanes.member[lane], k, i] = cython.cast(
-                            cython.schar, lane_of(self.lanes.slip.at[i], lane)
-                        )
-            for lane in range(LANES):
-                if due >> lane & 1:
-                    self._aim(lane, self.next_sample[lane] + 1)
-
-    def _aim(self, lane: cython.int, k: cython.Py_ssize_t) -> None:
-        """Let the k-th time of a lane be the next at which its state is kept."""
-        self.next_sample[lane] = k
-        put(self.target.at, lane, self.sample_time[k] if k < self.sample_time.shape[0] else LONG)
 
     def _visit(self, cloud: cython.Py_ssize_t, where: mask) -> None:
         """Look at the returns of some lanes to a cloud; a lane is done when enough of them have been near it."""
@@ -345,11 +293,9 @@ class Ensemble:
                 self.velocity[self.next_member],
                 self.stuck[self.next_member],
             )
-            if len(self.label_of) > 0:
-                for i in range(self.clouds.count):
-                    self.streak[lane, i] = 0
-            else:
-                self._aim(lane, 0)
+            for i in range(self.section.shape[0]):
+                self.streak[lane, i] = 0
+            self.samples.aim(lane, 0)
             self.next_member += 1
             self.fresh = self.fresh | from_bits(1 << lane)
         self.active = self.active | self.fresh

@@ -9,6 +9,7 @@ from burridge_knopoff.kernel.lane_series import LaneSeries
 from burridge_knopoff.kernel.lanes import Lanes
 
 UNDETERMINED: int
+ORDER: int
 
 class Ensemble:
     @property
@@ -19,8 +20,6 @@ class Ensemble:
     def events(self) -> LaneEvents: ...
     @property
     def blocks(self) -> int: ...
-    @property
-    def steps(self) -> int: ...
     @property
     def rounds(self) -> int: ...
     def __init__(
@@ -40,7 +39,6 @@ class Ensemble:
         gamma: np.ndarray,
         value: int,
         rate_limit: int,
-        order: int = 20,
     ) -> None: ...
     def label(
         self,

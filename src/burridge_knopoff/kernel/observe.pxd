@@ -34,7 +34,7 @@ cdef class Observer:
     cdef SearchedPolynomial polynomial
 
     cdef void observe(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
-    cdef void _load_distance(self, Piece piece, double length) noexcept nogil
+    cdef void _load_distance(self, Piece piece) noexcept nogil
     cdef void _average(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _sample(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _cross(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil

@@ -95,7 +95,7 @@ class Observer:
             self._extreme(state, piece, TRANSIENT, 0.0, min(length, until_window))
         self._sample(piece, clock, clock_rest, length)
 
-    def _load_distance(self, piece: Piece, length: cython.double) -> None:
+    def _load_distance(self, piece: Piece) -> None:
         """Load the distance of this piece, once, and only if it is needed."""
         if not self.loaded:
             self.distance.load(piece)
@@ -112,7 +112,7 @@ class Observer:
             edge = (self.edge[self.batch + 1] - clock) - clock_rest
             stop = min(edge, length)
             if stop > start:
-                self._load_distance(piece, length)
+                self._load_distance(piece)
                 term = self.distance.integral(start, stop)
                 total = self.batch_integral[self.batch] + term
                 self.batch_rest[self.batch] += (self.batch_integral[self.batch] - total) + term
@@ -130,7 +130,7 @@ class Observer:
             t = (self.distance_time[self.next_distance] - clock) - clock_rest
             if t > length:
                 break
-            self._load_distance(piece, length)
+            self._load_distance(piece)
             self.distance_sample[self.next_distance] = self.distance.value(t)
             self.next_distance += 1
         while self.next_trajectory < self.trajectory_time.shape[0]:
