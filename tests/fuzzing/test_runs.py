@@ -132,11 +132,10 @@ def test_a_run_is_refused_or_ends_with_a_status(seed):
             state = InitialState("fuzzed", case["position"], case["velocity"])
             law = law_of("fuzzed", case["a"], case["law"])
             model = Model(Chain(case["blocks"], **case["chain"]), law, case["v"], case["contact"])
-            at = None
             if case["stuck"]:
                 begun, stuck = model.begin(state), np.array(case["stuck"])
-                at = Instant(begun.position, np.where(stuck, 0.0, begun.velocity), stuck)
-            trajectory = run(model, state, Settings(**case["settings"]), at)
+                state = Instant(begun.position, np.where(stuck, 0.0, begun.velocity), stuck)
+            trajectory = run(model, state, Settings(**case["settings"]))
     except ValueError as error:
         check_refusal(error)
     else:

@@ -11,7 +11,7 @@ from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import Edge, locate_edges
 from burridge_knopoff.orbits.following import Following, follow
 from burridge_knopoff.orbits.periodic import find_periodic_orbit
-from burridge_knopoff.orbits.stretch import stretch
+from burridge_knopoff.orbits.stretch import Stretch, half
 from burridge_knopoff.orbits.transition import critical_a, grazing_a, symmetric_flip_a
 from burridge_knopoff.running.runner import Runner
 
@@ -34,6 +34,11 @@ def synchronized(families, law, a):
 def at(orbit, a):
     """Return the orbit that an orbit is at another a."""
     return find_periodic_orbit(orbit.model.at(a), orbit.reference, orbit.return_time, orbit.symmetry)
+
+
+def stretch(orbit, a_range, beyond, settings):
+    """Return both halves of the stretch around a stable orbit."""
+    return Stretch(*(half(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff import Attractor, MotionKind, SteadyMotion, Symmetry
-from burridge_knopoff.stability.steady import Returns
+from burridge_knopoff.stability.returns import Returns
 
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
 

@@ -12,9 +12,10 @@ from burridge_knopoff.stability.attractors import Search, find_attractors
 from burridge_knopoff.stability.labels import label
 from burridge_knopoff.stability.lifetime import lifetimes
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.returns import visit
 from burridge_knopoff.stability.sampling import fraction_interval, sample_states, sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
-from burridge_knopoff.stability.steady import lies_on, measure, visit
+from burridge_knopoff.stability.steady import lies_on, measure
 from burridge_knopoff.stability.tuning import TUNING
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry

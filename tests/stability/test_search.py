@@ -8,7 +8,7 @@ import pytest
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, law_of
 from burridge_knopoff.stability import attractors, settling
 from burridge_knopoff.stability.attractors import Search
-from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import ASYMMETRIC, SYMMETRIC, SYNCHRONIZED, shown, stand_in
 

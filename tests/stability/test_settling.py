@@ -7,8 +7,8 @@ import pytest
 
 from burridge_knopoff import MotionKind
 from burridge_knopoff.stability import settling
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settling import Settling
-from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import shown
 from tests.stability.test_search import CLOSED, MODEL, ONE, OTHER, SETTINGS, WIDE, motion

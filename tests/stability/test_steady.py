@@ -1,4 +1,4 @@
-"""Returns and what they tell: from the events of whole runs, and of hand-made sets."""
+"""What is measured of a steady motion: of whole runs, and of hand-made motions."""
 
 from dataclasses import replace
 
@@ -8,9 +8,10 @@ import pytest
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, Settings, find_attractors, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
+from burridge_knopoff.stability.returns import visit
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
-from burridge_knopoff.stability.steady import instant_of, lies_on, measure, visit
+from burridge_knopoff.stability.steady import lies_on, measure
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import nearest, shown, stand_in
 
@@ -51,44 +52,6 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     assert measure(chain, start, 500.0, 20.0, MOTION) is None
 
 
-@pytest.mark.parametrize(
-    ("stopping", "block", "mirror_block"),
-    [((1, 2, 3, 4), 1, 1), ((2, 3), 2, 2), ((1, 3), 1, 4), ((2,), 2, 3), ((3, 4), 4, 1), ((), None, None)],
-)
-def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mirror_block):
-    """Of two equally far out the lower one; a motion and its mirror image are seen at stops of mirror blocks."""
-    number = np.tile(np.arange(1, 5), 20)
-    states = np.random.default_rng(3).uniform(size=(80, 8))
-    chain, kind = Model(Chain(4), law_of("linearized", 0.1)), np.where(np.isin(number, stopping), 0, 1)
-    found = steady._returns(chain, number, kind, states, TUNING)
-    mirrored = steady._returns(chain, 5 - number, kind, states[:, [3, 2, 1, 0, 7, 6, 5, 4]], TUNING)
-    if block is None:
-        assert found is None
-        return
-    assert (found.block, found.mirror_block) == (mirrored.mirror_block, mirrored.block) == (block, mirror_block)
-    assert (found.returns == states[number == block]).all()
-    assert (found.returns == mirrored.mirror_returns).all()
-    assert (found.mirror_returns == mirrored.returns).all()
-
-
-@pytest.mark.parametrize(
-    ("stops", "expected"),
-    [
-        ((7, 843, 332, 362, 795, 5), (2, 2)),
-        ((28, 3372, 1328, 1448, 3180, 20), (2, 2)),
-        ((100, 900, 900, 100), (1, 1)),
-        ((300, 900, 900, 5), (1, 4)),
-        ((5, 900, 900, 300), (4, 1)),
-        ((0, 40, 0), (2, 2)),
-        ((0, 0, 0), (1, 1)),
-    ],
-)
-def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
-    """In a window four times as long as well; the mirror image is seen at the mirror block."""
-    assert steady._sections(np.array(stops), TUNING) == expected
-    assert steady._sections(np.array(stops[::-1]), TUNING) == expected[::-1]
-
-
 def test_attractors_whose_ends_never_stop_are_known():
     """In four blocks at a = 0.02 some states come to motion in which only the middle blocks stop."""
     settings = SearchSettings(samples=40)
@@ -120,30 +83,6 @@ def test_mirror_images_of_a_motion():
     assert alone.symmetrized().mirror_returns.shape == (0, 6)
 
 
-def test_a_block_without_velocity_sticks():
-    found = instant_of(np.array([1.0, 2.0, 3.0, 1e-14, -1e-14, 2e-14]))
-    assert found.position.tolist() == [1.0, 2.0, 3.0]
-    assert found.velocity.tolist() == [0.0, 0.0, 2e-14]
-    assert found.stuck.tolist() == [True, True, False]
-
-
-@pytest.mark.parametrize(
-    ("spacing", "drift", "closed", "settled"),
-    [
-        (1e-6, 1e-5, True, True),  # a hundredth of the resolution
-        (1e-6, 1.1e-5, True, False),
-        (1.1e-6, 1e-3, False, True),  # the resolution
-        (1.1e-6, 1.1e-3, False, False),
-        (0.01, 0.03, False, True),  # three spacings
-        (0.01, 0.031, False, False),
-    ],
-)
-def test_what_has_settled(spacing, drift, closed, settled):
-    found = shown(ROWS, ROWS, spacing, drift)
-    assert found.closed(1e-6) == closed
-    assert found.settled(1e-6, 1e-3) == settled
-
-
 @pytest.mark.parametrize(
     ("away", "kind", "spacing", "own_spacing", "expected"),
     [
@@ -159,17 +98,6 @@ def test_what_has_settled(spacing, drift, closed, settled):
 def test_what_lies_on_an_attractor(away, kind, spacing, own_spacing, expected):
     attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
     assert lies_on(shown(ROWS + away, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
-
-
-@pytest.mark.parametrize(
-    ("length", "longest", "expected"), [(1, 60, 1), (3, 60, 3), (7, 7, 7), (9, 8, 8), (13, 60, 60)]
-)
-def test_the_length_of_an_orbit(length, longest, expected):
-    """Of forty returns the first third is left out, and what is left, 27, shows twice what is at most 13 long."""
-    orbit = np.tile(ROWS[:length], (40, 1))[:40]
-    orbit[:13] += 0.5
-    assert steady.orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
-    assert steady.orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,9 @@ from burridge_knopoff.summaries.reached import reached
 if TYPE_CHECKING:
     import xarray
 
+# Velocities on the section within which two of its points are one.
+SAME_VELOCITY = 1e-6
+
 
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
     """Return (a, kind of motion) of the runs from a state, as `agreement.nc` has it."""
@@ -286,7 +289,7 @@ def cloud_at_lower_velocities(
     return Verdict(by_share(share, loose_share), reason, measured, changes)
 
 
-def _distinct(velocity: np.ndarray, tolerance: float = 1e-6) -> int:
-    """Return how many section points differ by more than a tolerance, in the second half of a run."""
+def _distinct(velocity: np.ndarray) -> int:
+    """Return how many section points differ by more than SAME_VELOCITY, in the second half of a run."""
     settled = np.sort(velocity[len(velocity) // 2 :])
-    return int(np.count_nonzero(np.diff(settled) > tolerance)) + 1 if len(settled) else 0
+    return int(np.count_nonzero(np.diff(settled) > SAME_VELOCITY)) + 1 if len(settled) else 0

@@ -107,13 +107,6 @@ class Stretch:
         return np.array([orbit.a for orbit in orbits]), np.array([orbit.period for orbit in orbits])
 
 
-def stretch(
-    orbit: PeriodicOrbit, a_range: tuple[float, float], beyond: int, settings: Following = FOLLOWING
-) -> Stretch:
-    """Return both halves of the stretch around a stable orbit; arguments and errors as in `half`."""
-    return Stretch(*(half(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
-
-
 def half(
     orbit: PeriodicOrbit,
     upward: bool,

@@ -61,7 +61,7 @@ def width(ball: arb) -> float:
     return limits(2 * ball.rad())[1]
 
 
-def digits(ball: arb, count: int = 40) -> str:
-    """Return a ball as Arb prints it: a decimal, and how far it may be off, «[0.0869 +/- 1.2e-50]»."""
-    text: str = ball.str(count, more=False, radius=True)
+def digits(ball: arb) -> str:
+    """Return a ball as Arb prints it: a decimal of 40 digits at most, and how far off, «[0.0869 +/- 1.2e-50]»."""
+    text: str = ball.str(40, more=False, radius=True)
     return text

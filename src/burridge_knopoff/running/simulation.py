@@ -14,18 +14,22 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.trajectory import Trajectory, collect
 
 
-def run(model: Model, initial: InitialState, settings: Settings | None = None, at: Instant | None = None) -> Trajectory:
+def run(model: Model, initial: InitialState | Instant, settings: Settings | None = None) -> Trajectory:
     """Run one simulation of a model and return its trajectory.
 
-    at : the state to begin from if it is one in the middle of a motion; without it that of the initial state
+    initial : where it begins; an instant is one in the middle of a motion, whatever `start` says
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
-    at = model.begin(initial, settings.start) if at is None else at
+    if isinstance(initial, Instant):
+        begun = initial
+        initial = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
+    else:
+        begun = model.begin(initial, settings.start)
     runner = _prepare(model, settings)
-    runner.begin(at)
+    runner.begin(begun)
     return collect(model, initial, settings, runner, runner.run())
 
 

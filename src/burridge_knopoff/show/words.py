@@ -10,12 +10,14 @@ import xarray
 
 #: Letters of a list of names, at most.
 LONGEST = 70
+#: Numbers of a list, at most.
+LISTED = 8
 
 
-def listed(values: Iterable[float], most: int = 8) -> str:
-    """Return numbers one after another, the middle ones left out if there are many."""
+def listed(values: Iterable[float]) -> str:
+    """Return numbers one after another, the middle ones left out if there are more than LISTED."""
     words = [f"{value:g}" for value in np.atleast_1d(np.asarray(values))]
-    return ", ".join(words if len(words) <= most else [*words[: most - 2], "...", words[-1]])
+    return ", ".join(words if len(words) <= LISTED else [*words[: LISTED - 2], "...", words[-1]])
 
 
 def paragraph(rows: Iterable[tuple[str, str]]) -> list[str]:

@@ -8,8 +8,9 @@ import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.stability.returns import Returns, instant_of, orbit_length, stops_alike, visit
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import Returns, SteadyMotion, instant_of, orbit_length, stops_alike, visit
+from burridge_knopoff.stability.steady import SteadyMotion
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 

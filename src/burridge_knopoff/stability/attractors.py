@@ -21,10 +21,11 @@ from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.nearness import is_near
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
+from burridge_knopoff.stability.returns import Returns
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.settling import Settling
-from burridge_knopoff.stability.steady import Returns, SteadyMotion, lies_on, measure
+from burridge_knopoff.stability.steady import SteadyMotion, lies_on, measure
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 from burridge_knopoff.values import instance_of
 

@@ -15,7 +15,7 @@ from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import DURATION
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.returns import instant_of
 
 #: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
 CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)

@@ -27,8 +27,9 @@ from burridge_knopoff.stability.labels import UNDETERMINED, label, moved
 from burridge_knopoff.stability.lifetime import lifetimes
 from burridge_knopoff.stability.mirror import pair_distances, symmetrized
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
-from burridge_knopoff.stability.steady import SteadyMotion, instant_of, measure
+from burridge_knopoff.stability.steady import SteadyMotion, measure
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 # Batches of a long window: their scatter, and so the error of ⟨J⟩ in chaos, is known to a sixth.
@@ -97,9 +98,7 @@ def _ending(
     found = _ending_of(motion)
     if motion.kind != MotionKind.CHAOTIC:
         return found
-    begun = motion.instant()
     window = tuning.exposure * settings.lifetime
-    own = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
     options = Settings(
         transient=0.0,
         window=window,
@@ -109,7 +108,7 @@ def _ending(
         event_window=min(settings.window, window),
         lyapunov_exponents=0,
     )
-    trajectory = run(model, own, options, begun)
+    trajectory = run(model, motion.instant(), options)
     if trajectory.status != "completed" or not len(trajectory.event_time):
         return found
     last = np.concatenate([trajectory.event_position[-1] - model.sliding_offset, trajectory.event_velocity[-1]])

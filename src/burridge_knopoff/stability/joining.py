@@ -13,8 +13,8 @@ from burridge_knopoff.laws.blend import blend
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.nearness import is_near
+from burridge_knopoff.stability.returns import Returns, visit
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import Returns, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 #: {branch: the states on it}, with the models that they belong to by position: at each of them one state.

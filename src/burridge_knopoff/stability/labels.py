@@ -15,8 +15,8 @@ from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settings import SEARCH
-from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.values import instance_of, real_array
 
 

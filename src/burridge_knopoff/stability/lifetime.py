@@ -21,9 +21,9 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.attractor import Attractor, pushed
 from burridge_knopoff.stability.labels import UNDETERMINED, label, moved
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.sampling import CONFIDENCE
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import instant_of
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 

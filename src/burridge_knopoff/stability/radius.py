@@ -16,8 +16,9 @@ from burridge_knopoff.stability.attractor import Attractor, pushed
 from burridge_knopoff.stability.labels import label, moved
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.nearness import least_distance
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.stability.steady import SteadyMotion, instant_of
+from burridge_knopoff.stability.steady import SteadyMotion
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 

@@ -10,8 +10,9 @@ from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractor import pushed
 from burridge_knopoff.stability.motion import MotionKind, closed_kind, judged_distance
 from burridge_knopoff.stability.nearness import is_near, least_distance
+from burridge_knopoff.stability.returns import Returns, stops_alike, visit
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
-from burridge_knopoff.stability.steady import Returns, SteadyMotion, measure, stops_alike, visit
+from burridge_knopoff.stability.steady import SteadyMotion, measure
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 

@@ -23,7 +23,7 @@ from burridge_knopoff.orbits.stretch import Half, Stretch, half
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.steady import instant_of
+from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.summaries.branch_changes import BranchChange, Change, slots_of_branches
 
 #: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.

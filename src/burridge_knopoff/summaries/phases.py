@@ -12,7 +12,6 @@ import xarray
 
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.running.settings import Settings
@@ -171,10 +170,9 @@ def _intervals(hits: np.ndarray, count: int) -> np.ndarray:
 
 def velocity_correlation(model: Model, start: Instant) -> float:
     """Return the Pearson correlation of the velocities of the end blocks from a state on; NaN if one is constant."""
-    initial = InitialState("attractor", tuple(start.position + model.sliding_offset), tuple(start.velocity))
     settings = Settings(
         transient=0.0, window=FOLLOWED, batches=2, sampling=FOLLOWED, trajectory=FOLLOWED, events="none",
         lyapunov_exponents=0,
     )  # fmt: skip
-    velocity = run(model, initial, settings, start).velocity
+    velocity = run(model, start, settings).velocity
     return correlation(velocity[:, 0], velocity[:, -1])

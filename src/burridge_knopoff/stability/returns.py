@@ -1,0 +1,129 @@
+"""Where a trajectory returns to: its states at the stops of one block, a set that can be compared with another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.nearness import distance, spacing_of
+from burridge_knopoff.stability.tuning import TUNING, Tuning
+
+# A velocity of this modulus is rounding.
+STANDING = 1e-14
+
+
+@dataclass(frozen=True, eq=False)
+class Returns:
+    """The returns of a trajectory in a window after a transient.
+
+    returns : states at the stops of one block, shape (n, 2 blocks), positions x_i and velocities U_i'
+    mirror_returns : those of the mirrored motion; none, shape (0, 2 blocks), where the chain has no mirror image
+    spacing : distance (largest difference of a coordinate) between neighbouring returns
+    drift : distance between the returns of the first and of the second half of the window
+    stop_count : stops of each block in the window, shape (blocks,)
+    block, mirror_block : the block of these returns, the outermost one that stops regularly, and that of the mirrored
+        motion: the same if both of the pair stop
+    """
+
+    returns: np.ndarray
+    mirror_returns: np.ndarray
+    spacing: float
+    drift: float
+    stop_count: np.ndarray
+    block: int = 1
+    mirror_block: int = 1
+
+    def closed(self, tolerance: float) -> bool:
+        """Tell whether the returns repeat: the motion is a closed orbit."""
+        return self.spacing <= tolerance
+
+    def settled(self, tolerance: float, resolution: float, tuning: Tuning = TUNING) -> bool:
+        """Tell whether both halves of the window show the same set."""
+        allowed = resolution / tuning.closed_drift if self.closed(tolerance) else resolution
+        return self.drift <= max(allowed, tuning.spacings * self.spacing)
+
+    def instant(self) -> Instant:
+        """Return the state at the last return."""
+        return instant_of(self.returns[-1])
+
+
+def instant_of(state: np.ndarray) -> Instant:
+    """Return the instant of one return, shape (2 blocks,): a block without velocity sticks there."""
+    position, velocity = np.split(state, 2)
+    # Another block that stops at the same instant may have been left a rounding of velocity, of either sign.
+    stuck = np.abs(velocity) <= STANDING
+    return Instant(position.copy(), np.where(stuck, 0.0, velocity), stuck)
+
+
+def visit(model: Model, start: Instant, transient: float, window: float, tuning: Tuning = TUNING) -> Returns | None:
+    """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
+    runner = Runner(model, events_from=transient, keep_events=True)
+    runner.begin(start)
+    if runner.run(transient + window) != Status.COMPLETED:
+        return None
+    events = runner.log.events.values()
+    return returns_of(model, events[:, 0], events[:, 1], events[:, 2:], tuning)
+
+
+def returns_of(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning) -> Returns | None:
+    """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
+    stop_count = np.bincount(block[kind == 0].astype(int), minlength=model.blocks + 1)[1:]
+    section, mirror_section = _sections(stop_count, tuning)
+    stops = states[(block == section) & (kind == 0)]
+    mirror_returns = stops[:0]
+    fewest = len(stops)
+    if model.chain.is_mirror_symmetric:
+        position, velocity = np.split(states[(block == model.blocks + 1 - mirror_section) & (kind == 0)], 2, axis=1)
+        mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
+        fewest = min(fewest, len(mirror_returns))
+    if fewest < tuning.fewest_returns:
+        return None
+    first, second = np.array_split(stops, 2)
+    return Returns(
+        returns=stops,
+        mirror_returns=mirror_returns,
+        spacing=spacing_of(second, tuning.near_share),
+        drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),
+        stop_count=stop_count,
+        block=section,
+        mirror_block=mirror_section,
+    )
+
+
+def _sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
+    """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
+
+    stops : of each block, shape (blocks,)
+
+    By shares, which do not depend on how long the motion is seen: of the pairs of mirror blocks that do not hardly ever
+    stop the outermost one, and of that the first block, or the one that stops if only one of them does.
+    """
+    pairs = stops + stops[::-1]
+    outer = int(np.argmax(pairs >= tuning.seldom * pairs.max()))
+    inner = len(stops) - 1 - outer
+    fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
+    if stops[fewer] >= tuning.seldom * stops[more]:
+        return outer + 1, outer + 1
+    return more + 1, fewer + 1
+
+
+def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) -> bool:
+    """Tell whether each pair of mirror blocks has the same share of all stops in two motions.
+
+    first, second : stops of each block, in any time, shape (blocks,)
+    """
+    shares = [(stops + stops[::-1]) / stops.sum() for stops in (first, second)]
+    return bool(np.abs(np.subtract(*shares)).max() <= tuning.same_stops)
+
+
+def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
+    """Return after how many returns a closed orbit repeats within the tolerance; `longest` if it takes more."""
+    settled = returns[len(returns) // 3 :]
+    for length in range(1, min(longest, len(settled) // 2)):
+        if np.abs(settled[length:] - settled[:-length]).max() <= tolerance:
+            return length
+    return longest
