@@ -95,7 +95,6 @@ def test_the_html_is_sound(page):
 
 def test_the_same_inputs_give_the_same_page(poor, html):
     assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"]) == html
-    assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"], threads=3) == html
 
 
 def test_a_missing_summary_stops_before_anything_is_written(poor, tmp_path):

@@ -22,10 +22,8 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     group:
         group("figures")
-    # The last job of all: the other cores have nothing else to do.
-    threads: 8
     resources:
-        mem_mb=1000,
+        mem_mb=600,
         runtime=10,
     params:
         # The report shows the whole config.

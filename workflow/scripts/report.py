@@ -13,4 +13,4 @@ paths = [Path(path) for path in (*snakemake.input.summaries, *snakemake.input.fi
 summaries, figures = ({path.stem: path for path in paths if path.suffix == suffix} for suffix in (".nc", ".png"))
 claims = [Path(path) for path in snakemake.input.claims]
 sources = Sources(claims[0] if claims else None, summaries, figures, Path(params.benchmarks))
-write_report(Study(params.config, params.grid), sources, params.arguments, snakemake.output[0], snakemake.threads)
+write_report(Study(params.config, params.grid), sources, params.arguments, snakemake.output[0])

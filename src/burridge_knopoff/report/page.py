@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -55,26 +53,24 @@ class Sources:
     benchmarks: Path = field(default=Path("benchmarks"))
 
 
-def write_report(study: Study, sources: Sources, arguments: Sequence[str], path: str | Path, threads: int = 1) -> None:
+def write_report(study: Study, sources: Sources, arguments: Sequence[str], path: str | Path) -> None:
     """Write the report of a study as one HTML file.
 
     arguments : that name the study to `snakemake` in the commands of the report, none for the default one
-    threads : that compress its pictures
     Raises ValueError, one line that names the file, if a source is missing or cannot be read.
     """
-    write_text(path, render(study, sources, arguments, threads))
+    write_text(path, render(study, sources, arguments))
 
 
-def render(study: Study, sources: Sources, arguments: Sequence[str] = (), threads: int = 1) -> str:
+def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:
     """Return the report as HTML; see `write_report`."""
     for name in NEEDED:
         if name not in sources.summaries:
             raise ValueError(f"{name}.nc: not among the summaries of the report; it needs {', '.join(NEEDED)}")
     verdicts = read_verdicts(sources.claims)
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
-    with ThreadPoolExecutor(threads) as pool:
-        shown = pool.map(partial(read_picture, summaries=list(summaries)), sources.figures.values())
-        pictures = dict(zip(sources.figures, shown, strict=True))
+    # One after the other: each takes some 100 MB while it is compressed.
+    pictures = {name: read_picture(path, list(summaries)) for name, path in sources.figures.items()}
     commands = Commands(study, arguments)
     sections = section_counts(summaries["bifurcation"])
     environment = jinja2.Environment(
