@@ -102,7 +102,8 @@ def measure(
     longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
     windows. What may be a torus is followed on for `lasting` transients at least: closed orbits that attract so weakly
     that no exponent shows it have closed by then. If the closed orbit has another ⟨J⟩, the motion was on its way there:
-    its kind is left open, and `left_for` is set.
+    its kind is left open, and `left_for` is set. Of what has not closed the exponents are measured in windows that are
+    longer still, in which it is chaos if the largest is beyond its error.
     """
     settings = settings.at_speed(model.v)
     found = measure_once(model, start, transient, window, settings, tuning)
@@ -119,7 +120,7 @@ def measure(
     if found.kind in OPEN:
         late = visit(model, last, left, window, tuning)
         if late is None or not late.closed(settings.period_tolerance):
-            return found
+            return _with_weak_chaos(model, found, last, transient, window, settings, tuning)
         mean = judged_distance(found.mean_distance, model.chain.is_mirror_symmetric)
         found, last = replace(found, kind=closed_kind(mean, settings)), late.instant()
     if found.kind == MotionKind.CHAOTIC:
@@ -128,6 +129,44 @@ def measure(
     if later is None or not _differ(found, later, model, settings, tuning):
         return found
     return replace(usual, left_for=last)
+
+
+def _with_weak_chaos(
+    model: Model,
+    motion: SteadyMotion,
+    start: Instant,
+    transient: float,
+    window: float,
+    settings: MotionSettings,
+    tuning: Tuning,
+) -> SteadyMotion:
+    """Return the motion with its exponents from this state on, as chaos if the largest is certain to be positive."""
+    for times in tuning.longest_windows:
+        trajectory = run(model, start, replace(_options(transient, times * window), events="none"))
+        if trajectory.status != "completed":
+            break
+        exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
+        motion = replace(motion, exponent=exponent)
+        # Errors alone decide: they hold what growth in proportion to time looks like.
+        if exponent[0] > settings.standard_errors * error[0]:
+            return replace(motion, kind=MotionKind.CHAOTIC)
+        if exponent[0] * times * window <= tuning.regular_growth * np.log1p(times * window / transient):
+            break
+    return motion
+
+
+def _options(transient: float, window: float) -> Settings:
+    """Return the settings of a run in which a motion is measured."""
+    return Settings(
+        transient=transient,
+        window=window,
+        batches=BATCHES,
+        sampling=transient + window,
+        trajectory=0.0,
+        event_window=window,
+        lyapunov_exponents=EXPONENTS,
+        lyapunov_alignment=transient,
+    )
 
 
 def _differ(one: SteadyMotion, other: SteadyMotion, model: Model, settings: MotionSettings, tuning: Tuning) -> bool:
@@ -141,17 +180,7 @@ def measure_once(
     model: Model, start: Instant, transient: float, window: float, settings: MotionSettings, tuning: Tuning
 ) -> SteadyMotion | None:
     """Do the work of `measure` in one window, by settings that are for the speed of the driver already."""
-    options = Settings(
-        transient=transient,
-        window=window,
-        batches=BATCHES,
-        sampling=transient + window,
-        trajectory=0.0,
-        event_window=window,
-        lyapunov_exponents=EXPONENTS,
-        lyapunov_alignment=transient,
-    )
-    trajectory = run(model, start, options)
+    trajectory = run(model, start, _options(transient, window))
     if trajectory.status != "completed":
         return None
     states = np.concatenate([trajectory.event_position - model.sliding_offset, trajectory.event_velocity], axis=1)

@@ -32,6 +32,12 @@ class Tuning:
     #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
     #: 0.001 is then beyond its error. In one four times longer closed orbits that hardly attract have not closed.
     longer_window: float = 20.0
+    #: What still may be a torus is looked at in windows that are so many times longer, in the second one only if
+    #: perturbations grow faster than on a torus: there it is in proportion to time at most, and the logarithm has
+    #: stayed below this share of what that makes. Exponents of 4e-5 show in the first one, and are beyond their error
+    #: in the second.
+    longest_windows: tuple[float, ...] = (100.0, 800.0)
+    regular_growth: float = 0.5
 
     # When two sets of returns are one.
 
