@@ -20,7 +20,7 @@ def test_an_edge_that_is_not_located_is_as_wide_as_its_error():
     (panel,) = draw(attractors, edges).axes
     (bar,) = panel.patches
     assert (bar.get_x(), bar.get_width()) == pytest.approx((0.13, 0.02))
-    assert panel.get_xlim() == pytest.approx((0.05, 0.25))
+    assert panel.get_xlim() == pytest.approx((0.098, 0.202))
 
 
 def test_the_legend_names_the_branches_whose_orbits_are_drawn():

@@ -1,21 +1,26 @@
 """The common look: legends below the panels, of what these show."""
 
+from collections import Counter
+
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import (
     begin_at_zero,
+    cells,
     label_panels,
     legend_below,
     legend_entries,
     panel_table,
     styled,
+    to_decades,
 )
 
 
-@pytest.mark.parametrize(("width", "rows"), [(20.0, 1), (4.0, 3), (0.5, 6)])
-def test_a_legend_has_as_many_columns_as_fit(width, rows):
+@pytest.mark.parametrize(("width", "rows"), [(20.0, 1), (8.0, 2), (4.0, 3), (0.5, 6)])
+def test_a_legend_has_as_few_rows_as_fit_all_of_one_length(width, rows):
     @styled
     def draw() -> Figure:
         figure = Figure((width, 3.0), layout="constrained")
@@ -26,13 +31,13 @@ def test_a_legend_has_as_many_columns_as_fit(width, rows):
     figure = draw()
     figure.draw_without_rendering()
     (legend,) = figure.legends
-    tops = {round(text.get_window_extent().y0) for text in legend.get_texts()}
+    tops = Counter(round(text.get_window_extent().y0) for text in legend.get_texts())
     assert len(legend.get_texts()) == 6
     in_rows = sorted(
         legend.get_texts(), key=lambda text: (-round(text.get_window_extent().y0), text.get_window_extent().x0)
     )
     assert [text.get_text()[-2] for text in in_rows] == list("012345")
-    assert len(tops) == rows
+    assert list(tops.values()) == [6 // rows] * rows
     assert rows == 6 or legend.get_window_extent().width <= figure.bbox.width
 
 
@@ -65,6 +70,24 @@ def test_rounding_sets_no_scale():
     panel.plot([0.0, 1.0], [0.0, 1e-14])
     begin_at_zero(panel)
     assert panel.get_ylim()[1] > 0.01
+
+
+@pytest.mark.parametrize(
+    ("drawn", "ends"),
+    [([12.0, 24.0], (1.0, 2.0)), ([0.0, 1e-15, 10.0], (-15.0, 1.0)), ([1.0, 1.0], (0.0, 1.0)), ([np.nan], None)],
+)
+def test_a_logarithmic_scale_reaches_from_a_power_of_ten_to_another(drawn, ends):
+    left, right = Figure().subplots(1, 2, sharey=True)
+    left.set_yscale("log")
+    right.plot(drawn)
+    before = left.get_ylim()
+    to_decades(left)
+    limits = np.log10(left.get_ylim())
+    assert limits == pytest.approx(np.log10(before) if ends is None else (ends[0] - 0.155, ends[1] + 0.146), abs=1e-3)
+
+
+def test_cells_meet_halfway_and_end_with_the_values():
+    assert cells(np.array([0.0, 0.1, 0.3])) == pytest.approx([0.0, 0.05, 0.2, 0.3])
 
 
 def test_only_several_panels_have_letters():

@@ -26,7 +26,8 @@ def test_a_bar_ends_halfway_to_the_next_value_and_goes_on_where_only_others_were
     )
     bars = draw(refined).axes[1].patches
     first, second = ([bar for bar in bars if round(bar.get_y() + 0.4) == row] for row in (0, 1))
-    assert [bar.get_x() for bar in first] == pytest.approx([-0.05, 0.05, 0.125])
+    assert [bar.get_x() for bar in first] == pytest.approx([0.0, 0.05, 0.125])
     assert first[-1].get_x() + first[-1].get_width() == pytest.approx(0.155)
-    assert [bar.get_x() for bar in second] == pytest.approx([-0.05, 0.05, 0.15, 0.25])
+    assert [bar.get_x() for bar in second] == pytest.approx([0.0, 0.05, 0.15, 0.25])
     assert second[1].get_x() + second[1].get_width() == pytest.approx(0.15)
+    assert second[-1].get_x() + second[-1].get_width() == pytest.approx(0.3)

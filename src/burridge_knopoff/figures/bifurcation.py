@@ -11,13 +11,13 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.dataset.variables import DIRECTION
 from burridge_knopoff.figures.style import (
-    cells,
     color,
     label_panels,
     legend_below,
     legend_entries,
     panel_table,
     say,
+    show_all,
     styled,
 )
 from burridge_knopoff.summaries.bifurcation import ROUNDING, section_points
@@ -28,7 +28,7 @@ PAPER = "Figs. 4a, 4b"
 INPUTS = ("bifurcation",)
 CAPTION = """\
 Section points W' at W = 0 against a, for each law and initial state; upward crossings above 0, downward crossings
-below. W is the sum of the positions relative to uniform sliding. Crossings slower than 1e-9 are not shown: they are
+below. W is the sum of the positions relative to uniform sliding. Crossings slower than 10⁻⁹ are not shown: they are
 uniform sliding itself, by rounding.
 """
 
@@ -43,10 +43,9 @@ _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"]
 def draw(bifurcation: xarray.Dataset) -> Figure:
     """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
     laws, initial = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
-    figure, table = panel_table(2.6, len(initial), "$a$", ["$W'$ at $W=0$" for _ in laws])
+    figure, table = panel_table(2.6, len(initial), "$a$", ["$W$′ at $W=0$" for _ in laws])
     panels = list(table.flat)
     grid = np.unique(bifurcation["a"])
-    ends = cells(grid)[[0, -1]]
     titles = []
     for number, panel in enumerate(panels):
         law, state = laws[number // len(initial)], initial[number % len(initial)]
@@ -64,7 +63,7 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
                 rasterized=True,
                 label=_LABELS[direction],
             )
-        panel.set_xlim(*ends)
+        show_all(panel, grid)
         if not any(line.get_xdata().size for line in panel.get_lines()):
             say(panel, "no crossings")
         titles.append(f"{state}, {law} law")

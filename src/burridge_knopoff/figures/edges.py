@@ -14,12 +14,12 @@ from matplotlib.patches import Patch
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
 from burridge_knopoff.figures.style import (
     begin_at_zero,
-    cells,
     label_panels,
     legend_below,
     new_figure,
     page_width,
     say_nothing,
+    show_all,
     styled,
 )
 from burridge_knopoff.orbits.edge_kind import EdgeKind
@@ -44,11 +44,11 @@ MARKS = {
     EdgeKind.PITCHFORK: ("P", "pitchfork"),
 }
 UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
-    EdgeKind.CRISIS: ("-", "crisis"),
-    EdgeKind.UNDETERMINED: (":", "undetermined"),
+    EdgeKind.UNDETERMINED: ({"facecolor": "0.9", "linestyle": ":"}, "undetermined"),
+    EdgeKind.CRISIS: ({"facecolor": "0.5", "linestyle": "-"}, "crisis"),
 }
 
-BAR: Any = {"facecolor": "0.7", "edgecolor": "black", "linewidth": 0.7, "zorder": 2}
+BAR: Any = {"edgecolor": "black", "linewidth": 0.7}
 
 #: Ranges of a and ⟨J⟩ of the panels below.
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
@@ -73,7 +73,7 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
         panel.set_xlabel("$a$")
         if place < len(laws):
             begin_at_zero(panel)
-            panel.set_xlim(*cells(attractors["a"].values)[[0, -1]])
+            show_all(panel, attractors["a"].values)
             if (law["branch"] < 0).all():
                 say_nothing(panel, "no attractor was found")
         else:
@@ -130,9 +130,9 @@ def _edges(panel: Axes, edges: xarray.Dataset, law: int) -> None:
             markeredgewidth=0.7,
             zorder=3,
         )
-    for one, (dashes, _) in UNLOCATED.items():
+    for one, (look, _) in UNLOCATED.items():
         for value, error in np.unique(np.stack([a, edges["a_error"].values], 1)[own & (kind == one)], axis=0):
-            panel.axvspan(value - error, value + error, 0.0, 0.05, linestyle=dashes, **BAR)
+            panel.axvspan(value - error, value + error, 0.0, 0.05, **look, **BAR, zorder=0)
 
 
 def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
@@ -169,7 +169,7 @@ def _legend(figure: Figure, edges: xarray.Dataset, colors: dict[int, str], names
             for one, (marker, name) in MARKS.items()
             if one in located
         ),
-        *(Patch(linestyle=line, label=name, **BAR) for one, (line, name) in UNLOCATED.items() if one in kind),
+        *(Patch(label=name, **look, **BAR) for one, (look, name) in UNLOCATED.items() if one in kind),
         *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
     ]
     legend_below(figure, handles)

@@ -9,7 +9,16 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import cells, label_panels, legend_below, legend_entries, panel_table, say, styled
+from burridge_knopoff.figures.style import (
+    cells,
+    label_panels,
+    legend_below,
+    legend_entries,
+    panel_table,
+    say,
+    show_all,
+    styled,
+)
 from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Lyapunov exponents"
@@ -68,9 +77,9 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
         panel.set_ylim(LOWEST, LOWEST + (top - LOWEST) / CURVES)
         for left, right, kind in zip(edges[:-1], edges[1:], run["kind"].values, strict=True):
             panel.axvspan(left, right, STRIP, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)
-        panel.plot(edges[[0, -1]], [STRIP, STRIP], color="black", linewidth=0.5, transform=panel.get_xaxis_transform())
+        panel.axvspan(edges[0], edges[-1], STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
         panel.xaxis.set_minor_locator(NullLocator())
-        panel.set_xlim(edges[0], edges[-1])
+        show_all(panel, a)
     kinds = [
         Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words)
         for kind in np.unique(lyapunov["kind"].values).tolist()

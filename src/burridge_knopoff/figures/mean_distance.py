@@ -10,7 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.branches import branch_colors, named_colors
-from burridge_knopoff.figures.style import begin_at_zero, cells, label_panels, legend_below, page_width, styled
+from burridge_knopoff.figures.style import (
+    begin_at_zero,
+    cells,
+    label_panels,
+    legend_below,
+    page_width,
+    show_all,
+    styled,
+)
 from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "⟨J⟩ against a"
@@ -56,9 +64,11 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None
         panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     begin_at_zero(panels[0, 0])
-    panels[0, 0].set_xlim(*cells(mean_distance["a"].values)[[0, -1]])
+    show_all(panels[0, 0], mean_distance["a"].values)
     _legend(figure, mean_distance, colors, {} if attractors is None else branch_names(attractors))
-    label_panels(panels.flat, [*(f"{law} law" for law in laws), *("branch reached" for _ in laws)][: panels.size])
+    label_panels(
+        panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: branch reached" for law in laws)][: panels.size]
+    )
     return figure
 
 

@@ -133,6 +133,15 @@ def begin_at_zero(panel: Axes) -> None:
     panel.set_ylim(-0.03 * top, 1.1 * top)
 
 
+def to_decades(panel: Axes) -> None:
+    """Let the logarithmic scale of a row of panels reach from a power of ten to another: no other number is on it."""
+    rows = [each.dataLim for each in panel.get_shared_y_axes().get_siblings(panel)]
+    low, high = min(row.minposy for row in rows), max(row.y1 for row in rows)
+    if 0.0 < low <= high < np.inf:
+        first, last = np.floor(np.log10(low)), np.ceil(np.log10(high))
+        panel.set_ylim(0.7 * 10.0**first, 1.4 * 10.0 ** max(last, first + 1))
+
+
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
     """Write (a), (b), … and what each panel shows above it, in as many lines as it takes; no letter above one panel."""
     panels = list(axes)
@@ -158,8 +167,9 @@ def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
 
 
 def legend_below(figure: Figure | SubFigure, handles: Sequence[Artist]) -> None:
-    """Put a legend below all panels, in as many columns as fit into the width of the figure."""
-    for columns in range(len(handles), 0, -1):
+    """Put a legend below all panels, in as few rows as fit into the width of the figure, all of about one length."""
+    for rows in range(1, len(handles) + 1):
+        columns = -(-len(handles) // rows)
         # Columns are filled one after the other; rows are what is read.
         in_rows = [handle for first in range(columns) for handle in handles[first::columns]]
         legend = figure.legend(handles=in_rows, loc="outside lower center", ncols=columns)
@@ -183,18 +193,28 @@ def _wrapped(title: str, letters: int) -> str:
 
 
 def cells(values: np.ndarray) -> np.ndarray:
-    """Return the edges between ascending values, shape (n + 1,): each value's cell is what lies nearest to it."""
+    """Return the edges between ascending values, shape (n + 1,): each value's cell is what lies nearest to it.
+
+    Nothing is known beyond the first and the last value: there the cells end.
+    """
     if len(values) == 1:
         half = 0.1 * abs(values[0]) or 0.5
         return np.array([values[0] - half, values[0] + half])
     middle = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
+    return np.concatenate([values[:1], middle, values[-1:]])
+
+
+def show_all(panel: Axes, values: np.ndarray) -> None:
+    """Let the horizontal axis of a panel show the cells of all of ascending values, and a little more."""
+    first, last = cells(values)[[0, -1]]
+    margin = 0.02 * (last - first)
+    panel.set_xlim(first - margin, last + margin)
 
 
 def shade(panel: Axes, values: np.ndarray, where: np.ndarray) -> None:
     """Shade the cells of those of ascending values of which something is true; the panel shows the cells of all."""
     edges = cells(values)
-    panel.set_xlim(edges[0], edges[-1])
+    show_all(panel, values)
     for k in np.flatnonzero(where):
         panel.axvspan(edges[k], edges[k + 1], color=SHADE, linewidth=0, zorder=0)
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, styled
+from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.slots import branch_names
 
@@ -38,13 +38,15 @@ def draw(refined: xarray.Dataset) -> Figure:
         panels[1, column].set_xlabel("$a$")
         panels[1, column].set_yticks(np.arange(len(names)), list(names.values()), fontsize=6.5)
         panels[1, column].tick_params(axis="y", length=0)
+    a = refined["a"].values
+    show_all(panels[0, 0], np.unique(a[np.isfinite(a)]))
     panels[1, 0].set_ylim(len(names) - 0.4, -0.6)
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     shown = np.unique(refined["kind"].values[refined["branch"].values >= 0]).tolist()
     handles = [Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown]
     if handles:
         legend_below(figure, handles)
-    label_panels(panels.flat, [*(f"{law} law" for law in laws), *("kind of motion" for _ in laws)])
+    label_panels(panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: kinds of motion" for law in laws)])
     return figure
 
 
@@ -54,7 +56,6 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
     mean, kind = refined["mean_distance"].values[there], refined["kind"].values[there]
     if not len(a):
         say(panel, "no attractor")
-        panel.set_xlim(*cells(refined["a"].dropna("value").values)[[0, -1]])
     for number, color in KIND_COLORS.items():
         chosen = kind == number
         edge = {"markeredgecolor": "0.4", "markeredgewidth": 0.4} if number < 0 else {"markeredgewidth": 0}
