@@ -21,7 +21,7 @@ def test_friction_laws_are_the_models():
     for number, law in enumerate(PAPER_LAWS):
         drawn = seen.get_lines()[number].get_ydata()
         assert np.array_equal(drawn, least[number, 0], equal_nan=True)
-        speed, friction = laws.get_lines()[1 + number].get_data()
+        speed, friction = laws.get_lines()[number].get_data()
         assert np.allclose(friction, {"linearized": 1.0 - 0.3 * speed, "nonlinear": 1.0 / (1.0 + 0.3 * speed)}[law])
     # As fast as runs are that feel 0.7 under the linearized law, and a little faster.
     assert laws.get_xlim()[1] == pytest.approx(1.1, rel=0.01)

@@ -1,5 +1,6 @@
 """Synchronized orbits: a panel without any says so."""
 
+import numpy as np
 import xarray as xr
 
 from burridge_knopoff import Chain, Model, law_of
@@ -11,3 +12,19 @@ from burridge_knopoff.summaries.orbits import summarize
 def test_that_there_are_none_is_said():
     figure = draw(summarize([Model(Chain(2), law_of(law, 0.1)) for law in PAPER_LAWS], [0.1]), xr.Dataset())
     assert [panel.texts[0].get_text() for panel in figure.axes] == ["no synchronized orbit found"] * 4
+
+
+def test_the_transverse_multiplier_passes_1_at_the_loss_of_synchrony():
+    orbits = summarize([Model(Chain(3), law_of("linearized", 0.1))], [0.02, 0.14])
+    names = ("law", "initial", "a")
+    runs = xr.Dataset(
+        {"mean_distance": (names, np.zeros((1, 1, 2)))},
+        {"law": ["linearized"], "initial": ["plus"], "a": [0.02, 0.14]},
+    )
+    figure = draw(orbits, runs)
+    curve, _, dot = figure.axes[0].get_lines()[:3]
+    assert (dot.get_xdata()[0], dot.get_ydata()[0]) == (orbits["critical_a"].item(), 1.0)
+    assert curve.get_xdata().tolist() == [0.02, orbits["critical_a"].item(), 0.14]
+    assert curve.get_ydata()[1] == 1.0
+    # Of the runs none lies near, and no legend names them.
+    assert [text.get_text() for text in figure.axes[1].get_legend().get_texts()] == ["stable orbit", "unstable orbit"]

@@ -24,6 +24,7 @@ from burridge_knopoff.figures.style import (
     shade,
     shade_entry,
     styled,
+    to_decades,
 )
 
 TITLE = "Agreement of the laws"
@@ -33,18 +34,22 @@ CONDITION = "has_several_laws"
 CAPTION = """\
 Each law compared with the first one of the study, for each initial state, against a: the difference of ⟨J⟩ with both
 tolerances, the Wasserstein distance between the section points W', and the time until which both laws have the same
-order of events. What is 0, or below 1e-17 and 1e-7 in the first two, lies at the foot. Shaded where the two disagree,
+order of events. What is 0, or below 10⁻¹⁵ and 10⁻⁷ in the first two, lies at the foot. Shaded where the two disagree,
 in ⟨J⟩ or in the kind of motion; open symbols where that is not known: ⟨J⟩ differs by about the tolerance, or a kind of
 motion is not clear.
 """
 
 # Smaller differences of ⟨J⟩ and distances of section points set the scale of nothing: they are drawn here, as is 0.
-FLOORS = (1e-17, 1e-7)
+FLOORS = (1e-15, 1e-7)
 
 POINT: dict[str, Any] = {"marker": "o", "markersize": 2.2, "color": color(0)}
 UNKNOWN: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 0.6}
 
-LABELS = (r"$|\Delta\langle J\rangle|$", "Wasserstein distance", r"same event order until $\tau$")
+LABELS = (
+    r"$|\Delta\langle J\rangle|$",
+    "Wasserstein distance\nof section points $W$′",
+    "same event order\n" r"until $\tau$",
+)
 
 
 @styled
@@ -68,9 +73,9 @@ def draw(agreement: xarray.Dataset) -> Figure:
             panel.set_yscale("log")
         for column, initial in enumerate(states):
             _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
-        pair = "between the laws" if len(others) == 1 else f"of the {other} and the {first} law"
-        names = (rf"difference of $\langle J\rangle$ {pair}", "distance of the section points $W'$", "event order")
-        titles += [f"{initial}: {name}" for name in names for initial in states]
+        for panel in block[:, 0]:
+            to_decades(panel)
+        titles += [f"{initial}, {other} against {first} law" for _ in LABELS for initial in states]
     handles, _ = legend_entries(panels)
     if (agreement["agrees"] == Answer.NO).any():
         handles.append(shade_entry("the laws disagree"))
@@ -86,7 +91,7 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     a = run["a"].values
     difference, sections, order = panels
     unknown = run["agrees"].values == Answer.UNDETERMINED
-    _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown, label="difference")
+    _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown, label=LABELS[0])
     if not run["difference"].any():
         say(difference, "0 at all $a$")
     noise = (settings["standard_errors"] * run["difference_error"]).clip(min=FLOORS[0])

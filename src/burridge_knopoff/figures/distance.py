@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import color, label_panels, panel_table, say, styled
+from burridge_knopoff.figures.style import color, label_panels, panel_table, say, styled, to_decades
 
 TITLE = "J against time"
 CATEGORY = "Runs"
@@ -16,11 +16,11 @@ PAPER = "Figs. 5a, 5b"
 INPUTS = ("runs",)
 CAPTION = """\
 The phase-space distance J between the end blocks against time τ in single runs from each initial state, on a linear
-and on a logarithmic scale. The linear panels leave out the first relaxation.
+scale that leaves out the first relaxation, and on a logarithmic one that leaves out what is 0 or rounding, below 10⁻¹⁵.
 """
 
-# Below this J is rounding; on a logarithmic axis it would take all the room.
-FLOOR = 1e-16
+# Below this J is rounding.
+FLOOR = 1e-15
 
 
 @styled
@@ -36,10 +36,11 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
         time, distance = point["time"], point["distance"].values
         linear.plot(time, distance, color=color(0), linewidth=0.5)
         linear.set_ylim(0.0, settled_top(distance))
-        logarithmic.plot(time, np.maximum(distance, FLOOR), color=color(0), linewidth=0.5)
-        logarithmic.set(yscale="log", ylim=(FLOOR, 10.0))
+        logarithmic.plot(time, np.where(distance >= FLOOR, distance, np.nan), color=color(0), linewidth=0.5)
+        logarithmic.set_yscale("log")
+        to_decades(logarithmic)
         for panel in (linear, logarithmic):
-            panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
+            panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
             if not distance.any():
                 say(panel, "$J$ is 0 at all times")
         titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")

@@ -23,8 +23,8 @@ INPUTS = ("mean_distance",)
 FROM_STUDY = ("law_descriptions", "shown_a")
 CAPTION = """\
 (a) The friction Φ of each law, as a share of the static friction, against the velocity U' of a block, for the value
-of a of the single runs and the largest of the study, and the static friction that holds a stuck block (U' = 0); up to
-the velocity that runs at the largest a reach. (b) The least friction on a slipping block in each run, against a.
+of a of the single runs and the largest of the study, up to the velocity that runs at the largest a reach; a stuck block
+(U' = 0) is held by any friction up to 1. (b) The least friction on a slipping block in each run, against a.
 """
 
 # Velocities that runs may reach; all are drawn if the friction tells nothing.
@@ -44,29 +44,24 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     """
     laws = [law_of(name, shown_a, description) for name, description in law_descriptions.items()]
     a_values = sorted({shown_a, float(mean_distance["a"].max())})
-    figure, (left, right) = new_figure(PAGE, 3.2 + 0.17 * len(laws), columns=2, share_rows=False)
+    figure, (left, right) = new_figure(PAGE, 3.2 + 0.17 * len(laws), columns=2)
     last = mean_distance.sel(a=a_values[-1])["least_friction"].min("initial")
     # Where the friction has fallen to the least of the runs.
     reached = [SPEEDS[(law.at(a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws]
     fastest = 1.1 * max(reached) or 3.0
     speed = np.linspace(0.0, fastest, 301)
-    left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, label="stuck")
-    largest = 1.0
     for n, law in enumerate(laws):
         for k, a in enumerate(a_values):
-            friction = law.at(a)(speed)
-            largest = max(largest, float(friction.max()))
-            left.plot(speed, friction, color=color(n), linestyle=dashes(k))
+            left.plot(speed, law.at(a)(speed), color=color(n), linestyle=dashes(k))
         for k, initial in enumerate(mean_distance["initial"].values):
             least = mean_distance["least_friction"].sel(initial=initial, law=law.name)
             alone = lone_marker(least.values)
             right.plot(mean_distance["a"], least, color=color(n), linestyle=dashes(k), marker=alone, markersize=3.5)
-    left.set(xlabel="velocity $U'$", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, fastest))
-    left.set_ylim(-0.15, 1.08 * largest)
-    right.set(xlabel="$a$", ylabel=r"least $\Phi$", ylim=(min(-0.15, right.get_ylim()[0]), 1.08))
-    for panel in (left, right):
-        panel.axhline(0.0, color="0.8", linewidth=0.6, zorder=0)
-    _styles(left, [f"$a={a:g}$" for a in a_values], left.get_lines()[:1])
+    left.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, fastest))
+    right.set(xlabel="$a$", ylabel=r"least $\Phi$")
+    left.set_ylim(*left.get_ylim())
+    stuck = left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, solid_capstyle="butt", label="stuck")
+    _styles(left, [f"$a={a:g}$" for a in a_values], stuck)
     _styles(right, [f"from {initial}" for initial in mean_distance["initial"].values])
     figure.legend(
         handles=[Line2D([], [], color=color(n), label=_entry(law)) for n, law in enumerate(laws)],

@@ -21,19 +21,20 @@ from burridge_knopoff.figures.style import (
     new_figure,
     say_nothing,
     styled,
+    to_decades,
 )
-from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.orbits.loss import Bifurcation
 
 TITLE = "The synchronized orbit"
 CATEGORY = "Synchronization"
 INPUTS = ("orbits", "mean_distance")
 CONDITION = "has_synchronized_orbit"
 CAPTION = """\
-(a) Its Floquet multipliers; synchrony is lost where the transverse multiplier μ passes 1. (b) ⟨J⟩ of the stable and
-unstable orbits around that a_c, with the runs of the study. (c) The distance of the end blocks on the orbit that takes
-its place grows as a power of the distance from a_c. (d) How far each law differs from the first one in μ and in the
-period T at the same a; the paper's two laws at the same slope of friction at the driver velocity as well. Values of 0
-are left out.
+(a) Its Floquet multipliers; synchrony is lost where the modulus of the transverse multiplier μ passes 1 (dots). (b) ⟨J⟩
+of the stable and unstable orbits around that a_c, with the runs of the study that lie there, if any. (c) The distance
+of the end blocks on the orbit that takes its place grows as a power of the distance from a_c. (d) How far each law
+differs from the first one in μ and in the period T at the same a; black: the paper's two laws at the same slope of
+friction at the driver velocity. Values of 0 are left out.
 """
 
 # What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
@@ -56,7 +57,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         _draw_multipliers(panels[0], one, color(index))
         _draw_distance(panels[1], one, runs.sel(law=law), color(index))
         _draw_amplitude(panels[2], one, color(index), marker(index))
-    differences = _draw_difference(panels[3], orbits)
+    _draw_difference(panels[3], orbits)
     laws = [Line2D([], [], color=color(index), label=f"{law} law") for index, law in enumerate(orbits["law"].values)]
     panels[0].set(xlabel="$a$", ylabel="Floquet multiplier")
     panels[0].axhline(1.0, color="0.6", linewidth=0.6, zorder=0)
@@ -71,8 +72,8 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         for k, name in enumerate(runs["initial"].values)
         if f"run from {name}" in near
     ]
-    handles = [*laws, *_styles(("-", ":"), ("(b): stable orbit", "(b): unstable orbit")), *states, *differences]
-    legend_below(figure, handles)
+    panels[1].legend(handles=[*_styles(("-", ":"), ("stable orbit", "unstable orbit")), *states])
+    legend_below(figure, laws)
     if np.isfinite(orbits["branch_offset"]).any():
         panels[2].set(xlabel=r"$|a - a_c|$", ylabel=r"$|x_1 - x_3|$", xscale="log", yscale="log")
         panels[2].legend(loc="upper left")
@@ -101,13 +102,17 @@ def _styles(styles: tuple[Any, ...], labels: tuple[str, ...]) -> list[Line2D]:
 def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
     a = one["a"].values
     look: Any = {"color": hue, "marker": lone_marker(a), "markersize": 3.5}
-    panel.plot(a, one["transverse_multiplier"].values, "-", **look)
+    transverse, critical = one["transverse_multiplier"].values, one["critical_a"].item()
+    # Known between the values of a of the study as well.
+    at = np.searchsorted(a, critical)
+    side = -1.0 if one["bifurcation_kind"].item() == Bifurcation.FLIP else 1.0
+    panel.plot(np.insert(a, at, critical), np.insert(transverse, at, side), "-", **look)
     symmetric = one.sel(mode="symmetric_1")
     real, imaginary = (symmetric["multiplier"].sel(part=part).values for part in ("real", "imaginary"))
     modulus = np.hypot(real, imaginary)
     # The modulus, of a complex pair as well, with the sign of the real part.
     panel.plot(a, np.where(real < 0.0, -modulus, modulus), "--", **look, markerfacecolor="none")
-    panel.plot(one["critical_a"].item(), 1.0, "o", color=hue, markersize=3.5)
+    panel.plot(critical, side, "o", color=hue, markersize=3.5)
 
 
 def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: str) -> None:
@@ -159,19 +164,16 @@ def _draw_amplitude(panel: Axes, one: xarray.Dataset, hue: str, marker: str) -> 
         panel.plot(offset, fitted, "-", linewidth=0.7, color=hue, label=f"{one['law'].item()}: exponent {exponent:.5f}")
 
 
-def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> list[Line2D]:
-    """Draw how far each law is from the first at the same a, and the paper's laws at the same slope of the friction.
-
-    Returns the entries of the legend.
-    """
+def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
+    """Draw how far each law is from the first at the same a, and the paper's laws at the same slope of the friction."""
     laws = orbits["law"].values
     if len(laws) < 2:
         say_nothing(panel, "the only law: there is nothing to compare")
-        return []
+        return
     a, orbit = orbits["a"].values, orbits["transverse_multiplier"]
     if not (orbit - orbit.sel(law=laws[0])).sel(law=laws[1:]).notnull().any():
         say_nothing(panel, f"no other law has an orbit where the {laws[0]} law has one")
-        return []
+        return
     curves: Any = (
         ("transverse_multiplier", "effective_multiplier_difference", r"\mu", ("--", "-")),
         ("period", "effective_period_difference", "T", (":", "-.")),
@@ -181,13 +183,14 @@ def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> list[Line2D]:
         for index, law in enumerate(laws[1:], 1):
             difference = orbits[plain].sel(law=law) - orbits[plain].sel(law=laws[0])
             panel.plot(a, _positive(difference.values), style, color=color(index))
-        handles += _styles((style,), (rf"(d): $|\Delta {symbol}|$, same $a$",))
+        handles += _styles((style,), (rf"$|\Delta {symbol}|$, same $a$",))
         if scaled in orbits:
             panel.plot(a, _positive(orbits[scaled].values), other_style, color="black")
-            label = rf"(d): $|\Delta {symbol}|$, {' and '.join(PAPER_LAWS)}, same $\Phi'(v)$"
+            label = rf"$|\Delta {symbol}|$, same $\Phi$′$(v)$"
             handles.append(Line2D([], [], color="black", linestyle=other_style, label=label))
     panel.set(xlabel="$a$", ylabel="difference of the laws", yscale="log")
-    return handles
+    to_decades(panel)
+    panel.legend(handles=handles)
 
 
 def _positive(values: np.ndarray) -> np.ndarray:

@@ -9,14 +9,23 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import color, label_panels, legend_below, new_figure, page_width, styled
+from burridge_knopoff.figures.style import (
+    begin_at_zero,
+    color,
+    label_panels,
+    legend_below,
+    new_figure,
+    page_width,
+    styled,
+    to_decades,
+)
 
 TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
 Every solver of each law at a few values of a: ⟨J⟩, its difference from that of the study's own solver with the standard
-error of that difference as a short line, and the number of steps in a unit of time. What is 0, or below 1e-17, lies at
+error of that difference as a short line, and the number of steps in a unit of time. What is 0, or below 10⁻¹⁵, lies at
 the foot of the second row.
 """
 
@@ -27,11 +36,11 @@ MARKERS = ("o", "s", "^")
 FILLINGS = ("full", "none", "left", "top", "right", "bottom")
 
 # Width, in places of a, over which the points at one a are spread.
-SPREAD = 0.6
+SPREAD = 0.8
 
 
 # Differences below this are rounding; 0 is drawn here.
-FLOOR = 1e-17
+FLOOR = 1e-15
 
 
 @styled
@@ -65,9 +74,10 @@ def draw(solvers: xarray.Dataset) -> Figure:
         steps.set_xticks(place, [f"{value:g}" for value in solvers["a"].values])
         steps.set(xlabel="$a$", xlim=(-0.5, len(place) - 0.5))
     panels[0].set_ylabel(r"$\langle J\rangle$")
+    begin_at_zero(panels[0])
     panels[len(laws)].set(ylabel=r"$|\Delta\langle J\rangle|$", yscale="log", ylim=(0.2 * FLOOR, 1.0))
     panels[2 * len(laws)].set(ylabel="steps per unit time", yscale="log")
-    panels[2 * len(laws)].set_ylim(top=4.0 * PAPER_STEPS)
+    to_decades(panels[2 * len(laws)])
     handles = [Line2D([], [], **_look(n, 0), label=name) for n, name in enumerate(names)]
     handles += [Line2D([], [], **_look(0, j, "0.3"), label=f"from {initial}") for j, initial in enumerate(states)]
     handles.append(Line2D([], [], color="0.3", marker="_", linestyle="", markersize=6, label="standard error"))

@@ -90,7 +90,7 @@ def draw_point(point: xarray.Dataset) -> Figure:
     distance, time = point["distance"].values, point["time"].values
     for panel, logarithmic in zip(panels[:2], (False, True), strict=True):
         panel.plot(time, np.maximum(distance, FLOOR) if logarithmic else distance, color=color(0), linewidth=0.5)
-        panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="window begins")
+        panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
         panel.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$")
     panels[0].set_ylim(0.0, settled_top(distance))
     panels[1].set(yscale="log", ylim=(FLOOR, max(10.0, np.nanmax(distance, initial=0.0))))
@@ -104,13 +104,13 @@ def draw_point(point: xarray.Dataset) -> Figure:
         # Of a closed orbit the points differ by rounding, which is no range to be shown.
         middle, half = 0.5 * (upward.min() + upward.max()), 0.55 * max(np.ptp(upward), 0.02 * np.abs(upward).max())
         limits = middle - half, middle + half
-        panels[2].set(xlabel="$W'$ at an upward crossing of $W=0$", ylabel="$W'$ at the next", xlim=limits, ylim=limits)
+        panels[2].set(xlabel="$W$′ at an upward crossing of $W=0$", ylabel="$W$′ at the next", xlim=limits, ylim=limits)
         panels[2].locator_params(nbins=5)
     else:
         say_nothing(panels[2], "W crosses 0 less than twice in the window")
     if np.isfinite(point["velocity"].values).any():
         draw_blocks(panels[3], point, "velocity")
-        panels[3].set(xlabel=r"$\tau$", ylabel="$U_i'$")
+        panels[3].set(xlabel=r"$\tau$", ylabel="$U_i$′")
     else:
         say_nothing(panels[3], "no velocities were kept")
     if panels[3].lines and point.sizes["block"] <= MOST_NAMED:
