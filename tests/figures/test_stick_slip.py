@@ -27,20 +27,18 @@ def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, bloc
     dataset = cycles(blocks)
     figure = draw(dataset, "nonlinear")
     panels = figure.axes
-    assert len(panels) == 4
+    assert len(panels) == 5
     drawn = [line.get_ydata(orig=False) for line in panels[0].get_lines() if len(line.get_ydata()) == 3]
     expected = dataset["cycle_time"].sel(law="nonlinear", initial="minus")
     for values, block in zip(drawn, shown, strict=True):
         assert np.array_equal(values, expected.sel(block=block), equal_nan=True)
     middle = (blocks + 1) // 2
-    ratios = [line.get_ydata() for line in panels[1].get_lines() if len(line.get_ydata()) == 3]
-    ends = [block for block in shown if block != middle]
-    for number, block in enumerate(ends):
-        assert ratios[2 * number] == pytest.approx([block / middle] * 3)
-        # Where the middle block never stops there is no ratio of stops.
-        assert ratios[2 * number + 1] == pytest.approx([np.nan, block / middle, block / middle], nan_ok=True)
-    assert len(ratios) == 2 * len(ends)
-    assert panels[1].get_ylabel().endswith(f"block {middle}")
+    ends = [block / middle for block in shown if block != middle]
+    # Where the middle block never stops there is no ratio of stops.
+    for panel, first in zip(panels[1:3], (1.0, np.nan), strict=True):
+        ratios = [line.get_ydata() for line in panel.get_lines() if len(line.get_ydata()) == 3]
+        assert np.array(ratios) == pytest.approx(np.outer(ends, [first, 1.0, 1.0]), nan_ok=True)
+        assert panel.get_ylabel().endswith(f"block {middle}")
     write_figure(figure, tmp_path / "figure.png")
 
 

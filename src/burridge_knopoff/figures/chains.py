@@ -18,12 +18,13 @@ CATEGORY = "Longer chains"
 INPUTS = ("chains", "two_blocks")
 CAPTION = """\
 Small panels: the fraction of sampled states, drawn anew at each a, that end in mirror synchrony, for each number of
-blocks N, with confidence intervals; squares mark where synchrony is stable. Below: ⟨J⟩ of what two blocks end on under
+blocks N, with confidence intervals; open circles count undetermined states as well; squares mark where synchrony is
+stable. Below: ⟨J⟩ of what two blocks end on under
 each law, shaded where one disagrees with the first one.
 """
 
 COLUMNS = 3
-ROW_HEIGHT = 1.35
+ROW_HEIGHT = 1.45
 TWO_BLOCKS_HEIGHT = 2.3
 
 # Curves of the laws at the same a are drawn this share of a step apart.
@@ -50,9 +51,10 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
         panel.set_axis_off()
     for panel, count in zip(panels, blocks, strict=False):
         _draw_fraction(panel, chains.sel(blocks=count))
+        # The last row may be shorter than the others.
+        panel.tick_params(labelbottom=True)
     for panel in panels[max(0, len(blocks) - COLUMNS) : len(blocks)]:
         panel.set_xlabel("$a$")
-        panel.tick_params(labelbottom=True)
     for panel in grid[:, 0]:
         panel.set_ylabel("fraction")
     handles, labels = legend_entries(panels[: len(blocks)])

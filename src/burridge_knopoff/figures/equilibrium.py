@@ -16,7 +16,8 @@ CATEGORY = "Model"
 INPUTS = ("equilibrium",)
 CAPTION = """\
 (a) The eigenvalues λ of its stability matrix for all a of the study, for each law. (b) The largest real part, which is
-the growth rate of perturbations, against a, and what the tangent dynamics of the simulation shows.
+the growth rate of perturbations, against a, and what the tangent dynamics of the simulation shows; dotted: a/2, that of
+the paper's chain under the linearized law.
 """
 
 # Of the first and of the last law: where points lie on each other both are seen.

@@ -36,7 +36,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     figure, panels = new_figure(PAGE, 4.0, rows=2)
     for panel, name in zip(panels, ("velocity", "position"), strict=True):
         draw_blocks(panel, point, name)
-    panels[0].set_ylabel("$U_i'$")
+    panels[0].set_ylabel("$U_i$′")
     panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
     blocks = len(point["block"])
     if blocks <= 3:

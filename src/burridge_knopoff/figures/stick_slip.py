@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,11 @@ CATEGORY = "Runs"
 INPUTS = ("stick_slip",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
-Cycles of the first, the middle and the last block against a, a column for each initial state, under one law, that of
-the figures of single runs, which stands above the columns: the time between two stops; in chains of more than two
-blocks the frequency of the end blocks over that of the middle block, by the peaks of the spectra of their velocities
-and by their stops; the correlation of the velocities of the end blocks; and the share of time for which each block
-sticks. Bars are standard errors of cycle times and how finely the spectra resolve; the band and the dotted line are
-what the paper states for its chain.
+Cycles of the first, the middle and the last block against a, for each initial state under the law of the figures of
+single runs: the time between two stops, with its standard error; in chains of more than two blocks the frequency of the
+end blocks over that of the middle block, by the peaks of the spectra of their velocities (bars: how finely the spectra
+resolve) and by their stops; the correlation of the velocities of the end blocks; and the share of time for which each
+block sticks. The band and the dotted lines are what the paper states for its chain.
 """
 
 #: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -33,8 +33,8 @@ PAPER_CYCLE = (2.0, 3.0)
 PAPER_RATIO = 0.5
 
 # The end blocks often coincide: the later one is drawn smaller, inside the marker of the earlier one.
-SIZES = (4.2, 2.6, 1.3)
-MARKERS = ("o", "s", "^")
+SIZES = (4.4, 2.8, 1.6)
+MARKERS = ("o", "s", "o")
 
 
 @styled
@@ -49,10 +49,10 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     middle = (count + 1) // 2
     shown = sorted({1, middle, count})
     # Two blocks have none in the middle.
-    over_middle = [f"frequency: end blocks\nover block {middle}"] if count > 2 else []
-    together_label = f"correlation of\n$U_1'$ with $U_{{{count}}}'$"
-    labels = ("time between stops", *over_middle, together_label, "share of time stuck")
-    figure, panels = new_figure(PAGE, 0.2 + 1.8 * len(labels), rows=len(labels), columns=len(states))
+    over_middle = [f"{what} frequency\nover that of block {middle}" for what in ("velocity", "stop")]
+    together_label = f"correlation of\n$U_1$′ with $U_{{{count}}}$′"
+    labels = ("time between stops", *(over_middle if count > 2 else []), together_label, "share of time stuck")
+    figure, panels = new_figure(PAGE, 0.4 + 1.65 * len(labels), rows=len(labels), columns=len(states))
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
         cycles, *ratios, together, sticks = panels[column :: len(states)]
@@ -61,7 +61,7 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
             _points(cycles, n, one["cycle_time"], one["cycle_time_error"])
             _points(sticks, n, one["stick_fraction"])
             if ratios and block != middle:
-                _ratios(ratios[0], n, one, run.sel(block=middle))
+                _ratios(ratios, n, one, run.sel(block=middle))
         _say_why(cycles, run, "cycle_time", "no stops")
         _say_why(together, run, "velocity_correlation", "the velocities do not change")
         _say_why(sticks, run, "stick_fraction", "")
@@ -70,21 +70,22 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
         together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
         together.set_ylim(-1.1, 1.1)
         sticks.set_xlabel("$a$")
+        if ratios:
+            _say_why(ratios[0], run, "velocity_frequency", "the velocities do not change")
+            _say_why(ratios[1], run.sel(block=middle), "cycle_time", f"block {middle} does not stop")
         for panel in ratios:
-            _say_why(panel, run, "velocity_frequency", "the velocities do not change")
             panel.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
-    for row, label in enumerate(labels):
-        panels[row * len(states)].set_ylabel(label)
-        if "correlation" not in label:
-            begin_at_zero(panels[row * len(states)])
-    legend_below(figure, _legend(shown, bool(over_middle)))
-    heads = [f"{initial}, {shown_law} law" for initial in states]
-    label_panels(panels, heads + [""] * (len(panels) - len(heads)))
+    for panel, label in zip(panels[:: len(states)], labels, strict=True):
+        panel.set_ylabel(label)
+        if label != together_label:
+            begin_at_zero(panel)
+    legend_below(figure, _legend(shown))
+    label_panels(panels, [f"{initial}, {shown_law} law" for _ in labels for initial in states])
     return figure
 
 
 def _look(n: int) -> dict[str, Any]:
-    return {"color": SHADES[n], "marker": MARKERS[n], "markersize": SIZES[n], "markeredgewidth": 0.5, "linestyle": ""}
+    return {"color": SHADES[n], "marker": MARKERS[n], "markersize": SIZES[n], "markeredgewidth": 0, "linestyle": ""}
 
 
 def _points(panel: Axes, n: int, values: xarray.DataArray, errors: xarray.DataArray | None = None) -> None:
@@ -97,27 +98,20 @@ def _say_why(panel: Axes, run: xarray.Dataset, name: str, words: str) -> None:
         say(panel, "no run completed" if run["stick_fraction"].isnull().all() else words)
 
 
-def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
+def _ratios(panels: Sequence[Axes], n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
     """Draw the frequency of the velocity of an end block over that of the middle one, and the same of their stops."""
+    velocities, stops = panels
     # Both are within the resolution of the spectrum.
     ratio = end["velocity_frequency"] / middle["velocity_frequency"]
     shares = [(one["velocity_frequency_error"] / one["velocity_frequency"]).values for one in (end, middle)]
-    error = ratio * np.hypot(shares[0], shares[1])
-    _points(panel, n, ratio, error)
-    stops = end["stop_rate"] / middle["stop_rate"].where(middle["stop_rate"] > 0.0)
-    panel.plot(end["a"], stops, markerfacecolor="none", **_look(n))
+    _points(velocities, n, ratio, ratio * np.hypot(shares[0], shares[1]))
+    _points(stops, n, end["stop_rate"] / middle["stop_rate"].where(middle["stop_rate"] > 0.0))
 
 
-def _legend(shown: list[int], ratios: bool) -> list[Line2D | Patch]:
-    gray: dict[str, Any] = {**_look(0), "color": "0.3"}
-    blocks = [Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)]
+def _legend(shown: list[int]) -> list[Line2D | Patch]:
     band = Patch(facecolor="0.88", label="2 to 3, the paper's chain")
-    if not ratios:
+    blocks = [Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)]
+    if len(shown) < 3:
         return [*blocks, band]
-    return [
-        *blocks,
-        Line2D([], [], **gray, label="frequency of the velocity"),
-        Line2D([], [], **gray, markerfacecolor="none", label="frequency of the stops"),
-        band,
-        Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="1/2, the paper's chain"),
-    ]
+    half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="1/2, the paper's chain")
+    return [*blocks, band, half]
