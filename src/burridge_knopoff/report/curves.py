@@ -9,7 +9,7 @@ import xarray
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.orbits.loss import OrbitStatus
+from burridge_knopoff.orbits.loss import Bifurcation, OrbitStatus
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
@@ -102,6 +102,7 @@ def orbit_curves(orbits: xarray.Dataset) -> list[dict[str, Any]]:
                 # The modulus, of a complex pair as well, with the sign of the real part: as in the figure.
                 "symmetric": rounded(np.where(real < 0.0, -modulus, modulus)),
                 "critical_a": rounded(one["critical_a"].item()),
+                "critical_multiplier": -1.0 if one["bifurcation_kind"].item() == Bifurcation.FLIP else 1.0,
                 "offset": rounded(one["branch_offset"].values),
                 "asymmetry": rounded(one["branch_asymmetry"].values),
                 "exponent": rounded(one["amplitude_exponent"].item()),

@@ -20,9 +20,8 @@ builders.agreement = (box) => {
     hovertemplate: `${name}<br>a = %{x}<br>%{y:.4g}<br>%{text}<extra></extra>`, ...more,
   });
   const main = hue("#0072B2");
-  const edges = cells(runs.a);
   const shaded = runs.agrees[law][initial].flatMap((value, n) => (value === 0 ? [{
-    type: "rect", xref: "x", yref: "paper", x0: edges[n], x1: edges[n + 1], y0: 0, y1: 1, layer: "below", line: { width: 0 }, fillcolor: translucent(isDark() ? "#a9b0b7" : "#565c63", 0.2),
+    type: "rect", xref: "x", yref: "paper", x0: aEdges[n], x1: aEdges[n + 1], y0: 0, y1: 1, layer: "below", line: { width: 0 }, fillcolor: translucent(isDark() ? "#a9b0b7" : "#565c63", 0.2),
   }] : []));
   // Differences of synchronized runs are rounding; they set the scale of nothing.
   const above = (values, least) => [least, Math.max(0, powers(values.flat(2))[1])];
@@ -33,7 +32,7 @@ builders.agreement = (box) => {
       curve(agreement.event_order_time[law][initial], main, "solid", "same order of events until τ", { yaxis: "y3" }),
     ],
     xaxis: aAxis({ anchor: "y3", mirror: "all" }),
-    yaxis: logarithmic("|Δ⟨<i>J</i>⟩|", above(agreement.difference, -17), { domain: [0.7, 1] }),
+    yaxis: logarithmic("|Δ⟨<i>J</i>⟩|", above(agreement.difference, -15), { domain: [0.7, 1] }),
     yaxis2: logarithmic("distance of <i>W</i>′", above(agreement.section_distance, -8), { domain: [0.35, 0.65] }),
     yaxis3: logarithmic("same order until <i>τ</i>", powers(agreement.event_order_time.flat(2), 0, 1), { domain: [0, 0.3] }),
     shapes: shaded,

@@ -57,8 +57,12 @@ const layout = (more) => ({
   ...more,
 });
 
-const aRange = () => { const edges = cells(data.runs.a); return [edges[0], edges.at(-1)]; };
-const aAxis = (more = {}) => axis("<i>a</i>", { range: aRange(), ...more });
+/** Return the axis of a, with room for what is drawn at the first and at the last value. */
+function aAxis(more = {}) {
+  const [first, last] = [aEdges[0], aEdges.at(-1)];
+  const margin = 0.02 * (last - first);
+  return axis("<i>a</i>", { range: [first - margin, last + margin], nticks: 8, ...more });
+}
 
 /** Draw one chart; what goes wrong leaves the pictures in the place of all charts. */
 function draw(box) {

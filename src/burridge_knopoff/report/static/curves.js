@@ -78,7 +78,7 @@ builders.exponents = (box) => {
   const order = data.kinds.map((kind) => kind.number);
   const last = Math.max(1, order.length - 1);
   const strip = {
-    type: "heatmap", x: cells(runs.a), y: [0, 1], yaxis: "y2", zmin: 0, zmax: last,
+    type: "heatmap", x: aEdges, y: [0, 1], yaxis: "y2", zmin: 0, zmax: last,
     z: [runs.kind[law][initial].map((kind) => order.indexOf(kind))],
     text: [runs.kind[law][initial].map((kind, n) => `a = ${runs.texts[n]}: ${kindOf.get(kind).name}`)],
     colorscale: steps(data.kinds.map((kind) => kind.color)), showscale: false,
@@ -120,7 +120,7 @@ builders.conventions = (box) => {
   const rows = data.conventions.branch[Number(box.dataset.law)];
   const all = [...groups.values()];
   const trace = {
-    type: "heatmap", x: cells(runs.a), y: data.conventions.names, zmin: 0, zmax: Math.max(1, all.length - 1),
+    type: "heatmap", x: aEdges, y: data.conventions.names, zmin: 0, zmax: Math.max(1, all.length - 1),
     z: rows.map((row) => row.map((number) => (branchOf.has(number) ? all.indexOf(groupOf(number)) : null))),
     text: rows.map((row, n) => row.map((number, k) => `${data.conventions.names[n]}<br>a = ${runs.texts[k]}: ${branchOf.get(number)?.name ?? "undetermined"}`)),
     colorscale: steps(all.map((group) => hue(group.color))), showscale: false, hoverongaps: true, ygap: 2,

@@ -33,5 +33,8 @@ function cells(values) {
   return [2 * values[0] - middle[0], ...middle, 2 * values[last] - middle[last - 1]];
 }
 
+/** The edges between the values of a of the study; nothing is known beyond the first and the last one. */
+const aEdges = ((a) => cells(a).map((edge) => (a.length === 1 ? edge : Math.min(Math.max(edge, a[0]), a.at(-1)))))(data.runs.a);
+
 const branchOf = new Map(data.branches.map((branch) => [branch.number, branch]));
 const kindOf = new Map(data.kinds.map((kind) => [kind.number, kind]));

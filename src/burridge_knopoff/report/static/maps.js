@@ -11,6 +11,7 @@ builders.sections = (box) => {
   // The share of the crossings of a run, on a logarithmic scale: 1 in 10 000 is pale, all in one bin is full.
   const totals = runs.a.map((_, k) => table.reduce((sum, row) => sum + Math.abs(row[k]), 0));
   const shade = (value, k) => Math.max(0, 4 + Math.log10(Math.abs(value) / totals[k]));
+  // Cells of one width are drawn as a picture, fast and sharp.
   const layer = (sign, color) => ({
     type: "heatmap", x: cells(runs.a), y, zmin: 0, zmax: 4, showscale: false, hoverongaps: false,
     z: table.map((row) => row.map((value, k) => (sign * value > 0 ? shade(value, k) : null))),

@@ -20,7 +20,7 @@ builders.multipliers = () => {
     return [
       curve(orbit.transverse, "transverse μ", "solid"),
       curve(orbit.symmetric, "mirror-symmetric", "dash"),
-      { type: "scatter", mode: "markers", x: [orbit.critical_a], y: [1], marker: { color, size: 9, symbol: lawShape(n) },
+      { type: "scatter", mode: "markers", x: [orbit.critical_a], y: [orbit.critical_multiplier], marker: { color, size: 9, symbol: lawShape(n) },
         hovertemplate: `${orbit.law}: a<sub>c</sub> = %{x:.6g}<extra></extra>` },
     ].filter((trace) => trace.x[0] !== null);
   });
@@ -48,5 +48,6 @@ builders.asymmetry = () => {
     traces,
     xaxis: logarithmic("|<i>a</i> − <i>a</i><sub>c</sub>|", powers(traces.flatMap((trace) => trace.x))),
     yaxis: logarithmic("|<i>x</i><sub>1</sub> − <i>x</i><sub>3</sub>|", powers(traces.flatMap((trace) => trace.y))),
+    margin: { l: 72, r: 18, t: 30, b: 48 },
   };
 };
