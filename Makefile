@@ -102,6 +102,7 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	$(BIN)/snakemake -c2 --forceall
 	$(BIN)/python benchmarks/stages.py results/paper
 	$(BIN)/python benchmarks/cores.py results/paper
+	$(BIN)/python benchmarks/tori.py results/paper
 
 faults: .venv/kernel .venv/test
 	$(BIN)/python benchmarks/faults.py
