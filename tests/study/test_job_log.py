@@ -4,6 +4,7 @@ import shutil
 
 import pytest
 
+from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.study.job_log import SILENT, failure, last_words
 
 TRACEBACK = """Traceback (most recent call last):
@@ -34,6 +35,14 @@ def test_last_words(tmp_path, text, words):
     assert last.startswith(words)
     assert bool(last) == bool(words)
     assert "\n" not in last
+
+
+def test_what_a_long_job_has_done_is_not_why_it_failed(tmp_path, caplog):
+    caplog.set_level("INFO")
+    with shared_out(1, tmp_path / "kept") as each:
+        each("doubled", abs, [1, 2])
+    (tmp_path / "log").write_text(f"{caplog.messages[0]}\n")
+    assert last_words(tmp_path / "log") == ""
 
 
 def test_no_log(tmp_path):

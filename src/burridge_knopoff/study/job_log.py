@@ -20,25 +20,25 @@ _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
 
 _TRACEBACK = "Traceback (most recent call last):\n"
 
-SILENT = "nothing in its log: it was killed, or could not begin"
-FULL = "nothing in its log: no space left on its disk"
+SILENT = "no error in its log: it was killed, or could not begin"
+FULL = "no error in its log: no space left on its disk"
 #: What `bk` says at Ctrl-C, after the name of its command.
 INTERRUPTED = "interrupted, nothing was written"
 #: Of a disk with fewer bytes left a log may have had no room.
 ROOM = 1 << 16
 
-#: How a line begins that tells of no failure.
-NOTE = "note: "
+#: A line that tells of no failure: a note, or what calls have taken, which `running.processes` says of a long job.
+_NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s")
 
 
 def last_words(log: str | Path) -> str:
-    """Return in one line what a log says last: of a traceback the error, else its last line. Nothing if it is empty."""
+    """Return in one line what a log says last: of a traceback the error, else its last line, if that tells of one."""
     try:
         text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
         return ""
     _, traceback, said = text.rpartition(_TRACEBACK)
-    lines = [line for line in said.splitlines() if line.strip() and not line.startswith(NOTE)]
+    lines = [line for line in said.splitlines() if line.strip() and not _NO_FAILURE.match(line)]
     said = _CALLS.sub("", said) if traceback else "".join(lines[-1:])
     words = _CLASS.sub("", " ".join(said.split()))
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
