@@ -133,6 +133,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path / "foreign.nc", "has no seal"),
         (tmp_path / "none.nc", "is missing"),
         (tmp_path, "cannot be read"),
+        (study / "study.json", "has no seal at its end: it is cut off, or another program wrote it (shown are points"),
         (inside, f"remake it: snakemake -c2 -R {inside}"),
     ):
         said = shown(capsys, path, code=2)

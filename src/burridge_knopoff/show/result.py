@@ -68,7 +68,10 @@ def open_result(path: str | Path) -> Result:
     try:
         read_seal(path)
     except BadFile as error:
-        # What makes it again is known of the files of a study only.
-        raise error if study else ValueError(f"{path}: {error.reason}") from None
+        # Only of these is it known what makes them again.
+        if study and path.suffix == ".nc":
+            raise
+        hint = "" if path.suffix == ".nc" else " (shown are points and summaries, .nc)"
+        raise ValueError(f"{path}: {error.reason}{hint}") from None
     data = xarray.load_dataset(path, engine="netcdf4")
     return Result(path, data, study, read_study_record(study) if study else {})
