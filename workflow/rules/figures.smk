@@ -1,18 +1,9 @@
 # Figures: a rule for each module of burridge_knopoff.figures that has a caption, as PDF for print and PNG for the screen.
-from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.figures.description import study_figures
 from burridge_knopoff.study.stages import CHAIN_SUMMARIES
 
-# Those of the summaries that the study has, and of longer chains, which have a target of their own.
-DESCRIPTIONS = [
-    figure
-    for described in figure_descriptions()
-    if (
-        figure := described.in_study(
-            CHAIN_SUMMARIES if "chains" in described.inputs else MADE
-        )
-    )
-    and (not figure.condition or getattr(STUDY, figure.condition))
-]
+# Those of longer chains too, which have a target of their own: it refuses a chain that has one length only.
+DESCRIPTIONS = study_figures(STUDY, CHAIN_SUMMARIES)
 SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
     law=STUDY.shown_law, a=STUDY.shown_point, initial="{initial}"
 )

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from burridge_knopoff.figures.description import Description, figure_descriptions
+from burridge_knopoff.figures.description import figure_descriptions, study_figures
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES
 from burridge_knopoff.study.study import Study, all_points, solver_points
@@ -76,15 +76,10 @@ def _other_files(study: Study) -> Iterator[Named]:
         yield f"summary/{name}", log, [{}] if name not in absent else []
     yield "summary/claims", "claims", [{}] if "claims" in study.stages else []
     # A picture of a single run is named for its state.
+    drawn = {figure.file for figure in study_figures(study, study.chain_summaries)}
     for figure in figure_descriptions():
-        states = study.initial if _is_drawn(figure, study) else ()
+        states = study.initial if figure.file in drawn else ()
         yield f"figures/{figure.file}", f"figure_{figure.file}", [{"initial": initial} for initial in states]
-
-
-def _is_drawn(figure: Description, study: Study) -> bool:
-    there = study.chain_summaries if "chains" in figure.inputs else study.stage_summaries
-    has_summaries = OPTIONAL_SUMMARIES.intersection(figure.inputs) <= {*there}
-    return has_summaries and (not figure.condition or getattr(study, figure.condition))
 
 
 def delete(results: Path, paths: list[Path]) -> None:

@@ -18,6 +18,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES
+
+if TYPE_CHECKING:
+    from burridge_knopoff.study.study import Study
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,21 @@ def figure_descriptions() -> tuple[Description, ...]:
     found = [_described(path) for path in Path(__file__).parent.glob("*.py")]
     figures = [description for description in found if description is not None]
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
+
+
+def study_figures(study: Study, of_chains: Collection[str]) -> list[Description]:
+    """Return the figures of a study, each as the study has it.
+
+    of_chains : summaries of longer chains that there can be, besides those of the study's stages
+    """
+    figures = []
+    for described in figure_descriptions():
+        there = of_chains if "chains" in described.inputs else study.stage_summaries
+        in_every_study = {*described.inputs, *described.optional} - OPTIONAL_SUMMARIES
+        figure = described.in_study(in_every_study.union(there))
+        if figure and (not figure.condition or getattr(study, figure.condition)):
+            figures.append(figure)
+    return figures
 
 
 def picture_names(states: Collection[str]) -> set[str]:
