@@ -53,29 +53,17 @@ rule basin_tile:
         "../scripts/basin_part.py"
 
 
-rule basin_pairs:
-    input:
-        f"{SUMMARY}/attractors.nc",
+use rule basin_tile as basin_pairs with:
     output:
         f"{RESULTS}/basins/{{law}}/a{{a}}/pairs.nc",
     log:
         f"{RESULTS}/logs/basins/{{law}}/a{{a}}/pairs.log",
     benchmark:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/pairs.tsv"
-    threads: STUDY.config["basins"]["threads"]
-    resources:
-        cpus_per_task=lambda wildcards, threads: threads,
-        runtime=240,
     params:
-        **BASIN_PARAMS,
-        a=lambda wildcards: STUDY.value(wildcards.a),
-        model=lambda wildcards: model_config([wildcards.law]),
         basins=BASIN_KEYS["pairs"],
-        sources=sources("basin_part"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
-    script:
-        "../scripts/basin_part.py"
 
 
 rule basins:

@@ -7,7 +7,7 @@ SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT}"
 SOLVER_POINTS = solver_points(STUDY)
 
 
-rule simulate_solver:
+use rule simulate as simulate_solver with:
     output:
         SOLVER_POINT,
     log:
@@ -25,11 +25,8 @@ rule simulate_solver:
         command=lambda wildcards: STUDY.command(
             wildcards.law, wildcards.initial, wildcards.a, wildcards.solver
         ),
-        sources=source_fingerprint("burridge_knopoff.dataset.point"),
     message:
         "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
-    shell:
-        "{params.command} --out {output} > /dev/null 2> {log}"
 
 
 rule solvers:
