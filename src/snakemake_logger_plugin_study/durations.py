@@ -28,6 +28,9 @@ WEIGHT, WEIGHT_OF_KIND = 5.0, 2.0
 _BY_WILDCARD = {"simulate_solver": "solver", "attractors_of_law": "law", "edges_of_law": "law"}
 #: The search for attractors refines some gaps between values of a if any is wide enough: so many more, by measurement.
 _VALUES_BETWEEN = 6.6
+#: Where there are not three blocks, as in what the tree ships, motion is less simple: the search takes as long as with
+#: so many samples more for each block, by measurement.
+_SAMPLES_A_BLOCK = 20
 #: What a long job keeps late, how often for every gap between values of a, and the share of its time that it spares.
 _LATE = {"attractors_of_law": ("compared with the next", 1.0, 0.7), "edges_of_law": ("followed", 2.7, 0.9)}
 
@@ -105,11 +108,13 @@ def units_of(study: Study) -> dict[str, float]:
     time = config["transient"] + config["window"]
     widest = max((after - before for before, after in pairwise(values)), default=0.0)
     searched = len(values) + (_VALUES_BETWEEN if config["refine"]["resolution"] < widest else 0.0)
+    more = 0 if study.blocks == 3 else _SAMPLES_A_BLOCK * study.blocks
+    states = (search["samples"] + more) * study.blocks / 3
     samples = chains["samples"] + chains["symmetric_samples"]
     return {
         "simulate": study.blocks * time,
         "simulate_solver": study.blocks * time,
-        "attractors_of_law": study.blocks * search["samples"] * (search["transient"] + search["window"]) * searched,
+        "attractors_of_law": study.blocks * states * (search["transient"] + search["window"]) * searched,
         "two_blocks": pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,
         "watch_chain": samples * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
         "phases_of_law": phases["samples"]

@@ -1,8 +1,11 @@
 """A run: its counts, the time left by durations that are corrected by what has finished, and what is kept of it."""
 
+from pathlib import Path
+
 import pytest
 
 from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.yaml_file import read_config
 from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, units_of, work_of
 from snakemake_logger_plugin_study.past import read_past, read_record, write_past
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
@@ -131,6 +134,14 @@ def test_what_the_tree_ships():
     assert durations.cost("nobody knows it", 5.0)[0] > 0.0
     assert durations.cost("attractors_of_law mine", 1e8)[0] == durations.cost("attractors_of_law nonlinear", 1e8)[0]
     assert calibrate() > 0.0
+
+
+def test_the_search_in_a_longer_chain():
+    """The seconds of CPU time that it took where what the tree ships was measured: 10 and 25."""
+    study = load_study(read_config(Path(__file__).parents[2] / "config/examples/five_blocks.yaml"), "five_blocks.yaml")
+    work, told = units_of(study)["attractors_of_law"], Durations(SHIPPED["costs"])
+    seconds = [told.cost(f"attractors_of_law {law}", work)[0] for law in ("linearized", "nonlinear")]
+    assert seconds == pytest.approx([10.0, 25.0], rel=0.5)
 
 
 @pytest.mark.parametrize(("kept", "share"), [(None, 1.0), (0, 1.0), (2, 0.65), (4, 0.3), (9, 0.3)])
