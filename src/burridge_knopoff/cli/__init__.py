@@ -33,6 +33,9 @@ COMMANDS = {
     "completion": "print what completes commands and options in a shell",
 }
 
+#: Options that name a file to write: whether it can be written is known before the work.
+WRITTEN = ("out", "attractors_out", "plot")
+
 #: Exit code of a program whose reader has had enough, as `head` has.
 READER_GONE = 141
 
@@ -64,7 +67,7 @@ def build_parser(only: str | None = None) -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `bk`; return its exit code: 0, or 2 for bad input (one line on stderr)."""
-    from burridge_knopoff.cli.options import join_signed
+    from burridge_knopoff.cli.options import check_out, join_signed
 
     if sys.stdout is None:
         # Closed: the first file that is opened would take its place.
@@ -72,16 +75,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # Names of files may have letters that a terminal does not know.
         sys.stdout.reconfigure(errors="backslashreplace")
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    name = next((word for word in given if not word.startswith("-")), "")
-    parser = build_parser(name)
-    options = parser.parse_args(join_signed(given))
+    given = join_signed(sys.argv[1:] if arguments is None else arguments)
+    parser = build_parser(next((word for word in given if not word.startswith("-")), ""))
+    options = parser.parse_args(given)
     options.given = given
-    names = [word.partition("=")[0] for word in join_signed(given) if word.startswith("--")]
+    names = [word.partition("=")[0] for word in given if word.startswith("--")]
     for name in names:
         if names.count(name) > 1 and name != "--number":
             parser.error(f"{name}: given {names.count(name)} times; once is allowed")
     try:
+        for name in WRITTEN:
+            if (path := getattr(options, name, None)) is not None:
+                check_out(path)
         code = _module(options.command).run(options)
         sys.stdout.flush()
     except BrokenPipeError:

@@ -11,7 +11,6 @@ from burridge_knopoff.cli.options import (
     add,
     add_model,
     add_state,
-    check_out,
     command_of,
     model_of,
     said_of,
@@ -62,8 +61,6 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.show.attractors import attractor_table, called
     from burridge_knopoff.summaries.coexisting import coexisting_attractors
 
-    if options.out:
-        check_out(options.out)
     state, search = state_of(options), search_of(options)
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     starts = [] if state is None else [state]

@@ -11,7 +11,6 @@ from burridge_knopoff.cli.options import (
     add,
     add_model,
     add_state,
-    check_out,
     command_of,
     model_of,
     said_of,
@@ -52,11 +51,9 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.dataset.summary import write_summary
     from burridge_knopoff.show.attractors import attractor_table
 
-    files = [path for path in (options.out, options.attractors_out) if path]
-    for path in files:
-        check_out(path)
-    if len(set(map(os.path.realpath, files))) < len(files):
-        raise ValueError(f"--attractors-out: {options.attractors_out!r} is not allowed: --out writes the map there")
+    out, attractors_out = options.out, options.attractors_out
+    if out and attractors_out and os.path.realpath(out) == os.path.realpath(attractors_out):
+        raise ValueError(f"--attractors-out: {attractors_out!r} is not allowed: --out writes the map there")
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)
     plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}
@@ -72,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     print(f"{said_of(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}\n")
     print("\n".join(attractor_table(attractors, {"of the plane": shares})))
     print(f"\nundetermined: {100 * (branch < 0).mean():.2f} % of the plane")
-    for path, dataset in ((options.out, basins), (options.attractors_out, attractors)):
+    for path, dataset in ((out, basins), (attractors_out, attractors)):
         if path:
             write_summary(dataset.assign_attrs(history=command_of(options)), path)
             print(f"written: {path}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from burridge_knopoff.cli.options import add, add_model, add_state, check_out, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.stability.settings import MotionSettings
@@ -36,8 +36,6 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.stability.chains import ALIGNMENT, WINDOW, transverse_exponent
     from burridge_knopoff.stability.motion import motion_of_run
 
-    if options.out:
-        check_out(options.out)
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     if model.chain.is_mirror_symmetric:

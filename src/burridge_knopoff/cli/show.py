@@ -21,13 +21,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print what is in a file, and draw it."""
-    from burridge_knopoff.cli.options import check_out
     from burridge_knopoff.show.result import open_result
 
     if options.plot:
         from burridge_knopoff.show.picture import check_format, write_picture
 
-        check_out(options.plot)
         check_format(options.plot)
     result = open_result(options.file)
     if result.is_point:

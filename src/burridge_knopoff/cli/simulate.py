@@ -7,7 +7,7 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, check_out, model_of, settings_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, model_of, settings_of, state_of
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
@@ -46,7 +46,6 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.running import simulation
 
-    check_out(options.out)
     state = state_of(options) or PAPER_STATES["minus"]
     settings = settings_of(Settings, options)
     trajectory = simulation.run(model_of(options, state), state, settings)
