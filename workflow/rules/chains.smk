@@ -56,9 +56,9 @@ rule chains_summary:
     output:
         f"{SUMMARY}/chains.nc",
     log:
-        f"{RESULTS}/logs/chains_summary.log",
+        f"{RESULTS}/logs/chains.log",
     benchmark:
-        f"{RESULTS}/benchmarks/chains_summary.tsv"
+        f"{RESULTS}/benchmarks/chains.tsv"
     group:
         group("summaries")
     params:

@@ -72,8 +72,7 @@ def _other_files(study: Study) -> Iterator[Named]:
     yield "chains/blocks{blocks}", "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
     absent = study.absent_summaries
     for name in sorted(OPTIONAL_SUMMARIES):
-        log = "chains_summary" if name == "chains" else name
-        yield f"summary/{name}", log, [{}] if name not in absent else []
+        yield f"summary/{name}", name, [{}] if name not in absent else []
     yield "summary/claims", "claims", [{}] if "claims" in study.stages else []
     # A picture of a single run is named for its state.
     drawn = {figure.file for figure in study_figures(study, study.chain_summaries)}

@@ -45,7 +45,7 @@ def write_sealed(path: str | Path, write: Callable[[str], object], about: str, s
     write_whole(path, write_and_seal)
 
 
-def seal(path: str | Path, about: str, status: str = "made") -> None:
+def seal(path: str | Path, about: str, status: str) -> None:
     """Put the seal at the end of a file that has just been written; about : see `identity`."""
     head = f"\n#seal {about} {status} ".encode()
     with open(path, "r+b") as file:
