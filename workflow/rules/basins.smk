@@ -5,19 +5,13 @@ TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 PLANE_STATE = STUDY.config["basins"]["initial"]
 
 
-# Keys of the section that a job uses: what has a name of its own, or changes no map, is not among them.
-BASIN_KEYS = {
-    job: {
-        key: value
-        for key, value in STUDY.config["basins"].items()
-        if key not in {"a", "initial", "threads", *unused}
-    }
-    for job, unused in {
-        "tile": ["pairs"],
-        "pairs": ["pixels", "tiles"],
-        "maps": [],
-    }.items()
-}
+def basin_keys(*unused):
+    """Return the keys of the section that a job uses, without what has a name of its own or changes no map."""
+    others = {"a", "initial", "threads", *unused}
+    section = STUDY.config["basins"]
+    return {key: value for key, value in section.items() if key not in others}
+
+
 # What both kinds of jobs of a map depend on.
 BASIN_PARAMS = {
     "state": {"name": PLANE_STATE, **STUDY.config["initial"][PLANE_STATE]},
@@ -45,7 +39,7 @@ rule basin_tile:
         **BASIN_PARAMS,
         a=lambda wildcards: STUDY.value(wildcards.a),
         model=lambda wildcards: model_config([wildcards.law]),
-        basins=BASIN_KEYS["tile"],
+        basins=basin_keys("pairs"),
         sources=sources("basin_part"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
@@ -61,7 +55,7 @@ use rule basin_tile as basin_pairs with:
     benchmark:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/pairs.tsv"
     params:
-        basins=BASIN_KEYS["pairs"],
+        basins=basin_keys("pixels", "tiles"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
 
@@ -93,7 +87,7 @@ rule basins:
         **keys("start", "attractors"),
         maps=[(law, STUDY.value(a)) for law, a in STUDY.basin_maps],
         model=model_config(),
-        basins=BASIN_KEYS["maps"],
+        basins=basin_keys(),
         state=BASIN_PARAMS["state"],
         sources=sources("basins"),
     message:

@@ -7,15 +7,6 @@ DESCRIPTIONS = study_figures(STUDY, CHAIN_SUMMARIES)
 SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
     law=STUDY.shown_law, a=STUDY.shown_point, initial="{initial}"
 )
-# Of one initial state if the name of the picture has it, else of each.
-RUNS = {
-    figure.file: (
-        SHOWN_RUNS
-        if "{initial}" in figure.file
-        else expand(SHOWN_RUNS, initial=STUDY.initial)
-    )
-    for figure in DESCRIPTIONS
-}
 
 
 # Without those of the optional stage.
@@ -38,7 +29,11 @@ for figure in DESCRIPTIONS:
         name:
             f"figure_{figure.name}"
         input:
-            RUNS[figure.file]
+            # Of one initial state if the name of the picture has it, else of each.
+            expand(
+                SHOWN_RUNS,
+                initial=("{initial}" if "{initial}" in figure.file else STUDY.initial),
+            )
             if figure.of_runs
             else [f"{SUMMARY}/{name}.nc" for name in figure.inputs],
         output:
