@@ -127,7 +127,6 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     later = {"kind": longer, "exponent": np.array([1e-4]), "section_period": 9, "returns": ROWS, "mean_distance": 5.0}
     asked = tell(steady, "measure_once", [first, replace(first, **later) if longer is not None else None])
     visited = tell(steady, "visit", [None])
-    tell(steady, "run", [SimpleNamespace(status="diverged")])
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == expected
     assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
@@ -152,48 +151,39 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
 
 @pytest.mark.parametrize("kind", [MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
 @pytest.mark.parametrize(
-    ("told", "chaotic"),
+    ("exponent", "told", "chaotic"),
     [
-        ([(3.1e-4, 1e-4)], True),
-        ([(2.9e-4, 1e-4)], False),
-        # In 3000 time units a logarithm of half of ln(1 + 3000/50), 2.055, is an exponent of 6.852e-4.
-        ([(6.86e-4, 1.0), (3.1e-4, 1e-4)], True),
-        ([(6.86e-4, 1.0), (2.9e-4, 1e-4)], False),
-        ([(6.84e-4, 1.0)], False),
-        ([None], False),
-        ([(6.86e-4, 1.0), None], False),
+        # In 600 time units a logarithm of half of ln(1 + 600/50), 1.282, is an exponent of 2.137e-3.
+        (2.13e-3, "not asked", False),
+        (2.14e-3, (3.1e-4, 1e-4), True),
+        (2.14e-3, (2.9e-4, 1e-4), False),
+        (2.14e-3, "cut short", False),
     ],
 )
-def test_what_has_not_closed_is_looked_at_longer(tell, kind, told, chaotic):
-    """Longer still where perturbations grow faster than on a torus; a run that does not complete tells nothing."""
-    first = stand_in(kind=kind, exponent=np.array([1e-4, 0.0, -0.1])).motion
+def test_growth_that_is_too_fast_for_a_torus_is_looked_at_longer(tell, kind, exponent, told, chaotic):
+    first = stand_in(kind=kind, exponent=np.array([exponent, 0.0, -0.1])).motion
     tell(steady, "measure_once", [first, replace(first, returns=ROWS)])
     tell(steady, "visit", [None if kind == MotionKind.UNDETERMINED else shown(ROWS, ROWS, 1.0, 0.0)])
-    asked = tell(steady, "run", [_exponents(*one) if one else SimpleNamespace(status="diverged") for one in told])
+    run = SimpleNamespace(status="diverged")
+    if not isinstance(told, str):
+        exponents, errors = np.array([told[0], 0.0, -0.2]), np.array([told[1], 1.0, 1.0])
+        run = SimpleNamespace(status="completed", lyapunov_exponent=exponents, lyapunov_error=errors)
+    asked = tell(steady, "run", [] if told == "not asked" else [run])
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == (MotionKind.CHAOTIC if chaotic else kind)
-    assert found.exponent[0] == [1e-4, *(one[0] for one in told if one)][-1]
+    assert found.exponent.tolist() == ([exponent, 0.0, -0.1] if isinstance(told, str) else [told[0], 0.0, -0.2])
     assert found.returns is first.returns
-    assert [settings.window for _, _, settings in asked] == [3000.0, 24_000.0][: len(told)]
     for _, start, settings in asked:
         assert start.vector().tolist() == ROWS[-1].tolist()
-        assert (settings.transient, settings.lyapunov_alignment, settings.events) == (50.0, 50.0, "none")
-
-
-def _exponents(largest, error):
-    """Return a completed run with this exponent and error."""
-    return SimpleNamespace(
-        status="completed",
-        lyapunov_exponent=np.array([largest, 0.0, -0.1]),
-        lyapunov_error=np.array([error, 1.0, 1.0]),
-    )
+        assert (settings.transient, settings.window) == (50.0, 3000.0)
+        assert (settings.lyapunov_alignment, settings.events) == (50.0, "none")
 
 
 def test_weak_chaos_is_no_torus():
-    """In six million time units its largest exponent is (5.9 ± 0.2)e-5, in 60 000 it is hidden by its error."""
+    """In six million time units its largest exponent is (5.9 ± 0.2)e-5, in 240 000 it is hidden by its error."""
     chosen = Model(Chain(3), law_of("linearized", 0.21234375))
     state = InitialState("on it", (-0.664833, -0.559658, -0.757225), (0.0, 0.092584, 0.021104))
-    found = measure(chosen, chosen.begin(state), 3000.0, 3000.0, MOTION)
+    found = measure(chosen, chosen.begin(state), 3000.0, 12_000.0, MOTION)
     assert found.kind == MotionKind.CHAOTIC
     assert found.exponent[0] == pytest.approx(5.9e-5, abs=1e-5)
 
@@ -215,7 +205,6 @@ def test_what_closes_when_it_is_followed_on_is_no_torus(tell, kind, threshold, m
     tell(steady, "measure_once", [first, *longer, replace(first, mean_distance=mean + 1e-4)])
     late = None if closes is None else shown(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
     asked = tell(steady, "visit", [late])
-    tell(steady, "run", [SimpleNamespace(status="diverged")])
     found = measure(model(threshold), None, 50.0, 30.0, MOTION)
     assert found.kind == (kind if expected is None else expected)
     assert asked[0][2:4] == (TUNING.lasting * 50.0, 30.0)

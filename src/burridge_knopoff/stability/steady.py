@@ -102,8 +102,8 @@ def measure(
     longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
     windows. What may be a torus is followed on for `lasting` transients at least: closed orbits that attract so weakly
     that no exponent shows it have closed by then. If the closed orbit has another ⟨J⟩, the motion was on its way there:
-    its kind is left open, and `left_for` is set. Of what has not closed the exponents are measured in windows that are
-    longer still, in which it is chaos if the largest is beyond its error.
+    its kind is left open, and `left_for` is set. Where it has not closed, and perturbations have grown faster than on a
+    torus, its exponents are measured in the longest window, in which it is chaos if the largest is beyond its error.
     """
     settings = settings.at_speed(model.v)
     found = measure_once(model, start, transient, window, settings, tuning)
@@ -120,7 +120,10 @@ def measure(
     if found.kind in OPEN:
         late = visit(model, last, left, window, tuning)
         if late is None or not late.closed(settings.period_tolerance):
-            return _with_weak_chaos(model, found, last, transient, window, settings, tuning)
+            seen = tuning.longer_window * window
+            if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
+                return found
+            return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
         mean = judged_distance(found.mean_distance, model.chain.is_mirror_symmetric)
         found, last = replace(found, kind=closed_kind(mean, settings)), late.instant()
     if found.kind == MotionKind.CHAOTIC:
@@ -132,27 +135,16 @@ def measure(
 
 
 def _with_weak_chaos(
-    model: Model,
-    motion: SteadyMotion,
-    start: Instant,
-    transient: float,
-    window: float,
-    settings: MotionSettings,
-    tuning: Tuning,
+    model: Model, motion: SteadyMotion, start: Instant, transient: float, window: float, settings: MotionSettings
 ) -> SteadyMotion:
     """Return the motion with its exponents from this state on, as chaos if the largest is certain to be positive."""
-    for times in tuning.longest_windows:
-        trajectory = run(model, start, replace(_options(transient, times * window), events="none"))
-        if trajectory.status != "completed":
-            break
-        exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-        motion = replace(motion, exponent=exponent)
-        # Errors alone decide: they hold what growth in proportion to time looks like.
-        if exponent[0] > settings.standard_errors * error[0]:
-            return replace(motion, kind=MotionKind.CHAOTIC)
-        if exponent[0] * times * window <= tuning.regular_growth * np.log1p(times * window / transient):
-            break
-    return motion
+    trajectory = run(model, start, replace(_options(transient, window), events="none"))
+    if trajectory.status != "completed":
+        return motion
+    exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
+    # Errors alone decide: they hold what growth in proportion to time looks like.
+    chaotic = exponent[0] > settings.standard_errors * error[0]
+    return replace(motion, kind=MotionKind.CHAOTIC if chaotic else motion.kind, exponent=exponent)
 
 
 def _options(transient: float, window: float) -> Settings:

@@ -32,12 +32,11 @@ class Tuning:
     #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
     #: 0.001 is then beyond its error. In one four times longer closed orbits that hardly attract have not closed.
     longer_window: float = 20.0
-    #: What still may be a torus is looked at in windows that are so many times longer, in the second one only if
-    #: perturbations grow faster than on a torus: there it is in proportion to time at most, and the logarithm has
-    #: stayed below this share of what that makes. Exponents of 4e-5 show in the first one, and are beyond their error
-    #: in the second.
-    longest_windows: tuple[float, ...] = (100.0, 800.0)
+    #: On a torus perturbations grow in proportion to time at most, and the logarithm of what they gain in that window
+    #: hardly exceeds this share of what that makes. Where it does the window is so many times longer as the second
+    #: number says, in which exponents of 3e-5 are beyond their error.
     regular_growth: float = 0.5
+    longest_window: float = 100.0
 
     # When two sets of returns are one.
 
