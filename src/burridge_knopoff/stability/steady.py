@@ -110,13 +110,12 @@ def measure(
     if found is None or found.kind not in OPEN:
         return found
     usual, last, left = found, found.instant(), tuning.lasting * transient
-    if found.kind == MotionKind.UNDETERMINED or found.exponent[0] > 0.0:
-        finer = settings.scaled(tuning.longer_window**-0.5)
-        longer = measure_once(model, start, transient, tuning.longer_window * window, finer, tuning)
-        if longer is not None:
-            # The returns stay those of the usual window: their number decides how attractors are told apart.
-            found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
-            last, left = longer.instant(), max(0.0, left - tuning.longer_window * window)
+    finer = settings.scaled(tuning.longer_window**-0.5)
+    longer = measure_once(model, start, transient, tuning.longer_window * window, finer, tuning)
+    if longer is not None:
+        # The returns stay those of the usual window: their number decides how attractors are told apart.
+        found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+        last, left = longer.instant(), max(0.0, left - tuning.longer_window * window)
     if found.kind in OPEN:
         late = visit(model, last, left, window, tuning)
         if late is None or not late.closed(settings.period_tolerance):
