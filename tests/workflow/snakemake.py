@@ -22,7 +22,7 @@ SOURCES = Path(__file__).parents[2] / "src"
 #: Does each call that comes through a socket in a fork, and answers with the number of its process and its exit code.
 #: Several may run at a time: for each there is another fork that waits for it.
 SERVE = """
-import json, os, signal, socket, sys
+import gc, json, os, signal, socket, sys
 def become(call):
     os.chdir(call["folder"])
     os.environ.clear()
@@ -31,6 +31,8 @@ def become(call):
     sys.argv = sys.orig_argv = call["command"]
 def serve(calls, run):
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    # Else each fork looks through all that is imported when it ends, for longer than most of them work.
+    gc.freeze()
     while True:
         message, answering, _, _ = socket.recv_fds(calls, 1 << 20, 1)
         if not message:
