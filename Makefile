@@ -51,12 +51,13 @@ kernel: .venv/study
 	$(COMPILE)
 	@touch $@
 
-# One core is enough for the types, the other one does the rest meanwhile.
-test: .venv/kernel .venv/test
+# What is installed and read on one core goes on beside the compiler.
+test:
 	@$(MAKE) --no-print-directory --jobs=2 types style
 	$(BIN)/python -m pytest
 
-types: .venv/kernel .venv/test
+# The kernel has its types in stubs.
+types: .venv/test
 	$(BIN)/mypy
 
 style: .venv/kernel .venv/test
