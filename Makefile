@@ -22,7 +22,7 @@ study: announce setup
 # Snakemake itself begins with the time that its jobs will take.
 announce:
 	@test -e .venv/kernel || echo "make: sets up .venv and compiles the kernel (a minute or two, once)," \
-		"then runs the default study on two cores (about 25 minutes; results/paper/report.html)"
+		"then runs the default study on two cores (about half an hour; results/paper/report.html)"
 
 setup: .venv/kernel
 
