@@ -1,16 +1,6 @@
 # Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
-
-
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 PLANE_STATE = STUDY.config["basins"]["initial"]
-
-
-def basin_keys(*unused):
-    """Return the keys of the section that a job uses, without what has a name of its own or changes no map."""
-    others = {"a", "initial", "threads", *unused}
-    section = STUDY.config["basins"]
-    return {key: value for key, value in section.items() if key not in others}
-
 
 # What both kinds of jobs of a map depend on.
 BASIN_PARAMS = {

@@ -159,6 +159,13 @@ def keys(*names):
     return {name: STUDY.config[name] for name in names}
 
 
+def basin_keys(*unused):
+    """Return the keys of the section that a job uses, without what has a name of its own or changes no map."""
+    others = {"a", "initial", "threads", *unused}
+    section = STUDY.config["basins"]
+    return {key: value for key, value in section.items() if key not in others}
+
+
 def group(name):
     """Return the name of a group of jobs if the profile has it among `group-components`, else None."""
     return lambda wildcards: (
