@@ -30,10 +30,11 @@ ifneq ($(words $(CURDIR)),1)
 $(error $(CURDIR): Snakemake cannot run scripts from a path with a space: move the checkout)
 endif
 
-.venv/study: requirements/study.lock
+.venv/study: requirements/pip.lock requirements/study.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv
-	$(INSTALL) $<
+	$(INSTALL) requirements/pip.lock
+	$(INSTALL) requirements/study.lock
 	$(COMPILE)
 	@touch $@
 
@@ -145,8 +146,8 @@ docs: setup .venv/site
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:
-	cd requirements && uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
-		--no-emit-find-links --no-annotate --no-header study.in -o study.lock
+	cd requirements && for name in pip study; do uv pip compile --universal --python-version 3.11 --generate-hashes \
+		--no-emit-index-url --no-emit-find-links --no-annotate --no-header $$name.in -o $$name.lock; done
 	cd requirements && for name in site test benchmark mutants; do uv pip compile --universal --python-version 3.11 \
 		--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header -c study.lock \
 		$$name.in -o $$name.lock; done
