@@ -23,7 +23,6 @@ from burridge_knopoff.stability.returns import visit
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import lies_on, measure
-from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import nearest, shown, stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
@@ -126,7 +125,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     first = stand_in(kind=kind, exponent=np.array([exponent])).motion
     later = {"kind": longer, "exponent": np.array([1e-4]), "section_period": 9, "returns": ROWS, "mean_distance": 5.0}
     asked = tell(steady, "measure_once", [first, replace(first, **later) if longer is not None else None])
-    visited = tell(steady, "visit", [None])
+    sought = tell(steady, "locked_orbit", [None, None])
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == expected
     assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
@@ -136,13 +135,11 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
         ratios = [getattr(asked[1][4], name) / getattr(MOTION, name) for name in names]
         assert ratios == pytest.approx([0.2236068, 0.2236068, 1.0])
     taken = longer not in (None, "not asked")
+    # What may be a torus may be locked: looked for from the end of each window, for as long.
+    expected_states = [] if longer == "not asked" else [(first.returns[-1].tolist(), 30.0)]
     if expected == MotionKind.QUASIPERIODIC:
-        # What may be a torus is followed on from the end of the longest window, up to the same time.
-        start, left, window = visited[0][1:4]
-        assert start.vector().tolist() == (ROWS if taken else first.returns)[-1].tolist()
-        assert (left, window) == (TUNING.lasting * 50.0 - (600.0 if taken else 0.0), 30.0)
-    else:
-        assert visited == []
+        expected_states.append(((ROWS if taken else first.returns)[-1].tolist(), 600.0))
+    assert [(start.vector().tolist(), window) for _, start, window, _ in sought] == expected_states
     assert (found.section_period, found.exponent.tolist()) == ((9, [1e-4]) if taken else (1, [exponent]))
     # The returns and the mean distance stay those of the usual window.
     assert found.returns is first.returns
@@ -163,7 +160,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
 def test_growth_that_is_too_fast_for_a_torus_is_looked_at_longer(tell, kind, exponent, told, chaotic):
     first = stand_in(kind=kind, exponent=np.array([exponent, 0.0, -0.1])).motion
     tell(steady, "measure_once", [first, replace(first, returns=ROWS)])
-    tell(steady, "visit", [None if kind == MotionKind.UNDETERMINED else shown(ROWS, ROWS, 1.0, 0.0)])
+    tell(steady, "locked_orbit", [None, None])
     run = SimpleNamespace(status="diverged")
     if not isinstance(told, str):
         exponents, errors = np.array([told[0], 0.0, -0.2]), np.array([told[1], 1.0, 1.0])
@@ -189,44 +186,55 @@ def test_weak_chaos_is_no_torus():
 
 
 @pytest.mark.parametrize("kind", [MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
+@pytest.mark.parametrize("soon", [True, False])
 @pytest.mark.parametrize(
-    ("threshold", "mean", "closes", "expected"),
+    ("threshold", "mean", "expected"),
     [
-        (1.0, 0.1, True, MotionKind.PERIODIC),
-        (1.0, 1e-9, True, MotionKind.SYNCHRONIZED),
-        ((1.0, 1.0, 1.1), 1e-9, True, MotionKind.PERIODIC),
-        (1.0, 0.1, False, None),
-        (1.0, 0.1, None, None),
+        (1.0, 0.1, MotionKind.PERIODIC),
+        (1.0, 1e-9, MotionKind.SYNCHRONIZED),
+        ((1.0, 1.0, 1.1), 1e-9, MotionKind.PERIODIC),
     ],
 )
-def test_what_closes_when_it_is_followed_on_is_no_torus(tell, kind, threshold, mean, closes, expected):
-    first = stand_in(kind=kind, mean_distance=mean, exponent=np.zeros(3)).motion
-    tell(steady, "measure_once", [first, None, replace(first, mean_distance=mean + 1e-4)])
-    late = None if closes is None else shown(ROWS, ROWS, MOTION.period_tolerance * (1.0 if closes else 1.01), 0.0)
-    asked = tell(steady, "visit", [late])
-    found = measure(model(threshold), None, 50.0, 30.0, MOTION)
-    assert found.kind == (kind if expected is None else expected)
-    assert asked[0][2:4] == (TUNING.lasting * 50.0, 30.0)
+def test_what_is_locked_is_no_torus(monkeypatch, tell, kind, soon, threshold, mean, expected):
+    first = stand_in(kind=kind, mean_distance=mean, exponent=np.array([2e-4, 1e-4, -0.3])).motion
+    longer, orbit = replace(first, exponent=np.array([2e-5, 1e-5, -0.2])), locked(threshold)
+    seen = [] if soon else [longer]
+    asked = tell(steady, "measure_once", [first, *seen, replace(first, mean_distance=mean + 1e-4)])
+    sought = tell(steady, "locked_orbit", [orbit] if soon else [None, orbit])
+    monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([-0.5, 0.1])))
+    found = measure(orbit.model, None, 50.0, 30.0, MOTION)
+    assert len(sought) == (1 if soon else 2)
+    assert found.kind == expected
+    # The second exponent is that of the multiplier, in a period of 2000.
+    assert found.exponent == pytest.approx([0.0, -3.4657359e-4, -0.3 if soon else -0.2])
+    # The motion is followed on from the orbit.
+    assert asked[-1][1:4] == (orbit.reference, 50.0, 30.0)
     assert found.returns is first.returns
     assert found.left_for is None
 
 
+def locked(threshold=1.0):
+    """Return what stands in for the orbit to which a motion is locked."""
+    return SimpleNamespace(model=model(threshold), reference=steady.instant_of(ROWS[5]), period=2000.0)
+
+
 @pytest.mark.parametrize("by_exponent", [True, False])
 @pytest.mark.parametrize(("difference", "stays"), [(1.03e-3, True), (1.05e-3, False)])
-def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(tell, by_exponent, difference, stays):
+def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tell, by_exponent, difference, stays):
     """Its ⟨J⟩, of an earlier time, would be listed with the exponents of the orbit; errors of 1e-5 each are allowed."""
     told = {"exponent": np.array([6e-4, 0.0, -0.1]), "mean_distance_error": 1e-5}
     first = stand_in(kind=MotionKind.UNDETERMINED, **told).motion
-    kind = MotionKind.PERIODIC if by_exponent else MotionKind.UNDETERMINED
-    longer = replace(first, kind=kind, returns=ROWS, exponent=np.array([0.0, -0.1, -0.2]))
+    longer = replace(first, kind=MotionKind.PERIODIC, returns=ROWS, exponent=np.array([0.0, -0.1, -0.2]))
     after = replace(first, mean_distance=0.1 + difference)
-    tell(steady, "measure_once", [first, longer, after])
-    tell(steady, "visit", [] if by_exponent else [shown(ROWS[::-1], ROWS, 0.0, 0.0)])
+    orbit = locked()
+    tell(steady, "measure_once", [first, longer, after] if by_exponent else [first, after])
+    tell(steady, "locked_orbit", [None] if by_exponent else [orbit])
+    monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([0.5, 0.1])))
     found = measure(model(), None, 50.0, 30.0, MOTION)
     assert found.kind == (MotionKind.PERIODIC if stays else MotionKind.UNDETERMINED)
     if stays:
         assert found.left_for is None
-        assert found.exponent is longer.exponent
+        assert found.exponent[1] == (-0.1 if by_exponent else np.log(0.5) / 2000.0)
     else:
-        assert found.left_for.vector().tolist() == (ROWS if by_exponent else ROWS[::-1])[-1].tolist()
+        assert found.left_for.vector().tolist() == (ROWS[-1] if by_exponent else orbit.reference.vector()).tolist()
         assert found.exponent is first.exponent

@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.floquet import multipliers
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.stability.locking import locked_orbit
 from burridge_knopoff.stability.motion import (
     OPEN,
     MotionKind,
@@ -18,7 +21,7 @@ from burridge_knopoff.stability.motion import (
     section_period,
 )
 from burridge_knopoff.stability.nearness import is_near, spacing_of
-from burridge_knopoff.stability.returns import Returns, instant_of, returns_of, visit
+from burridge_knopoff.stability.returns import Returns, instant_of, returns_of
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
@@ -98,39 +101,48 @@ def measure(
 
     transient : in which the perturbations turn into the directions of the exponents
 
-    Where only the errors of the exponents leave open which kind it is, or may hide weak chaos, it is measured in a
-    longer window, which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the
-    windows. What may be a torus is followed on for `lasting` transients at least: closed orbits that attract so weakly
-    that no exponent shows it have closed by then. If the closed orbit has another ⟨J⟩, the motion was on its way there:
-    its kind is left open, and `left_for` is set. Where it has not closed, and perturbations have grown faster than on a
-    torus, its exponents are measured in the longest window, in which it is chaos if the largest is beyond its error.
+    Where only the errors of the exponents leave open which kind it is, it may be locked to a closed orbit that attracts
+    too slowly for them to show it, which is looked for. If there is none the motion is measured in a longer window,
+    which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the windows. Longer
+    orbits are looked for in that one; where there is none either, and perturbations have grown faster than on a torus,
+    the exponents are measured in the longest window, in which it is chaos if the largest is beyond its error.
+
+    If the closed orbit has another ⟨J⟩, the motion was on its way there: its kind is left open, and `left_for` is set.
     """
     settings = settings.at_speed(model.v)
     found = measure_once(model, start, transient, window, settings, tuning)
     if found is None or found.kind not in OPEN:
         return found
-    usual, last, left = found, found.instant(), tuning.lasting * transient
-    finer = settings.scaled(tuning.longer_window**-0.5)
-    longer = measure_once(model, start, transient, tuning.longer_window * window, finer, tuning)
-    if longer is not None:
-        # The returns stay those of the usual window: their number decides how attractors are told apart.
-        found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
-        last, left = longer.instant(), max(0.0, left - tuning.longer_window * window)
-    if found.kind in OPEN:
-        late = visit(model, last, left, window, tuning)
-        if late is None or not late.closed(settings.period_tolerance):
-            seen = tuning.longer_window * window
-            if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
-                return found
-            return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
-        mean = judged_distance(found.mean_distance, model.chain.is_mirror_symmetric)
-        found, last = replace(found, kind=closed_kind(mean, settings)), late.instant()
+    usual, last = found, found.instant()
+    orbit = locked_orbit(model, last, window, tuning)
+    if orbit is None:
+        seen = tuning.longer_window * window
+        longer = measure_once(model, start, transient, seen, settings.scaled(tuning.longer_window**-0.5), tuning)
+        if longer is not None:
+            # The returns stay those of the usual window: their number decides how attractors are told apart.
+            found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+            last = longer.instant()
+        if found.kind in OPEN:
+            orbit = locked_orbit(model, last, seen, tuning)
+            if orbit is None:
+                if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
+                    return found
+                return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
+    if orbit is not None:
+        found, last = _locked(found, orbit, settings), orbit.reference
     if found.kind == MotionKind.CHAOTIC:
         return found
     later = measure_once(model, last, transient, window, settings, tuning)
     if later is None or not _differ(found, later, model, settings, tuning):
         return found
     return replace(usual, left_for=last)
+
+
+def _locked(motion: SteadyMotion, orbit: PeriodicOrbit, settings: MotionSettings) -> SteadyMotion:
+    """Return a motion as that of the closed orbit to which it is locked, whose multiplier has the second exponent."""
+    mean = judged_distance(motion.mean_distance, orbit.model.chain.is_mirror_symmetric)
+    rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
+    return replace(motion, kind=closed_kind(mean, settings), exponent=np.array([0.0, rate, *motion.exponent[2:]]))
 
 
 def _with_weak_chaos(
