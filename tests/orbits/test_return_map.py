@@ -19,7 +19,7 @@ def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
         start = model.begin(PAPER_STATES["plus"])
         mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
         end = mapping.end(start, 1.0)
-        return mapping.a_derivative(start, 1.0, end, len(mapping.event_rows()))
+        return mapping.a_derivative(start, 1.0, end, mapping.event_rows()[:, 1:])
 
     assert np.abs(derivative(1.0)).max() > 0.05
     assert derivative(1.0) == pytest.approx(derivative(1.0 - 1e-6), abs=1e-4)

@@ -2,7 +2,8 @@
 
 A slip splits where its least speed falls to 0: a stick is born, whose length grows like a square root, so that the
 square of it is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and a slip is
-born. In the other direction the shortest stick, or slip, shrinks to nothing.
+born. In the other direction the shortest stick, or slip, shrinks to nothing. Where friction drops at the start of a
+slip no stick does: it goes with a jump, where the slip before it comes to rest without deceleration.
 
 Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
 2008), Chapter 8 (sliding bifurcations).
@@ -10,6 +11,7 @@ Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecew
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -20,8 +22,8 @@ from burridge_knopoff.orbits.orbit import after
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.runner import Runner, new_observer
 
-# Time between the states among which least speeds and greatest forces are looked for; the Hermite cubic through two of
-# them finds the instant to 1e-5, a step along the acceleration there all the rest.
+# Longest time between the states among which least speeds and greatest forces are looked for; the Hermite cubic through
+# two of them finds the instant to 1e-5, a step along the acceleration there all the rest.
 SPACING = 0.1
 
 # Instants of least speed of a block that are looked at more closely, the slowest ones.
@@ -30,6 +32,9 @@ SLOWEST = 2
 # Rounding of accelerations and forces.
 ROUNDING = 1e-12
 
+# Directions in which a block slips, by the contact.
+SIDES = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
+
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
@@ -37,24 +42,30 @@ class Contacts:
 
     stick, slip : length of its shortest stick and slip
     speed : least speed within a slip; force : least distance of the spring force from the threshold within a stick
+    deceleration : the least at the end of a slip, where friction drops at the start of one
     """
 
     stick: np.ndarray
     slip: np.ndarray
     speed: np.ndarray
     force: np.ndarray
+    deceleration: np.ndarray
 
     def values(self) -> np.ndarray:
-        """Return all that falls to 0 in proportion to the distance from a grazing, shape (4 blocks,)."""
-        return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force])
+        """Return all that falls to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
+        return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force, self.deceleration**2])
+
+
+def drops(model: Model) -> bool:
+    """Tell whether friction drops at the start of a slip."""
+    return float(model.law(0.0)) < 1.0 - ROUNDING
 
 
 def contacts(orbit: PeriodicOrbit) -> Contacts:
     """Return how far an orbit is from its grazings; raises OrbitError if it cannot be run along."""
     model = orbit.model
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
-    time = np.arange(0.0, orbit.period, SPACING)
-    time = np.append(time, orbit.period)
+    time, spacing = np.linspace(0.0, orbit.period, math.ceil(orbit.period / SPACING) + 1, retstep=True)
     observer = new_observer(model, [0.0, orbit.period + SPACING], trajectory_time=time)
     runner = Runner(model, observer=observer)
     runner.begin(orbit.reference)
@@ -63,27 +74,44 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     position, velocity = results["position"], results["velocity"]
     stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))
     whole = event[:-1] == event[1:]
-    force, force_rate, acceleration, jerk = _derivatives(model, position, velocity)
-    again: Runner | None = None
+    again = Runner(model)
     speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
-    for block in range(model.blocks):
-        slips = whole[:, block] & ~stuck[:-1, block]
-        turns = slips & (acceleration[:-1, block] < -ROUNDING) & (acceleration[1:, block] > ROUNDING)
-        sticks = whole[:, block] & stuck[:-1, block]
-        peaks = sticks & (force_rate[:-1, block] > ROUNDING) & (force_rate[1:, block] < -ROUNDING)
-        for k in sorted(np.flatnonzero(turns), key=lambda k: velocity[k, block])[:SLOWEST]:
-            share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * SPACING)
-            again = again or Runner(model)
-            at = after(again, Instant(position[k], velocity[k], stuck[k]), share * SPACING)
-            here = _derivatives(model, at.position[None], at.velocity[None])
-            lowest = at.velocity[block] - 0.5 * float(here[2][0, block] ** 2 / here[3][0, block])
-            speed[block] = min(speed[block], lowest)
-        for k in np.flatnonzero(peaks):
-            share = force_rate[k, block] / (force_rate[k, block] - force_rate[k + 1, block])
-            highest = force[k, block] + 0.5 * share * SPACING * force_rate[k, block]
-            gap[block] = min(gap[block], model.chain.thresholds[block] - highest)
+    # What slips backward, and what is pulled back, is seen in a mirror: forward.
+    for side in SIDES[model.contact]:
+        force, force_rate, acceleration, jerk = (side * values for values in _derivatives(model, position, velocity))
+        moving = side * velocity
+        for block in range(model.blocks):
+            slips = whole[:, block] & ~stuck[:-1, block] & (moving[:-1, block] > 0.0) & (moving[1:, block] > 0.0)
+            turns = slips & (acceleration[:-1, block] < -ROUNDING) & (acceleration[1:, block] > ROUNDING)
+            for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:SLOWEST]:
+                share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
+                at = after(again, Instant(position[k], velocity[k], stuck[k]), share * spacing)
+                here = _derivatives(model, at.position[None], at.velocity[None])
+                change, second = float(here[2][0, block]), float(here[3][0, block])
+                speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
+            sticks = whole[:, block] & stuck[:-1, block]
+            peaks = sticks & (force_rate[:-1, block] > ROUNDING) & (force_rate[1:, block] < -ROUNDING)
+            for k in np.flatnonzero(peaks):
+                share = force_rate[k, block] / (force_rate[k, block] - force_rate[k + 1, block])
+                highest = force[k, block] + 0.5 * share * spacing * force_rate[k, block]
+                gap[block] = min(gap[block], model.chain.thresholds[block] - highest)
     blocks = model.blocks
-    return Contacts(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap)
+    return Contacts(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
+
+
+def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
+    """Return the least deceleration at the stops of each block; infinite where friction does not drop."""
+    model = orbit.model
+    least = np.full(model.blocks, np.inf)
+    if drops(model):
+        runner = Runner(model)
+        for time, block, kind in orbit.events:
+            if kind == 0:
+                at = after(runner, orbit.reference, time).position[None]
+                force = _derivatives(model, at, np.zeros_like(at))[0][0, block]
+                friction = model.chain.thresholds[block] * float(model.law(0.0))
+                least[block] = min(least[block], friction - abs(force))
+    return least
 
 
 def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
@@ -106,8 +134,8 @@ def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tu
     chain = model.chain
     force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
     force_rate = -(velocity - model.v) @ chain.stiffness.T
-    speed = np.maximum(velocity, 0.0)
-    acceleration = force - chain.thresholds * model.law(speed)
+    speed = np.abs(velocity)
+    acceleration = force - np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.law(speed)
     return force, force_rate, acceleration, force_rate - chain.thresholds * model.law.slope(speed) * acceleration
 
 

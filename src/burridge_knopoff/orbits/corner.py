@@ -13,11 +13,15 @@ Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecew
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from burridge_knopoff.model.model import Instant
+from burridge_knopoff.orbits.contacts import drops
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.floquet import critical_values
 from burridge_knopoff.orbits.orbit import OrbitError, model_at
 from burridge_knopoff.orbits.periodic import orbit_of
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
@@ -34,6 +38,9 @@ PROBE = 1e-2
 CAUTIOUS = 0.97
 LONGER = 2.0
 SHORTER = 0.4
+
+# Steps ahead within which a branch may join one of simpler orbits that a step has come to.
+NEAR_JOINT = 2.0
 
 # How far beyond a corner the tangent of its other side is taken, and lengths of first steps along it, in turn.
 BEYOND = (1e-5, 1e-4, 1e-6)
@@ -52,39 +59,73 @@ def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
     return float(ahead.min()) if len(ahead) else np.inf
 
 
-def come_to_corner(point: BranchOrbit, length: float) -> list[BranchOrbit]:
-    """Return orbits ahead of a point up to the one next to the grazing that lies within a length, or about so far.
+def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
+    """Return the orbit at a length from the end of a way along a branch; None if none with the same stops is found.
+
+    If it is a simpler one, gone round several times or seen without its symmetry, `joined` is that: but only where the
+    way comes to it, as the multiplier does that is 1 there. From afar a step may leap to such an orbit, which is not on
+    the branch.
+    """
+    point = way[-1]
+    try:
+        found = step_along(point, length)
+    except OrbitError:
+        return None
+    if found.orbit.signature != point.orbit.signature:
+        return None
+    simpler = simpler_orbit(found.orbit)
+    if simpler is not None and not _joint_ahead(way) <= NEAR_JOINT * length:
+        return None
+    return replace(found, joined=simpler)
+
+
+def _joint_ahead(way: Sequence[BranchOrbit]) -> float:
+    """Return the length from the end of a way to where a multiplier is 1, if it comes nearer; else infinite.
+
+    There a branch of orbits that break a symmetry, or of twice the period, begins as one of simpler orbits.
+    """
+    if len(way) < 2:
+        return np.inf
+    before, here = (critical_values(one.orbit, one.multipliers)[EdgeKind.FOLD, "keeping"] for one in way[-2:])
+    nearer = abs(before) - abs(here)
+    return abs(here) * way[-1].length / nearer if nearer > 0.0 else np.inf
+
+
+def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
+    """Return orbits ahead of a way up to the one next to the grazing that lies within a length, or about so far.
 
     Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
     """
-    way, step = [point], PROBE * length
-    share, failures = CAUTIOUS, 0
+    way: list[BranchOrbit] = []
+    step, share, failures = PROBE * length, CAUTIOUS, 0
     for _ in range(STEPS):
-        if sum(point.length for point in way[1:]) > length or failures > FAILURES:
+        if sum(point.length for point in way) > length or failures > FAILURES:
             break
-        try:
-            found = step_along(way[-1], step)
-        except OrbitError:
-            found = None
-        if found is None or found.orbit.signature != point.orbit.signature:
+        known = [*before[-2:], *way]
+        found = smooth_step(known, step)
+        if found is None:
             failures += 1
             share *= SHORTER
             step *= SHORTER
             if step < REACHED:
                 break
             continue
-        ahead = corner_ahead(way[-1], found)
+        ahead = corner_ahead(known[-1], found)
         way.append(found)
+        if found.joined is not None:
+            break
         if ahead < REACHED:
-            return [*way[1:-1], replace(found, remaining=ahead)]
+            return [*way[:-1], replace(found, remaining=ahead)]
         share = min(LONGER * share, CAUTIOUS)
         step = min(share * ahead, length)
-    return way[1:]
+    return way
 
 
 def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
     """Return an orbit on the other side of the grazing that a branch has come to; None if the branch ends there."""
     orbit = point.orbit
+    if drops(orbit.model):
+        return None
     blocks = orbit.model.blocks
     change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2]).max()), 1e-3)
     for beyond in BEYOND:

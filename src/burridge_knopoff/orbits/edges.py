@@ -13,14 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
-import numpy as np
 from scipy.optimize import brentq
 
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.floquet import critical_values
 from burridge_knopoff.orbits.following import follow
 from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along
 from burridge_knopoff.orbits.simpler import simplest
 from burridge_knopoff.orbits.symmetry import Symmetry
@@ -169,10 +170,11 @@ def _root(first: BranchOrbit, second: BranchOrbit, key: tuple[EdgeKind, str]) ->
         return None
     low, high = known[root - side], known[root + side]
     kind = _kind(at, key)
-    if kind is None:
+    turns = first.tangent[-1] * second.tangent[-1] < 0.0
+    # What breaks a symmetry other than the mirror's, as that of a ring of blocks, has a multiplier +1 and is no fold.
+    if kind is None or (kind == EdgeKind.FOLD and not turns):
         return None
     error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
-    turns = first.tangent[-1] * second.tangent[-1] < 0.0
     return root, Edge(at.orbit.a, error, kind, at, first, second, turns)
 
 
@@ -183,10 +185,10 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Edge]:
         return []
     reach = NEAR_JOINT * abs(following.orbit.a - point.orbit.a) + point.length + following.length
     around = following.orbit.a - reach, following.orbit.a + reach
+    kind = _joint_kind(point.orbit, simple)
     found = []
     for upward in (True, False):
-        along = follow(simple, around, upward=upward)
-        found += [edge for edge in locate_edges(along) if edge.kind in (EdgeKind.PITCHFORK, EdgeKind.FLIP)]
+        found += [edge for edge in locate_edges(follow(simple, around, upward=upward)) if edge.kind == kind]
     if not found:
         return []
     edge = min(found, key=lambda edge: abs(edge.a - following.orbit.a))
@@ -198,12 +200,15 @@ def _kind(at: BranchOrbit, key: tuple[EdgeKind, str]) -> EdgeKind | None:
     kind, part = key
     if kind == EdgeKind.NEIMARK_SACKER:
         values = at.multipliers.keeping if part == "keeping" else at.multipliers.breaking
-        on_circle = values[np.abs(np.abs(values) - 1.0).argmin()]
-        return kind if abs(on_circle.imag) > REAL else None
+        pair = min(combinations(values, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
+        return kind if abs(pair[0].imag) > REAL else None
     if kind == EdgeKind.FOLD and at.orbit.symmetry != Symmetry.SYNCHRONIZED:
-        joined = simplest(at.orbit, JOINED)
-        if joined.symmetry != at.orbit.symmetry:
-            return EdgeKind.PITCHFORK
-        if joined.period < 0.75 * at.orbit.period:
-            return EdgeKind.FLIP
+        return _joint_kind(at.orbit, simplest(at.orbit, JOINED)) or kind
     return kind
+
+
+def _joint_kind(orbit: PeriodicOrbit, simple: PeriodicOrbit) -> EdgeKind | None:
+    """Return the kind of edge at which orbits begin as simpler ones; None if these are no simpler."""
+    if simple.symmetry != orbit.symmetry:
+        return EdgeKind.PITCHFORK
+    return EdgeKind.FLIP if simple.period < 0.75 * orbit.period else None

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from burridge_knopoff.orbits.corner import come_to_corner, turn_corner
+from burridge_knopoff.orbits.corner import come_to_corner, smooth_step, turn_corner
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.floquet import critical_values
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
-from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch, step_along
-from burridge_knopoff.orbits.simpler import simpler_orbit, simplest
+from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch
+from burridge_knopoff.orbits.simpler import simplest
 
 # Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
 # comes back to itself in a mirror, or after half its period.
@@ -80,19 +80,15 @@ def follow(
     points = [begin_branch(orbit, upward)]
     length = settings.first_step
     while len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points):
-        here = points[-1]
-        try:
-            found = step_along(here, length)
-        except OrbitError:
-            found = None
-        if found is not None and found.orbit.signature == here.orbit.signature:
+        found = smooth_step(points, length)
+        if found is not None:
             way = [found]
             length = min(FASTER * length, settings.largest_step)
         else:
-            way = come_to_corner(here, length)
+            way = come_to_corner(points, length)
             length = max(0.1 * length, way[-1].length if way else 0.0)
         for point in way:
-            simpler = simpler_orbit(point.orbit) or _passed(points[-1], point)
+            simpler = point.joined or _passed(points[-1], point)
             points.append(replace(point, joined=simpler))
             if simpler is not None:
                 return points

@@ -132,7 +132,8 @@ def _free_directions(start: Instant) -> np.ndarray:
 
 def rate(model: Model, at: Instant) -> np.ndarray:
     """Return the time derivative of positions and velocities, shape (2 blocks,)."""
-    weakening = model.chain.thresholds * (model.law(model.v) - model.law(at.velocity))
+    friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.law(np.abs(at.velocity))
+    weakening = model.chain.thresholds * (model.law(model.v) - friction)
     force = weakening - _products(model.chain.stiffness, at.position)
     return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force)])
 

@@ -177,7 +177,7 @@ def solve_return(
             values[-1] = vector @ change - amount
             # Costly, and it changes little from one iteration to the next.
             if by_a is None:
-                by_a = basis.T @ mapping.a_derivative(here, time, end, len(mapping.event_rows()))
+                by_a = basis.T @ mapping.a_derivative(here, time, end, mapping.event_rows()[:, 1:])
             jacobian[:count, -1] = by_a
             jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
         size = float(np.abs(values).max())

@@ -81,7 +81,7 @@ def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
     basis = directions(start.stuck, orbit.symmetry)
     count = basis.shape[1]
     mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
-    events = int(np.count_nonzero(orbit.event_rows[:, 0] <= time))
+    events = orbit.event_rows[orbit.event_rows[:, 0] <= time, 1:]
     matrix = np.zeros((count + 1, count + 2))
     matrix[:count, :count] = basis.T @ orbit.monodromy @ basis - np.eye(count)
     matrix[:count, count] = basis.T @ mapping.time_derivative(end)

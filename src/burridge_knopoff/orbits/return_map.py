@@ -59,10 +59,10 @@ class ReturnMap:
         """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, not mirrored."""
         return np.stack(self._runner.events(), axis=1)[self._kept :]
 
-    def a_derivative(self, start: Instant, time: float, end: Instant, events: int) -> np.ndarray:
+    def a_derivative(self, start: Instant, time: float, end: Instant, events: np.ndarray) -> np.ndarray:
         """Return how the end of a return changes with a, shape (2 blocks,).
 
-        start, time, end, events : of the return, with how many events
+        start, time, end : of the return; events : blocks and kinds of its events in their order, shape (n, 2)
 
         From a finite difference: next to a grazing, where the derivative jumps, on the side of the orbit. Raises
         OrbitError if there is none.
@@ -75,7 +75,7 @@ class ReturnMap:
                 except OrbitError:
                     continue
                 runner, passed = flow(model, start, time)
-                if len(passed) == events:
+                if np.array_equal(np.array([event[1:] for event in passed]).reshape(-1, 2), events):
                     change = self._mirrored(runner.instant()).vector() - end.vector()
                     return change / (a - self.model.a)
             step *= 0.1

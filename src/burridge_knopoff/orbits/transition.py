@@ -11,12 +11,14 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Instant
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.orbit import Orbit, OrbitError, after, multipliers, transverse_multiplier
 from burridge_knopoff.running.runner import Runner
 
-#: Friction parameters between which a change of the orbit is looked for; it does not depend on the grid of a study.
+#: Friction parameters, in those of `unit`, between which a change of the orbit is looked for; they do not depend on the
+#: grid of a study.
 SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))
 
 # A change of the orbit is found to the rounding of the function that changes its sign there. With steps that small
@@ -28,11 +30,19 @@ ITERATIONS = 1000
 # about 1e-12 both.
 DIFFERENCE = 1e-3
 
-# Step in a for the slope of the multiplier.
+# Step in a, in units of `unit`, for the slope of the multiplier.
 SLOPE_STEP = 1e-4
 
 # Instants of a period between which the least speed is looked for.
 SAMPLES = 96
+
+
+def unit(chain: Chain) -> float:
+    """Return the a by which friction changes a slip in a chain as much as a = 1 does in the paper's; 1 in that.
+
+    Springs that are stronger by a factor make all motion faster by its root; a mode grows with a times the threshold.
+    """
+    return math.sqrt(float(chain.driving.min())) / float(chain.thresholds.max())
 
 
 def critical_a(family: Family) -> float:
@@ -42,7 +52,7 @@ def critical_a(family: Family) -> float:
 
 def symmetric_flip_a(family: Family) -> float:
     """Return the a at which a multiplier of mirror-symmetric perturbations reaches −1; NaN if none does."""
-    return change_point(family, lambda orbit: float(multipliers(orbit)[2:4].real.min()) + 1.0)
+    return change_point(family, lambda orbit: float(np.prod(multipliers(orbit)[2:4] + 1.0).real))
 
 
 def grazing_a(family: Family) -> float:
@@ -61,7 +71,7 @@ def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
     block 2 does not begin at length 0, and the orbit jumps.
     """
     last: tuple[float, float] | None = None
-    for a in SCAN:
+    for a in unit(family.model.chain) * np.array(SCAN):
         try:
             here = a, value(family.at(a))
         except OrbitError:
@@ -119,10 +129,10 @@ def finite_difference_multiplier(orbit: Orbit) -> float:
 
 def critical_a_error(family: Family, a: float) -> float:
     """Return by how much a_c changes if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
-    orbit = family.at(a)
+    orbit, step = family.at(a), SLOPE_STEP * unit(family.model.chain)
     try:
-        low, high = (transverse_multiplier(family.at(a + side * SLOPE_STEP)) for side in (-1, 1))
+        low, high = (transverse_multiplier(family.at(a + side * step)) for side in (-1, 1))
     except OrbitError:
         return math.nan
-    slope = (high - low) / (2.0 * SLOPE_STEP)
+    slope = (high - low) / (2.0 * step)
     return abs((finite_difference_multiplier(orbit) - transverse_multiplier(orbit)) / slope)

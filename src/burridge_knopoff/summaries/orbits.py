@@ -205,9 +205,8 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
     small = np.array(ASYMMETRIES) <= LARGEST_FITTED
     offset = values["branch_offset"][i, small]
     if (offset > 0.0).all() or (offset < 0.0).all():
-        values["bifurcation_side"][i] = (
-            BifurcationSide.SUPERCRITICAL if offset[0] > 0.0 else BifurcationSide.SUBCRITICAL
-        )
+        unstable = transverse_multiplier(family.at(critical + float(offset[-1]))) > 1.0
+        values["bifurcation_side"][i] = BifurcationSide.SUPERCRITICAL if unstable else BifurcationSide.SUBCRITICAL
         fit = fit_power_law(np.abs(offset), asymmetry[small])
         values["amplitude_exponent"][i] = fit.exponent
         values["amplitude_exponent_error"][i] = fit.error
