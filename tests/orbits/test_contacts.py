@@ -1,9 +1,14 @@
 """How near an orbit comes to its grazings: where, between two samples, a rate is 0."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from burridge_knopoff.orbits.contacts import _root
+from burridge_knopoff import Chain, Instant, Model, closed_motion, law_of
+from burridge_knopoff.orbits.contacts import Contacts, _derivatives, _root, contacts
+from burridge_knopoff.orbits.orbit import flow, rate
+from burridge_knopoff.running.runner import Runner
 
 
 @pytest.mark.parametrize(
@@ -15,3 +20,91 @@ def test_the_zero_of_a_cubic_is_found_from_its_ends(coefficients):
     found = _root(cubic(np.array([0.0, 1.0])), cubic.deriv()(np.array([0.0, 1.0])))
     assert 0.0 < found < 1.0
     assert cubic(found) == pytest.approx(0.0, abs=1e-12)
+
+
+def sampled(orbit, count=200_000):
+    """Return position, velocity and whether blocks stick, at so many equal steps of a period, from a run of its own."""
+    runner = Runner(orbit.model)
+    runner.begin(orbit.reference)
+    states = []
+    for time in np.linspace(0.0, orbit.period, count + 1):
+        runner.run(float(time))
+        states.append(runner.instant())
+    return (np.array([getattr(state, name) for state in states]) for name in ("position", "velocity", "stuck"))
+
+
+@pytest.fixture(scope="module")
+def six():
+    """The orbit on which the end blocks stop six and three times, at a = 0.12."""
+    model = Model(Chain(3), law_of("linearized", 0.12))
+    start = Instant(np.array([0.011, 0.007, 0.009]), np.array([0.099, 0.1012, 0.1023]), np.zeros(3, dtype=bool))
+    orbit = closed_motion(model, start, settling=10_000.0)
+    assert sorted(orbit.signature) == [3, 6, 6]
+    return orbit
+
+
+def test_contacts_are_what_dense_samples_show(six):
+    found = contacts(six)
+    position, velocity, stuck = sampled(six, 40_000)
+    step, model = six.period / 40_000, six.model
+    for block in range(3):
+        change = np.flatnonzero(np.diff(stuck[:, block].astype(int)))
+        lengths = np.diff(change, append=change[0] + 40_000) * step
+        sticks = stuck[change + 1, block]
+        assert found.stick[block] == pytest.approx(lengths[sticks].min(), abs=3 * step)
+        assert found.slip[block] == pytest.approx(lengths[~sticks].min(), abs=3 * step)
+        speed, slips = velocity[:, block], ~stuck[:, block]
+        inner = slips[:-2] & slips[1:-1] & slips[2:] & (speed[1:-1] < speed[:-2]) & (speed[1:-1] < speed[2:])
+        assert found.speed[block] == pytest.approx(speed[1:-1][inner].min(initial=np.inf), abs=1e-6)
+        force = model.chain.thresholds[block] * float(model.law(model.v)) - position @ model.chain.stiffness[block]
+        peaks = ~slips[:-2] & ~slips[1:-1] & ~slips[2:] & (force[1:-1] > force[:-2]) & (force[1:-1] > force[2:])
+        assert found.force[block] == pytest.approx((1.0 - force[1:-1][peaks]).min(initial=np.inf), abs=1e-6)
+    assert np.isfinite(found.speed).any()
+    assert np.isinf(found.deceleration).all()
+
+
+@pytest.mark.parametrize("share", [0.13, 0.37, 0.62, 0.93])
+def test_contacts_do_not_depend_on_where_the_orbit_begins(six, share):
+    """Wherever the last of the intervals lies in which they are looked for."""
+    moved = replace(six, reference=flow(six.model, six.reference, share * six.period)[0].instant())
+    for name, values in vars(contacts(six)).items():
+        assert getattr(contacts(moved), name) == pytest.approx(values, abs=1e-7), name
+
+
+def test_all_that_falls_to_0_in_proportion(six):
+    told = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
+    assert Contacts(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [0.3**2]
+
+
+BACKWARD = Instant(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.array([False, False, True]))
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear", "stribeck"])
+def test_friction_pulls_a_block_forward_that_slips_backward(law):
+    """Against finite differences of the kernel's own motion."""
+    model = Model(Chain(3, threshold=(1.0, 1.2, 1.0)), law_of(law, 0.2), contact="symmetric")
+    step = 1e-4
+    later, runner = [], Runner(model)
+    for count in range(3):
+        later.append(runner.after(BACKWARD, count * step).vector())
+    first = (-3.0 * later[0] + 4.0 * later[1] - later[2]) / (2.0 * step)
+    assert rate(model, BACKWARD) == pytest.approx(first, abs=1e-6)
+    derivatives = [_derivatives(model, state[None, :3], state[None, 3:]) for state in later[:2]]
+    assert derivatives[0][2][0, :2] == pytest.approx(first[3:5], abs=1e-6)
+    for value, slope in ((0, 1), (2, 3)):
+        change = (derivatives[1][value] - derivatives[0][value])[0, :2] / step
+        assert derivatives[0][slope][0, :2] == pytest.approx(change, abs=1e-3)
+
+
+def test_where_friction_drops_slips_end_with_a_deceleration():
+    model = Model(Chain(3), law_of("carlson_langer", 0.15))
+    start = Instant(np.array([0.74, -0.17, -0.87]) - model.sliding_offset, np.full(3, 0.1), np.zeros(3, dtype=bool))
+    orbit = closed_motion(model, start, settling=10_000.0)
+    least, runner = np.full(3, np.inf), Runner(model)
+    for time, block, kind in orbit.events:
+        if kind == 0:
+            before = [runner.after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
+            least[block] = min(least[block], (before[1] - before[0]) / 1e-4)
+    found = contacts(orbit).deceleration
+    assert np.isfinite(found).any()
+    assert found == pytest.approx(least, abs=1e-3)

@@ -225,3 +225,51 @@ def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
     points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
     assert 0.02 < points[-1].orbit.a < 0.05
     assert not list(locate_edges(points))[:-1]
+
+
+@pytest.mark.parametrize(
+    ("values", "kind"),
+    [
+        # A pair on the unit circle.
+        ((0.6 + 0.8j, 0.6 - 0.8j, 0.2), EdgeKind.NEIMARK_SACKER),
+        # A real saddle, of which the product is 1, beside a pair that lies nearer to the circle than either.
+        ((2.0, 0.5, 0.7 + 0.6j, 0.7 - 0.6j), None),
+        # A real one nearer to the circle than the pair.
+        ((1.000001, 0.8 + 0.61j, 0.8 - 0.61j, 0.1), EdgeKind.NEIMARK_SACKER),
+    ],
+)
+def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
+    point = SimpleNamespace(multipliers=SimpleNamespace(keeping=np.array(values), breaking=np.array([])))
+    assert edges._kind(point, (EdgeKind.NEIMARK_SACKER, "keeping")) == kind
+
+
+@pytest.mark.parametrize(("slopes", "kind"), [((1.0, -1.0), EdgeKind.FOLD), ((1.0, 1.0), None), ((-1.0, -1.0), None)])
+def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, slopes, kind):
+    """Where it does not, it is a symmetry other than the mirror's that breaks."""
+
+    def point(length, slope=0.0):
+        orbit = SimpleNamespace(a=0.1 + length, symmetry=Symmetry.ASYMMETRIC, period=1.0)
+        return SimpleNamespace(orbit=orbit, multipliers=length - 0.3, length=length, tangent=[slope])
+
+    key = EdgeKind.FOLD, "keeping"
+    monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {key: value})
+    monkeypatch.setattr(edges, "step_along", lambda first, length: point(length))
+    monkeypatch.setattr(edges, "simplest", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0))
+    found = edges._root(point(0.0, slopes[0]), point(0.5, slopes[1]), key)
+    assert (None if found is None else found[1].kind) == kind
+    if found is not None:
+        assert found[0] == pytest.approx(0.3)
+        assert found[1].turns
+
+
+@pytest.mark.parametrize(
+    ("symmetry", "period", "kind"),
+    [
+        (Symmetry.SYMMETRIC, 2.0, EdgeKind.PITCHFORK),
+        (Symmetry.ASYMMETRIC, 1.0, EdgeKind.FLIP),
+        (Symmetry.ASYMMETRIC, 2.0, None),
+    ],
+)
+def test_what_a_branch_begins_as_tells_its_edge(symmetry, period, kind):
+    orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
+    assert edges._joint_kind(orbit, SimpleNamespace(symmetry=symmetry, period=period)) == kind

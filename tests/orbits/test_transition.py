@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import InitialState, OrbitError, simulate, transverse_multiplier
+from burridge_knopoff import Chain, InitialState, Model, OrbitError, law_of, simulate, transverse_multiplier
 from burridge_knopoff.orbits import branching, transition
 from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
 from burridge_knopoff.orbits.family import Family
@@ -152,3 +152,26 @@ def test_power_law_of_a_power_law():
     # To ten decimals, on which all machines agree.
     told = noisy.exponent, noisy.error, noisy.coefficient
     assert told == tuple(round(value, 10) for value in told)
+
+
+@pytest.mark.parametrize(("strength", "threshold"), [(25.0, 1.0), (0.04, 1.0), (1.0, 0.125), (4.0, 3.0)])
+def test_transitions_are_found_on_the_scale_of_the_chain(families, critical, strength, threshold):
+    """Springs stronger by a factor make all motion faster by its root; what counts is a times the threshold."""
+    springs = {"coupling": strength, "pulling": (strength, 2.0 * strength, strength)}
+    family = Family(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
+    factor = strength**0.5 / threshold
+    assert transition.unit(family.model.chain) == pytest.approx(factor)
+    for found, value in ((critical_a, critical["linearized"]), (grazing_a, grazing_a(families["linearized"]))):
+        assert found(family) == pytest.approx(factor * value, rel=1e-9)
+    assert transition.critical_a_error(family, critical_a(family)) < 1e-10 * factor
+
+
+@pytest.mark.parametrize(
+    ("pair", "expected"),
+    [((-0.5, -0.2), 0.4), ((-1.5, -0.2), -0.4), ((-1.2 + 0.3j, -1.2 - 0.3j), 0.13), ((-1.5, -1.2), 0.1)],
+)
+def test_a_flip_is_a_single_multiplier_that_passes_minus_1(monkeypatch, families, pair, expected):
+    """A complex pair whose real parts do has left the unit circle before, and doubles no period."""
+    monkeypatch.setattr(transition, "multipliers", lambda orbit: np.array([0.5, 1.0, *pair, 0.0, 0.0]))
+    monkeypatch.setattr(transition, "change_point", lambda family, value: value(None))
+    assert symmetric_flip_a(families["linearized"]) == pytest.approx(expected)

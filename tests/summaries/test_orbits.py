@@ -1,5 +1,7 @@
 """The summary of the synchronized orbit: what it holds, and what it says where there is none."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -142,3 +144,26 @@ def test_an_asymmetric_chain_has_no_synchronized_orbit():
 def test_friction_that_is_the_same_at_every_speed_is_neutral(formula, status):
     model = Model(Chain(3), FormulaLaw(0.1, formula, name="mine"))
     assert summarize([model], [0.0])["status"].values.tolist() == [[status]]
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("rises", "expected"), [(1.0, 1), (-1.0, -1)])
+def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(monkeypatch, side, rises, expected):
+    """Whether the multiplier rises or falls through 1 as a grows."""
+    critical = 0.2
+    for name in ("leading_modulus", "mean_distance"):
+        monkeypatch.setattr(orbits, name, lambda orbit: 0.5)
+    monkeypatch.setattr(orbits, "transverse_multiplier", lambda a: 1.0 + rises * (a - critical))
+
+    def branch_orbit(family, a, asymmetry):
+        return SimpleNamespace(model=SimpleNamespace(a=a + side * asymmetry**2), period=1.0, residual=0.0)
+
+    monkeypatch.setattr(orbits, "branch_orbit", branch_orbit)
+    names = [name for name in orbits.VARIABLES if name.startswith(("branch_", "amplitude_"))]
+    values = {name: np.full((1, len(orbits.ASYMMETRIES)), np.nan) for name in names}
+    values["bifurcation_side"] = np.array([-1])
+    values |= {name: np.array([np.nan]) for name in names if name.startswith("amplitude_")}
+    orbits._fill_branch(values, 0, SimpleNamespace(at=lambda a: a), critical, 0.1 * np.array(orbits.ASYMMETRIES))
+    supercritical = side * expected > 0
+    assert values["bifurcation_side"][0] == BifurcationSide[("SUB", "SUPER")[supercritical] + "CRITICAL"]
+    assert values["amplitude_exponent"][0] == pytest.approx(0.5)
