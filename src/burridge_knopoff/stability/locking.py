@@ -1,8 +1,8 @@
 """Whether what looks like a torus is locked: the closed orbit that it drifts to, too slowly for that to be seen.
 
-On a locked torus a trajectory comes back to where it was more closely after a turn of the closed orbit than after other
-times: it has only drifted along a little. From there Newton's method finds the orbit, however slowly it attracts. That
-it attracts this trajectory its last turns show: each is nearer to the orbit than the one before.
+On a locked torus a trajectory comes back to where it was far more closely after a turn of the closed orbit than after
+any shorter time: it has only drifted along a little. From there Newton's method finds the orbit, however slowly it
+attracts. That it attracts this trajectory its last turns show: each is nearer to the orbit than the one before.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 7.3 (phase locking).
 """
@@ -11,56 +11,59 @@ from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.floquet import multipliers
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.orbits.symmetry import Symmetry
-from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.nearness import distance
-from burridge_knopoff.stability.returns import Returns, returns_of, visit
+from burridge_knopoff.stability.returns import instant_of, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
-# Turns of an orbit that have to fit into the window at least, and that have to come nearer and nearer at most.
+# Turns of an orbit that have to fit into a window at least, and that have to come nearer and nearer at most.
 FEWEST_TURNS = 2
 MOST_TURNS = 4
 
 
-def locked_orbit(model: Model, start: Instant, window: float, tuning: Tuning = TUNING) -> PeriodicOrbit | None:
+def recurrence(times: np.ndarray, returns: np.ndarray, tuning: Tuning = TUNING) -> float:
+    """Return how long before its last return a motion was nearest to it; 0 if that tells nothing.
+
+    times, returns : of the motion, shapes (n,) and (n, 2 blocks)
+
+    It tells that the motion may be locked if it was not nearly as near at any later time.
+    """
+    away = times[-1] - times[:-1]
+    apart = np.abs(returns[:-1] - returns[-1]).max(axis=1)
+    often = away <= (times[-1] - times[0]) / FEWEST_TURNS
+    away, apart = away[often], apart[often]
+    if not len(away):
+        return 0.0
+    nearest = int(apart.argmin())
+    shorter = apart[away < away[nearest]].min(initial=np.inf)
+    return float(away[nearest]) if apart[nearest] <= tuning.much_nearer * shorter else 0.0
+
+
+def locked_orbit(model: Model, returns: np.ndarray, time: float, tuning: Tuning = TUNING) -> PeriodicOrbit | None:
     """Return the stable periodic orbit that a motion approaches; None if none is found.
 
-    start : a state that has settled on what may be a torus
-    window : time for which it is followed, twice the longest period that is found
+    returns : of the motion in a window, shape (n, 2 blocks); time : their `recurrence`
     """
-    runner = Runner(model, keep_events=True)
-    runner.begin(start)
-    if runner.run(window) != Status.COMPLETED:
+    if time == 0.0:
         return None
-    times, values = runner.log.events.times(), runner.log.events.values()
-    found = returns_of(model, values[:, 0], values[:, 1], values[:, 2:], tuning)
-    if found is None:
+    try:
+        orbit = find_periodic_orbit(model, instant_of(returns[-1]), time, Symmetry.ASYMMETRIC)
+    except OrbitError:
         return None
-    times = times[(values[:, 0] == found.block) & (values[:, 1] == 0)]
-    passed = times[-1] - times
-    apart = np.abs(found.returns - found.returns[-1]).max(axis=1)
-    nearest = [k for k in np.argsort(apart) if 0.0 < passed[k] <= window / FEWEST_TURNS]
-    for k in nearest[: tuning.nearest_returns]:
-        try:
-            orbit = find_periodic_orbit(model, found.instant(), float(passed[k]), Symmetry.ASYMMETRIC)
-        except OrbitError:
-            continue
-        if multipliers(orbit).unstable == 0 and _approaches(found, passed, orbit, tuning):
-            return orbit
-    return None
+    return orbit if multipliers(orbit).unstable == 0 and _approaches(returns, orbit, tuning) else None
 
 
-def _approaches(found: Returns, passed: np.ndarray, orbit: PeriodicOrbit, tuning: Tuning) -> bool:
-    """Tell whether the returns, of which so much time has passed, come nearer to a stable orbit with each turn."""
+def _approaches(returns: np.ndarray, orbit: PeriodicOrbit, tuning: Tuning) -> bool:
+    """Tell whether returns come nearer to a stable orbit with each turn."""
     around = visit(orbit.model, orbit.reference, 0.0, orbit.period, tuning)
-    if around is None or around.block != found.block:
+    if around is None:
         return False
-    turn = passed // orbit.period
-    turns = range(min(int(turn[0]), MOST_TURNS))
-    away = [distance(found.returns[turn == k], around.returns, tuning.near_share) for k in turns]
-    return away[0] <= tuning.locked * orbit.model.scale and bool((np.diff(away) > 0.0).all())
+    count = len(around.returns)
+    last = [returns[-count * (k + 1) : len(returns) - count * k] for k in range(min(len(returns) // count, MOST_TURNS))]
+    away = [distance(turn, around.returns, tuning.near_share) for turn in last]
+    near = len(away) >= FEWEST_TURNS and away[0] <= tuning.locked * orbit.model.scale
+    return near and bool((np.diff(away) > 0.0).all())

@@ -11,7 +11,7 @@ from burridge_knopoff.orbits.floquet import multipliers
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.stability.locking import locked_orbit
+from burridge_knopoff.stability.locking import locked_orbit, recurrence
 from burridge_knopoff.stability.motion import (
     OPEN,
     MotionKind,
@@ -38,6 +38,7 @@ class SteadyMotion:
     kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
 
     returns, mirror_returns, spacing, block, mirror_block : see `Returns`
+    recurrence : see `locking.recurrence`
     left_for : a state on the other motion that this one came to in a longer time; None if it stayed
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
@@ -60,6 +61,7 @@ class SteadyMotion:
     exponent: np.ndarray
     block: int = 1
     mirror_block: int = 1
+    recurrence: float = 0.0
     left_for: Instant | None = None
 
     def mirrored(self) -> SteadyMotion:
@@ -114,7 +116,7 @@ def measure(
     if found is None or found.kind not in OPEN:
         return found
     usual, last = found, found.instant()
-    orbit = locked_orbit(model, last, window, tuning)
+    orbit = locked_orbit(model, found.returns, found.recurrence, tuning)
     if orbit is None:
         seen = tuning.longer_window * window
         longer = measure_once(model, start, transient, seen, settings.scaled(tuning.longer_window**-0.5), tuning)
@@ -123,7 +125,7 @@ def measure(
             found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
             last = longer.instant()
         if found.kind in OPEN:
-            orbit = locked_orbit(model, last, seen, tuning)
+            orbit = None if longer is None else locked_orbit(model, longer.returns, longer.recurrence, tuning)
             if orbit is None:
                 if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
                     return found
@@ -197,19 +199,22 @@ def measure_once(
     if kind in OPEN and found.closed(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
-    stopped = trajectory.event_block[trajectory.event_kind == 0]
+    stops = trajectory.event_kind == 0
     return SteadyMotion(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
         spacing=found.spacing,
         mean_distance=trajectory.mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
-        stop_rate=np.bincount(stopped, minlength=model.blocks + 1)[1:] / window,
+        stop_rate=np.bincount(trajectory.event_block[stops], minlength=model.blocks + 1)[1:] / window,
         kind=kind,
         section_period=period,
         exponent=exponent,
         block=found.block,
         mirror_block=found.mirror_block,
+        recurrence=recurrence(
+            trajectory.event_time[stops & (trajectory.event_block == found.block)], found.returns, tuning
+        ),
     )
 
 

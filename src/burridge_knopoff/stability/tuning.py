@@ -29,9 +29,9 @@ class Tuning:
     #: Transients for which a motion that touches its mirror image is followed, to see whether it covers it: at the
     #: default settings about 100 000 time units, ten times as long as a run of the paper.
     lasting: int = 33
-    #: What may be a torus is compared with the closed orbits to which Newton's method comes from so many of the nearest
-    #: returns; it is locked to one that it lies no farther from, for v = 0.1, and approaches.
-    nearest_returns: int = 4
+    #: A torus may be locked if its motion was nearer to its last return, by this factor, than at any later time.
+    much_nearer: float = 0.1
+    #: It is locked to a stable orbit that it approaches, and lies no farther from, for v = 0.1.
     locked: float = 0.03
     #: A window that has to distinguish weak chaos from motion on a torus is this many times longer: an exponent of
     #: 0.001 is then beyond its error. In one four times longer closed orbits that hardly attract have not closed.
