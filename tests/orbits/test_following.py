@@ -1,15 +1,17 @@
 """Where a branch has come to one of simpler orbits and gone past, and where it turns a corner."""
 
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Instant, Model, closed_motion, follow, law_of
+from burridge_knopoff import Chain, Instant, Model, OrbitError, closed_motion, follow, law_of, synchronized_orbit
 from burridge_knopoff.orbits import corner as corner_module
 from burridge_knopoff.orbits import following
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import locate_edges
+from burridge_knopoff.orbits.following import Following
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
 
 
@@ -106,3 +108,282 @@ def test_a_simpler_orbit_ends_a_branch_only_where_it_joins_it(monkeypatch, ahead
     assert (step is not None) == joins
     if joins:
         assert step.joined == "simpler"
+
+
+@pytest.mark.parametrize(
+    ("before", "here", "expected"),
+    [
+        ((0.5, 0.9), (0.4, 0.6), 0.2),
+        ((0.5, 0.9), (0.6, 0.6), 0.2),
+        # What grows, stays, or is not there is not ahead.
+        ((0.5, np.inf), (0.6, np.inf), np.inf),
+        ((0.5, 0.3), (0.5, 0.5), np.inf),
+        ((0.5, np.inf), (0.4, 0.2), 0.4),
+    ],
+)
+def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
+    points = [
+        SimpleNamespace(contacts=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
+        for told in (before, here)
+    ]
+    assert corner_module.corner_ahead(*points) == pytest.approx(expected)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point of a straight branch, which has a corner at 8e-4; what is 0 there falls like a power of the way left."""
+
+    orbit: float
+    length: float = 1e-3
+    joined: str | None = None
+    remaining: float = np.nan
+    power: int = 1
+    corner: float = 8e-4
+
+    @property
+    def contacts(self):
+        return SimpleNamespace(values=lambda: np.array([(self.corner - self.orbit) ** self.power, np.inf]))
+
+
+@pytest.fixture
+def approach(monkeypatch):
+    """Return how a corner is come to from 0, with the steps that are tried; those beyond it find nothing."""
+
+    def come(length, fails=lambda tried: False, joint=np.inf, **told):
+        tried = []
+
+        def step(way, length):
+            tried.append(length)
+            assert len(way) >= 2
+            place = way[-1].orbit + length
+            if place > way[-1].corner or fails(len(tried)):
+                return None
+            return replace(way[-1], orbit=place, length=length, joined="simpler" if place > joint else None)
+
+        monkeypatch.setattr(corner_module, "smooth_step", step)
+        way = corner_module.come_to_corner([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
+        return way, tried
+
+    return come
+
+
+def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(approach):
+    """Up to 1e-10 from it, after a hundredth of the length within which it lies."""
+    way, tried = approach(1e-3)
+    left = 7.9e-4 * 0.03 ** np.arange(6)
+    assert tried == pytest.approx([1e-5, *(0.97 * left[:-1])], rel=1e-4, abs=0.0)
+    assert [point.orbit for point in way] == pytest.approx(8e-4 - left, rel=1e-9)
+    assert np.isnan([point.remaining for point in way[:-1]]).all()
+    assert way[-1].remaining == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
+
+
+def test_steps_that_fail_are_made_again_shorter(approach):
+    """And the next ones are more cautious for a while."""
+    _, tried = approach(1e-3, lambda tried: tried in (1, 2))
+    left = np.array([8e-4 - 1.6e-6])
+    for share in (0.3104, 0.6208, 0.97):
+        left = np.append(left, (1.0 - share) * left[-1])
+    assert tried[:6] == pytest.approx([1e-5, 4e-6, 1.6e-6, *(np.array([0.3104, 0.6208, 0.97]) * left[:3])], rel=1e-6)
+
+
+@pytest.mark.parametrize(("length", "count"), [(1e-3, 13), (1.0, 15)])
+def test_a_corner_to_which_no_step_leads_is_given_up(approach, length, count):
+    """Where steps would be shorter than 1e-10, or after fifteen in vain."""
+    way, tried = approach(length, lambda tried: True)
+    assert way == []
+    assert tried == pytest.approx([0.01 * length * 0.4**k for k in range(count)], rel=1e-9, abs=0.0)
+
+
+def test_a_corner_that_comes_no_nearer_is_given_up(approach):
+    """What falls like a fourth power foretells a quarter of the way."""
+    way, tried = approach(1e-3, power=4)
+    assert len(tried) == len(way) == 32
+    assert not [point for point in way if point.remaining > 0.0]
+
+
+def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach):
+    way, tried = approach(1e-3, corner=1.0)
+    assert tried == pytest.approx([1e-5, 1e-3])
+    assert [point.orbit for point in way] == pytest.approx([1e-5, 1.01e-3])
+
+
+def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
+    way, tried = approach(1e-3, joint=5e-4)
+    assert [point.joined for point in way] == [None, "simpler"]
+    assert len(tried) == 2
+
+
+@pytest.mark.parametrize("signature", [(1, 2), (2, 1), None])
+def test_a_step_keeps_the_stops(monkeypatch, signature):
+    found = BranchOrbit(SimpleNamespace(signature=signature), np.zeros(4))
+
+    def step(point, length):
+        if signature is None:
+            raise OrbitError("none")
+        return found
+
+    monkeypatch.setattr(corner_module, "step_along", step)
+    monkeypatch.setattr(corner_module, "simpler_orbit", lambda orbit: None)
+    made = corner_module.smooth_step([SimpleNamespace(orbit=SimpleNamespace(signature=(1, 2)))], 0.1)
+    assert (made and made.orbit) is (found.orbit if signature == (1, 2) else None)
+
+
+@pytest.fixture
+def turn(monkeypatch):
+    """Return what is found beyond a corner, where steps along a tangent come to orbits of these stops in turn."""
+
+    def turned(signatures, drops=False, simple=(), lost=()):
+        tried, tangents, left = [], [], iter(signatures)
+
+        def orbit_of(model, state, time, symmetry):
+            tangents.append((model, *state.position))
+            if len(tangents) in lost:
+                raise OrbitError("none")
+            return len(tangents)
+
+        def step(point, length, tangent):
+            tried.append((length, *tangent))
+            signature = next(left)
+            if signature is None:
+                raise OrbitError("none")
+            return SimpleNamespace(orbit=SimpleNamespace(signature=signature))
+
+        monkeypatch.setattr(corner_module, "drops", lambda model: drops)
+        monkeypatch.setattr(corner_module, "model_at", lambda model, a: a)
+        monkeypatch.setattr(corner_module, "orbit_of", orbit_of)
+        monkeypatch.setattr(corner_module, "tangent_of", lambda number: np.array([number, 0.0]))
+        monkeypatch.setattr(corner_module, "step_along", step)
+        monkeypatch.setattr(corner_module, "simpler_orbit", lambda orbit: "one" if orbit.signature in simple else None)
+        reference = Instant(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
+        model = SimpleNamespace(blocks=2)
+        orbit = SimpleNamespace(
+            model=model, reference=reference, a=2e-6, return_time=1.0, symmetry=None, signature=(1, 2)
+        )
+        point = SimpleNamespace(orbit=orbit, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
+        found = corner_module.turn_corner(point)
+        return found and found.orbit.signature, tried, tangents
+
+    return turned
+
+
+def test_beyond_a_corner_other_stops_follow(turn):
+    """On either side of it; not none at all, the same ones, or several turns of a simpler orbit."""
+    none, same, twice = (0, 0), (1, 2), (2, 2)
+    found, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
+    assert found == (1, 1)
+    assert tried == [(1e-5, 1, 0), (1e-5, -1, 0), (1e-4, 1, 0), (1e-4, -1, 0), (1e-6, 1, 0)]
+    # The tangent is that of an orbit a little farther, at an a that is not negative.
+    assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
+    assert turn([], drops=True) == (None, [], [])
+    assert turn([(1, 1)])[0] == (1, 1)
+
+
+def test_a_branch_whose_other_side_is_not_found_ends(turn):
+    found, tried, tangents = turn([None] * 24)
+    assert found is None
+    assert tried == [
+        (length, sign * k, 0) for k in (1, 2, 3) for length in (1e-5, 1e-4, 1e-6, 1e-7) for sign in (1, -1)
+    ]
+    assert [position for _, position, _ in tangents] == pytest.approx([0.50001, 0.5001, 0.500001], abs=1e-12)
+    assert [a for a, *_ in tangents] == pytest.approx([0.0, 0.0, 1e-6], abs=1e-12)
+    found, tried, _ = turn([(1, 1)], lost=(1, 2))
+    assert (found, tried) == ((1, 1), [(1e-5, 3, 0)])
+
+
+@pytest.mark.parametrize(("away", "joins"), [(0.029, True), (0.031, False)])
+def test_a_branch_touches_only_what_is_near(monkeypatch, away, joins):
+    """Three hundredths, of which the square is the way to it in a."""
+    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(EdgeKind.FOLD, "keeping"): 0.5})
+    monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
+    points = [SimpleNamespace(orbit=slope, tangent=[slope], multipliers=None) for slope in (1.0, -1.0)]
+    assert following._passed(*points) == ("simpler" if joins else None)
+
+
+def test_a_branch_is_told_where_it_begins():
+    """Also at the very end of its range; a range is one from low to high."""
+    orbit = closed_motion(SLOW, synchronized_orbit(SLOW).reference)
+    for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
+        assert follow(orbit, a_range, Following(most_orbits=1))[0].orbit is orbit
+    with pytest.raises(ValueError, match=r"^a_range: \(0\.09, 0\.07\) is not allowed: \(low, high\) with low ≤ high$"):
+        follow(orbit, (0.09, 0.07))
+
+
+SLOW = Model(Chain(3), law_of("linearized", 0.08))
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a step along a branch in a came to."""
+
+    orbit: SimpleNamespace
+    length: float = 0.0
+    corner: bool = False
+    joined: str | None = None
+    tangent: tuple[float, ...] = (1.0,)
+
+
+def a_step(a, length=0.0, **told):
+    return Step(SimpleNamespace(a=a), length, **told)
+
+
+@pytest.fixture
+def walk(monkeypatch):
+    """Return the points of a branch from a = 0.1 on, with the lengths that are tried."""
+
+    def walked(smooth, corners, turned, **options):
+        lengths, smooth, corners, turned = [], iter(smooth), iter(corners), iter(turned)
+
+        def step(points, length):
+            lengths.append(length)
+            return next(smooth)
+
+        monkeypatch.setattr(following, "begin_branch", lambda orbit, upward: Step(orbit))
+        monkeypatch.setattr(following, "smooth_step", step)
+        monkeypatch.setattr(following, "come_to_corner", lambda points, length: next(corners))
+        monkeypatch.setattr(following, "turn_corner", lambda point: next(turned))
+        return follow(SimpleNamespace(a=0.1), (0.1, 0.2), **options), lengths
+
+    return walked
+
+
+def test_a_branch_goes_on_from_a_corner_as_from_its_beginning(walk):
+    corner = a_step(0.13, 1e-9, corner=True)
+    smooth = [a_step(0.11), a_step(0.12), None, a_step(0.2), a_step(0.21)]
+    points, lengths = walk(smooth, [[a_step(0.125), corner]], [a_step(0.14)])
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.125, 0.13, 0.14, 0.2, 0.21]
+    assert lengths == pytest.approx([1e-4, 2e-4, 4e-4, 1e-4, 2e-4])
+    # Nothing is known beyond the last corner.
+    points, _ = walk(smooth[:3], [[corner]], [None])
+    assert points[-1] is not None
+    assert points[-1].corner
+
+
+def test_after_a_way_that_met_no_corner_the_next_step_is_as_long_as_its_last(walk):
+    """Or a tenth of what was too long."""
+    points, lengths = walk([None, None, a_step(0.21)], [[a_step(0.11, 3e-5)], [a_step(0.12, 1e-9)]], [])
+    assert lengths == pytest.approx([1e-4, 3e-5, 3e-6])
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.21]
+
+
+def test_a_branch_ends_where_it_joins_another_one(walk):
+    points, _ = walk([a_step(0.11), a_step(0.12, joined="simpler")], [], [])
+    assert [point.joined for point in points] == [None, None, "simpler"]
+    points, _ = walk([None], [[a_step(0.11), a_step(0.12, joined="simpler"), a_step(0.13)]], [])
+    assert [point.joined for point in points] == [None, None, "simpler"]
+
+
+def test_a_branch_ends_where_it_has_gone_past_another_one(walk, monkeypatch):
+    monkeypatch.setattr(following, "_passed", lambda first, second: "passed" if second.orbit.a == 0.12 else None)
+    points, _ = walk([a_step(0.11), a_step(0.12)], [], [])
+    assert [point.joined for point in points] == [None, None, "passed"]
+
+
+def test_a_branch_ends_when_enough_is_known(walk):
+    told = []
+
+    def enough(points):
+        told.append(len(points))
+        return len(points) == 3
+
+    assert len(walk([a_step(0.11), a_step(0.12)], [], [], enough=enough)[0]) == 3
+    assert told == [1, 2, 3]
