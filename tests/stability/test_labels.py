@@ -8,6 +8,7 @@ import pytest
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, label_states, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability import fractions
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.labels import UNDETERMINED
@@ -56,3 +57,32 @@ def test_patience_is_spared_where_a_sample_comes_early(tell, came, expected):
         (search,), _ = fractions.fraction_labels([search], "moving", each)
     assert [item.patience for item in search.attractors] == [expected, 0.0]
     assert [(len(position), limit) for _, _, position, _, _, limit in asked] == [(20, 20_000.0), (50, 200_000.0)]
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3, 7, 101])
+def test_labels_do_not_depend_on_the_threads_that_share_them_out(found, threads):
+    orbit, states, (labels, times) = found
+    shared = label_states(MODEL, [orbit], *states, time_limit=END, threads=threads)
+    assert shared[0].tolist() == labels.tolist()
+    assert shared[1].tolist() == times.tolist()
+    assert len({*labels.tolist()}) == 2
+
+
+def test_an_attractor_is_reached_at_the_stops_of_its_own_block(found):
+    """Returns of the middle block, at whose stops those of the first one are never met."""
+    orbit, states, (labels, _) = found
+    inner = returns_at(MODEL, orbit.motion.instant(), 2)
+    few = [part[:20] for part in states]
+    other = replace(orbit, motion=replace(orbit.motion, returns=inner, block=2))
+    assert label_states(MODEL, [other], *few, time_limit=END + 100.0)[0].tolist() == labels[:20].tolist()
+    wrong = replace(orbit, motion=replace(orbit.motion, returns=inner))
+    assert {*label_states(MODEL, [wrong], *few, time_limit=END + 100.0)[0].tolist()} == {UNDETERMINED}
+
+
+def returns_at(model, start, block):
+    """Return the states at the stops of a block."""
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    runner.run(500.0)
+    events = runner.log.events.values()
+    return events[(events[:, 0] == block) & (events[:, 1] == 0), 2:]

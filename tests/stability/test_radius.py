@@ -144,3 +144,57 @@ def test_without_attractors_nothing_is_reached():
     reached, times = label(MODEL, [], [None, None], 10.0)
     assert (reached.tolist(), times.tolist()) == ([-1, -1], [0.0, 0.0])
     assert label(MODEL, [stand_in(ASYMMETRIC)], [], 10.0)[0].shape == (0,)
+
+
+def test_pushes_begin_all_over_a_motion_and_are_as_long_as_its_radius(monkeypatch):
+    """Where its returns are too far apart for a push to show, pushed states are followed for 0.3 transients."""
+    sizes, states, times = [], [], []
+
+    def push(start, size, generator):
+        sizes.append(size)
+        states.append(float(start.position[0]))
+        return start
+
+    def move(model, starts, time):
+        times.append(time)
+        return starts
+
+    monkeypatch.setattr(radius, "pushed", push)
+    monkeypatch.setattr(radius, "moved", move)
+    monkeypatch.setattr(radius, "label", lambda model, found, starts, limit: (np.zeros(len(starts), dtype=int), None))
+    for spacing, followed in ((0.0, []), (0.02, [30.0] * 3), (0.01, [])):
+        times.clear()
+        chosen = []
+        for seed in (3, 3, 4):
+            sizes.clear()
+            states.clear()
+            found = [at(*range(50), radius=0.06, spacing=spacing)]
+            settings = replace(SETTINGS, seed=seed)
+            assert captured(MODEL, found, 0, 1e-5, 1e-6, settings) == 0.06
+            assert sizes == [0.06] * 10
+            chosen.append([*states])
+        assert times == followed * 3
+        assert len({*chosen[0]}) > 5
+        assert chosen[0] == chosen[1] != chosen[2]
+
+
+def test_an_orbit_in_the_midst_of_chaos_keeps_its_radius():
+    """In either order of the two."""
+    chaos, orbit = at(0.0, radius=1.0, **CHAOS), at(0.05, radius=1.0, spacing=1e-7)
+    for found in ([chaos, orbit], [orbit, chaos]):
+        assert sorted(item.radius for item in bounded(MODEL, found, 1e-6)) == [0.04, 0.1]
+
+
+@pytest.mark.parametrize(("patience", "inner"), [(2000.0, True), (0.0, True), (0.0, False)])
+def test_pushes_off_chaos_are_labelled_without_its_patience(monkeypatch, patience, inner):
+    asked = []
+
+    def told(model, attractors, starts, limit):
+        asked.append([item.patience for item in attractors])
+        return np.zeros(len(starts), dtype=int), None
+
+    monkeypatch.setattr(radius, "label", told)
+    monkeypatch.setattr(radius, "moved", lambda model, starts, time: starts)
+    found = [at(0.0, radius=0.04, patience=patience, **CHAOS), at(0.05 if inner else 9.0, radius=0.04, patience=70.0)]
+    captured(MODEL, found, 0, 1e-5, 1e-6, SETTINGS)
+    assert asked == [[0.0, 70.0]] * 3

@@ -1,5 +1,7 @@
 """Values of a put in between: where they are put, against changes at known places."""
 
+from dataclasses import replace
+
 import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, law_of
@@ -7,7 +9,7 @@ from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability import refinement
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.refinement import refined
-from burridge_knopoff.stability.settings import Refine
+from burridge_knopoff.stability.settings import SEARCH, Refine
 from tests.stability.stand_in import ASYMMETRIC, at
 
 STILL, OTHER = 0.0, 5.0
@@ -88,3 +90,14 @@ def test_only_what_changes_is_followed(values):
 )
 def test_every_way_to_differ_counts(values, later, found):
     assert values(after(0.3, [at(STILL)], [later]))[0] == found
+
+
+def test_little_work_tells_what_known_attractors_have_become():
+    """A quarter of the patience, one trial, and radii from a sixteenth of the usual one down in steps of sixteen."""
+    model = Model(Chain(3), law_of("linearized", 0.1))
+    gap = refinement._gap(Search(model, replace(SEARCH, samples=7, pushes=16)), Search(model.at(0.2)), [], [])
+    tuning = gap.search.tuning
+    assert (gap.search.settings.pushes, gap.search.settings.samples) == (4, 7)
+    assert (tuning.patience, tuning.trials, tuning.shrinking) == (4, 1, 16.0)
+    assert (tuning.largest_radius, tuning.far) == (0.00125, 160.0)
+    assert (gap.first.a, gap.last.a) == (0.1, 0.2)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import MotionKind
+from burridge_knopoff import Chain, Model, MotionKind, law_of
 from burridge_knopoff.stability import settling
 from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settling import Settling
@@ -87,3 +87,45 @@ def test_a_motion_that_has_left_for_another_one_is_not_listed(tell):
     tell(settling, "visit", [there] * (TUNING.trials + 1))
     tell(settling, "measure", [first] * (TUNING.trials + 1))
     assert Settling(MODEL, SETTINGS).measured(shown(ONE, ONE, WIDE, 0.0)) is None
+
+
+def test_distances_grow_with_the_speed_of_the_driver():
+    """In slower motion also those within which a closed orbit repeats are smaller."""
+    for v, resolution, tolerance in ((0.2, 2e-3, 1e-6), (0.1, 1e-3, 1e-6), (0.05, 5e-4, 5e-7)):
+        own = Settling(Model(Chain(3), law_of("linearized", 0.08), v), SETTINGS)
+        assert (own.resolution, own.tolerance) == pytest.approx((resolution, tolerance))
+
+
+def test_a_set_of_a_chain_without_a_mirror_image_has_to_fill_as_well(tell):
+    """But not for as long as one that may be half of a set: it has no other half."""
+    uneven = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.08))
+    asked = tell(settling, "visit", [shown(ONE, ONE[:0], WIDE, 0.0)] * 3)
+    assert Settling(uneven, SETTINGS).settle(instant_of(ONE[0])) is not None
+    assert [arguments[3] for arguments in asked] == [100, 200, 400]
+
+
+def test_a_motion_is_followed_on_from_where_it_was_seen_last(tell):
+    asked = tell(settling, "visit", [shown(OTHER, ONE, CLOSED, 1.0), shown(ONE, ONE, CLOSED, 0.0)])
+    Settling(MODEL, SETTINGS).settle(instant_of(ONE[0]))
+    assert [arguments[1].position[0] for arguments in asked] == [1.0, 2.0]
+
+
+def test_a_motion_touches_its_mirror_image_within_the_resolution(tell):
+    own = Settling(MODEL, SETTINGS)
+    for away, touches in ((0.9e-3, True), (1.1e-3, False)):
+        assert own.touches(shown(ONE, ONE + away, WIDE, 0.0)) == touches
+    assert not own.touches(shown(ONE, ONE[:0], WIDE, 0.0))
+    # What leaves for another block, or ends, in the longer time does not cover its mirror image.
+    found = shown(ONE, ONE + 0.9e-3, WIDE, 0.0)
+    tell(settling, "visit", [found, replace(found, block=2), None])
+    assert [own.changes_sides(found) for _ in range(3)] == [True, False, False]
+
+
+def test_pushes_depend_on_the_seed(tell):
+    """So that a search is the same whenever it is made."""
+    pushes = []
+    for seed in (3, 3, 4):
+        asked = tell(settling, "measure", [None])
+        Settling(MODEL, replace(SETTINGS, seed=seed)).lies_in_chaos(shown(ONE, OTHER, CLOSED, 0.0))
+        pushes.append(asked[0][1].position.tolist())
+    assert pushes[0] == pushes[1] != pushes[2]

@@ -23,6 +23,7 @@ from burridge_knopoff.stability.returns import visit
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import lies_on, measure
+from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import nearest, shown, stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
@@ -246,3 +247,85 @@ def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tel
     else:
         assert found.left_for.vector().tolist() == (ROWS[-1] if by_exponent else orbit.reference.vector()).tolist()
         assert found.exponent is first.exponent
+
+
+def moving(v, threshold=1.0):
+    return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08), v)
+
+
+def test_slower_motion_has_smaller_exponents(tell):
+    """And smaller distances: at half the speed of the paper half of each; at twice the speed they are the paper's."""
+    names = ("zero_exponent", "chaotic_exponent", "period_tolerance")
+    for v, share in ((0.05, 0.5), (0.2, 1.0)):
+        asked = tell(steady, "measure_once", [None])
+        assert measure(moving(v), None, 50.0, 30.0, MOTION) is None
+        ratios = [getattr(asked[0][4], name) / getattr(MOTION, name) for name in names]
+        assert ratios == pytest.approx([share] * 3)
+
+
+@pytest.mark.parametrize(("difference", "stays"), [(None, True), (2.03e-3, True), (-2.03e-3, True), (-2.1e-3, False)])
+def test_faster_motion_has_larger_distances(monkeypatch, tell, difference, stays):
+    """Twice as large at twice the speed; where nothing is measured on the orbit the motion is that of the orbit."""
+    told = {"exponent": np.array([6e-4, 0.0, -0.1]), "mean_distance_error": 1e-5}
+    first = stand_in(kind=MotionKind.UNDETERMINED, **told).motion
+    later = None if difference is None else replace(first, mean_distance=0.1 + difference)
+    tell(steady, "measure_once", [first, later])
+    tell(steady, "locked_orbit", [locked()])
+    monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([0.5, 0.1])))
+    found = measure(moving(0.2), None, 50.0, 30.0, MOTION)
+    assert (found.left_for is None) == stays
+    assert found.kind == (MotionKind.PERIODIC if stays else MotionKind.UNDETERMINED)
+
+
+def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
+    motion = replace(stand_in().motion, block=1, mirror_block=3)
+    assert (motion.mirrored().block, motion.mirrored().mirror_block) == (3, 1)
+
+
+def test_motions_seen_at_other_blocks_are_others():
+    attractor = stand_in(returns=ROWS).motion
+    found = shown(ROWS, ROWS, 0.0, 0.0)
+    assert lies_on(found, attractor, 1e-3, 1e-6)
+    assert not lies_on(replace(found, block=2), attractor, 1e-3, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("told", "spacing", "mean", "threshold", "expected"),
+    [
+        (MotionKind.QUASIPERIODIC, 0.9e-6, 0.1, 1.0, MotionKind.PERIODIC),
+        (MotionKind.UNDETERMINED, 0.9e-6, 1e-9, 1.0, MotionKind.SYNCHRONIZED),
+        (MotionKind.UNDETERMINED, 0.9e-6, 1e-9, (1.0, 1.0, 0.9), MotionKind.PERIODIC),
+        (MotionKind.QUASIPERIODIC, 1.1e-6, 0.1, 1.0, MotionKind.QUASIPERIODIC),
+        (MotionKind.CHAOTIC, 0.9e-6, 0.1, 1.0, MotionKind.CHAOTIC),
+        (MotionKind.PERIODIC, 0.9e-6, 1e-9, 1.0, MotionKind.PERIODIC),
+    ],
+)
+def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
+    monkeypatch, tell, told, spacing, mean, threshold, expected
+):
+    states = np.zeros((4, 3))
+    run = SimpleNamespace(
+        status="completed",
+        event_position=states,
+        event_velocity=states,
+        event_block=np.array([1, 1, 3, 3]),
+        event_kind=np.array([0, 1, 0, 0]),
+        lyapunov_exponent=np.zeros(3),
+        lyapunov_error=np.zeros(3),
+        mean_distance=mean,
+        mean_distance_error=0.5,
+    )
+    tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
+    tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, spacing, 0.0), block=1, mirror_block=3), None])
+    monkeypatch.setattr(steady, "section_period", lambda run, settings: 7)
+    asked = tell(steady, "motion_kind", [told])
+    found = steady.measure_once(moving(0.1, threshold), None, 50.0, 30.0, MOTION, TUNING)
+    assert (found.kind, found.section_period) == (expected, 7)
+    assert (found.mean_distance, found.mean_distance_error) == (mean, 0.5)
+    assert (found.block, found.mirror_block) == (1, 3)
+    assert found.stop_rate.tolist() == pytest.approx([1 / 30, 0.0, 2 / 30])
+    # The end blocks of a chain that is not its own mirror image do not synchronize.
+    assert asked[0][0] == (mean if threshold == 1.0 else np.inf)
+    # A run that is cut short, and one of hardly any stops, tell nothing.
+    for _ in range(2):
+        assert steady.measure_once(moving(0.1), None, 50.0, 30.0, MOTION, TUNING) is None
