@@ -182,7 +182,7 @@ def test_growth_that_is_too_fast_for_a_torus_is_looked_at_longer(tell, kind, exp
     for _, start, settings in asked:
         assert start.vector().tolist() == ROWS[-1].tolist()
         assert (settings.transient, settings.window) == (50.0, 3000.0)
-        assert (settings.lyapunov_alignment, settings.events) == (50.0, "none")
+        assert (settings.lyapunov_alignment, settings.events, settings.batches) == (50.0, "none", 6)
 
 
 def test_weak_chaos_is_no_torus():
