@@ -65,3 +65,65 @@ def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():
     for chain, step in ((Chain(3), 0.11), (stiff, 0.04)):
         with pytest.raises(ValueError, match=rf"^step: {step} is not allowed: at most 0\.\d+ in this chain"):
             Settings(solver="rk4", step=step).check_chain(chain)
+
+
+@pytest.mark.parametrize(
+    ("key", "options"),
+    [
+        ("sampling", {"transient": 400.0, "window": 600.0, "sampling": 1e-4}),
+        ("trajectory_sampling", {"trajectory": 1000.0, "trajectory_sampling": 1e-4}),
+    ],
+)
+def test_ten_million_samples_are_as_many_as_a_run_takes(key, options):
+    Settings(**options)
+    longer = {name: value * (1.001 if value > 1.0 else 1.0) for name, value in options.items()}
+    with pytest.raises(ValueError, match=f"^{key}: 0.0001 is not allowed: it asks for more than 1e7 samples$"):
+        Settings(**longer)
+
+
+def test_a_chain_has_two_exponents_a_block():
+    Settings(lyapunov_exponents=6).check_chain(Chain(3))
+    with pytest.raises(ValueError, match="^lyapunov_exponents: 7 is not allowed: at most 6, two a block$"):
+        Settings(lyapunov_exponents=7).check_chain(Chain(3))
+
+
+def test_a_run_of_rk4_has_ten_thousand_million_steps_of_blocks_at_most():
+    """Of three blocks a third of that; a step of `series` is none of them."""
+    options = {"transient": 1e5, "events": "none", "sampling": 1000.0}
+    Settings(solver="rk4", step=1e-3, window=3.2e6, **options).check_chain(Chain(3))
+    Settings(solver="series", step=1e-3, window=3.4e6, **options).check_chain(Chain(3))
+    with pytest.raises(
+        ValueError, match="^step: 0.001 is not allowed: transient and window in at most 3.33e[+]09 steps$"
+    ):
+        Settings(solver="rk4", step=1e-3, window=3.3e6, **options).check_chain(Chain(3))
+
+
+@pytest.mark.parametrize(
+    ("key", "fits", "too_long"),
+    [
+        # Three numbers for each event without a state, one stop or start of a block in two time units: of 40 blocks 60.
+        ("window", {"window": 1.6e6}, {"window": 1.7e6}),
+        ("transient", {"transient": 1.6e6}, {"transient": 1.7e6}),
+        # 83 for each event with states, in the last part of the window or in the whole run.
+        ("event_window", {"window": 1e5, "event_window": 6.0e4}, {"window": 1e5, "event_window": 6.1e4}),
+        ("event_window", {"window": 6.0e4, "event_window": 1e6}, {"window": 6.1e4, "event_window": 1e6}),
+        ("events", {"window": 5.9e4, "events": "all"}, {"window": 6.1e4, "events": "all"}),
+        # 81 for each sample of a trajectory, of the last part of the run or of the whole.
+        (
+            "trajectory_sampling",
+            {"trajectory": 1.23e6, "trajectory_sampling": 1.0, "window": 2e6, "events": "none"},
+            {"trajectory": 1.24e6, "trajectory_sampling": 1.0, "window": 2e6, "events": "none"},
+        ),
+        (
+            "trajectory_sampling",
+            {"trajectory": 9e6, "trajectory_sampling": 1.0, "window": 1.23e6, "events": "none"},
+            {"trajectory": 9e6, "trajectory_sampling": 1.0, "window": 1.24e6, "events": "none"},
+        ),
+    ],
+)
+def test_a_run_keeps_a_hundred_million_numbers_of_a_kind_at_most(key, fits, too_long):
+    """As estimated beforehand, for a chain of 40 blocks."""
+    usual = {"transient": 0.0, "window": 1e3, "sampling": 1e3, "event_window": 1e3}
+    Settings(**{**usual, **fits}).check_chain(Chain(40))
+    with pytest.raises(ValueError, match=f"^{key}: .* the run would keep 1.* numbers for it, at most 1e[+]08$"):
+        Settings(**{**usual, **too_long}).check_chain(Chain(40))
