@@ -310,6 +310,7 @@ def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
         event_velocity=states,
         event_block=np.array([1, 1, 3, 3]),
         event_kind=np.array([0, 1, 0, 0]),
+        event_time=np.array([0.5, 1.0, 2.0, 3.0]),
         lyapunov_exponent=np.zeros(3),
         lyapunov_error=np.zeros(3),
         mean_distance=mean,
@@ -318,8 +319,11 @@ def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
     tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
     tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, spacing, 0.0), block=1, mirror_block=3), None])
     monkeypatch.setattr(steady, "section_period", lambda run, settings: 7)
-    asked = tell(steady, "motion_kind", [told])
+    asked, looked = tell(steady, "motion_kind", [told]), tell(steady, "recurrence", [21.0])
     found = steady.measure_once(moving(0.1, threshold), None, 50.0, 30.0, MOTION, TUNING)
+    # The stops of the block at which the motion is seen.
+    assert (looked[0][0].tolist(), found.recurrence) == ([0.5], 21.0)
+    assert looked[0][1] is found.returns
     assert (found.kind, found.section_period) == (expected, 7)
     assert (found.mean_distance, found.mean_distance_error) == (mean, 0.5)
     assert (found.block, found.mirror_block) == (1, 3)
