@@ -104,13 +104,14 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
     model = orbit.model
     least = np.full(model.blocks, np.inf)
     if drops(model):
-        runner = Runner(model)
-        for time, block, kind in orbit.events:
-            if kind == 0:
-                at = after(runner, orbit.reference, time).position[None]
-                force = _derivatives(model, at, np.zeros_like(at))[0][0, block]
-                friction = model.chain.thresholds[block] * float(model.law(0.0))
-                least[block] = min(least[block], friction - abs(force))
+        runner = Runner(model, keep_events=True)
+        after(runner, orbit.reference, orbit.period)
+        values = runner.log.events.values()
+        stops = values[values[:, 1] == 0]
+        block, position = stops[:, 0].astype(int) - 1, stops[:, 2 : 2 + model.blocks]
+        force = _derivatives(model, position, np.zeros_like(position))[0][np.arange(len(stops)), block]
+        friction = model.chain.thresholds[block] * float(model.law(0.0))
+        np.minimum.at(least, block, friction - np.abs(force))
     return least
 
 
