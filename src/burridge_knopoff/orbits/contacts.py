@@ -76,9 +76,10 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     whole = event[:-1] == event[1:]
     again = Runner(model)
     speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
+    derivatives = _derivatives(model, position, velocity)
     # What slips backward, and what is pulled back, is seen in a mirror: forward.
     for side in SIDES[model.contact]:
-        force, force_rate, acceleration, jerk = (side * values for values in _derivatives(model, position, velocity))
+        force, force_rate, acceleration, jerk = (side * values for values in derivatives)
         moving = side * velocity
         for block in range(model.blocks):
             slips = whole[:, block] & ~stuck[:-1, block] & (moving[:-1, block] > 0.0) & (moving[1:, block] > 0.0)

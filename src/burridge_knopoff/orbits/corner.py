@@ -40,7 +40,7 @@ LONGER = 2.0
 SHORTER = 0.4
 
 # Steps ahead within which a branch may join one of simpler orbits that a step has come to.
-NEAR_JOINT = 2.0
+STEPS_TO_JOINT = 2.0
 
 # How far beyond a corner the tangent of its other side is taken, and lengths of first steps along it, in turn.
 BEYOND = (1e-5, 1e-4, 1e-6)
@@ -74,7 +74,7 @@ def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None
     if found.orbit.signature != point.orbit.signature:
         return None
     simpler = simpler_orbit(found.orbit)
-    if simpler is not None and not _joint_ahead(way) <= NEAR_JOINT * length:
+    if simpler is not None and not _joint_ahead(way) <= STEPS_TO_JOINT * length:
         return None
     return replace(found, joined=simpler)
 
