@@ -159,7 +159,7 @@ def onset_of_chaos(
         critical, error = evidence.critical_a(law)
         if np.isfinite(critical):
             measured.append(Measured(f"a at which synchrony loses stability, {law}", critical, error))
-    reason = f"A chaotic attractor is first found {'; '.join(texts)}; claimed is a transition near {claimed:g}."
+    reason = f"A chaotic attractor is first found {'; '.join(texts)}; the claim says near {claimed:g}."
     return Verdict(worst(verdicts), reason, measured, "; ".join(windows))
 
 

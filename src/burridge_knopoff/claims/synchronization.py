@@ -98,7 +98,7 @@ def edge_of_synchrony(
             texts[-1] = f"at a_c = {critical:.5g}, where the synchronized orbit loses stability ({law}{certain})"
         else:
             verdicts.append(by_interval(low, high, claimed, tolerance, loose))
-    reason = f"The {side} a with synchrony from {initial} lies {'; '.join(texts)}; claimed is {claimed:g}."
+    reason = f"The {side} a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
     if upper or "orbits" not in evidence.summaries:
         return Verdict(worst(verdicts), reason, measured)
     multipliers = _multipliers_near_zero(evidence)
@@ -176,6 +176,6 @@ def distance_vanishes(
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
     return Verdict(
         verdict,
-        f"J from {initial} at a = {at:g} ({law}) {text}; claimed is τ = {by:g}.",
+        f"J from {initial} at a = {at:g} ({law}) {text}; the claim says τ = {by:g}.",
         measured,
     )

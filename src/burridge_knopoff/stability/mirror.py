@@ -8,7 +8,7 @@ from burridge_knopoff.model.model import Instant
 
 
 def pair_distances(state: Instant) -> np.ndarray:
-    """Return the distances J_i of the mirror pairs, from the ends to the middle, shape (blocks // 2,)."""
+    """Return the distances J_i of mirror blocks, from the ends to the middle, shape (blocks // 2,)."""
     pairs = len(state.position) // 2
     apart = [(values - values[::-1])[:pairs] for values in (state.position, state.velocity)]
     return np.hypot(*apart)

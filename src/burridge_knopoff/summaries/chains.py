@@ -38,7 +38,7 @@ CHAIN_VARIABLES = {
     "mean_distance": Variable(
         _STATE, "f8", "mean mirror distance in the last quarter of the time limit, or at that time"
     ),
-    "pairs": Variable(_STATE, "i2", "number of mirror pairs that stay synchronized in the last quarter"),
+    "pairs": Variable(_STATE, "i2", "number of pairs of mirror blocks that stay synchronized in the last quarter"),
     "transverse_exponent": Variable(
         _STATE,
         "f8",
@@ -61,7 +61,7 @@ VARIABLES = {
             "synchronized_low": "lower end of its confidence interval",
             "synchronized_high": "upper end of its confidence interval, undetermined states counted as synchronized",
             "undetermined_fraction": "fraction of the states that are undetermined",
-            "partial_fraction": "fraction of the states with at least one, but not all mirror pairs synchronized",
+            "partial_fraction": "fraction of the states with at least one, but not all pairs of mirror blocks synchronized",
             "mean_mirror_distance": "mean over the states of the mean mirror distance; synchronized states count as 0",
         }.items()
     },
