@@ -52,6 +52,6 @@ def test_the_readme_counts_them(content: dict) -> None:
     text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     assert (
         f"Of {sum(counts.values())} statements {counts['holds']} hold, {counts['holds loosely']} hold loosely, "
-        f"{counts['depends on convention']} depend on conventions that the study leaves open, {counts['fails']} "
+        f"{counts['depends on convention']} depend on conventions that the paper leaves open, {counts['fails']} "
         f"fail, and {counts['not testable']} cannot be tested"
     ) in text

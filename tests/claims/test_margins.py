@@ -44,9 +44,9 @@ def test_a_share_changes_by_its_distance_from_one():
     assert turns(turning("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, "")) == []
 
 
-@pytest.mark.parametrize("level", [NOT_TESTABLE, FAILS])
-def test_what_leaves_too_little_to_judge_is_told_as_well(level):
-    """As states that are too few for a greater share, and numbers that are known for one level only."""
+@pytest.mark.parametrize("other", [NOT_TESTABLE, FAILS])
+def test_what_leaves_too_little_to_judge_is_told_as_well(other):
+    """As states that are too few for a greater share, and a value at which alone there is something to judge."""
     judge = turning("share", 0.93, HOLDS, NOT_TESTABLE)
     (text,) = turns(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
     head, value = text.removesuffix(" (0.9)").rsplit(" ", 1)
@@ -54,9 +54,9 @@ def test_what_leaves_too_little_to_judge_is_told_as_well(level):
     assert 0.92 < float(value) <= 0.93
 
     def only(_evidence, parameters):
-        return Verdict(HOLDS if parameters["level"] == 1.0 else level, "")
+        return Verdict(HOLDS if parameters["near"] == 1.0 else other, "")
 
-    assert turns(only, NOTHING, {"level": 1.0}, Verdict(HOLDS, "")) == [f"{level}: any other level (1)"]
+    assert turns(only, NOTHING, {"near": 1.0}, Verdict(HOLDS, "")) == [f"{other}: any other near (1)"]
 
 
 def test_the_nearest_of_several_turns_is_told():
@@ -82,14 +82,30 @@ def test_both_halves_of_the_grid_are_told_as_one():
     assert turns(judge, world, {"at": 0.2}, judge(world, {})) == []
 
 
-def test_other_amplitudes_of_the_inner_blocks_are_told():
-    world = Evidence({"phases": xarray.Dataset(coords={"inner_share": [0.0, 0.3, 1.0]})}, {})
+@pytest.mark.parametrize(("name", "summary"), [("inner_share", "phases"), ("level", "mean_distance")])
+def test_other_values_for_which_there_are_data_are_told(name, summary):
+    """As amplitudes of the inner blocks, and levels of J: no value between them can be judged."""
+    world = Evidence({summary: xarray.Dataset(coords={name: [0.0, 0.3, 1.0]})}, {})
 
     def judge(_evidence, parameters):
-        return Verdict(HOLDS if parameters["inner_share"] < 0.5 else FAILS, "")
+        return Verdict(HOLDS if parameters[name] < 0.5 else FAILS, "")
 
-    assert turns(judge, world, {"inner_share": 0.0}, Verdict(HOLDS, "")) == ["fails: inner_share = 1 (0)"]
-    assert turns(judge, NOTHING, {"inner_share": 0.0}, Verdict(HOLDS, "")) == []
+    assert turns(judge, world, {name: 0.0}, Verdict(HOLDS, "")) == [f"fails: {name} = 1 (0)"]
+    assert turns(judge, NOTHING, {name: 0.0}, Verdict(HOLDS, "")) == []
+
+
+def test_where_solvers_are_compared_single_values_are_left_out_and_no_grid_halved():
+    """A half of the grid of the runs would lack values at which solvers are compared, which is no other choice."""
+    data = {
+        name: xarray.Dataset(coords={"a": a}) for name, a in [("lyapunov", [0.1, 0.2, 0.3]), ("solvers", [0.1, 0.3])]
+    }
+    world = Evidence(data, {})
+
+    def judge(evidence, _parameters):
+        known = evidence.summaries["lyapunov"].sizes["a"] == 3
+        return Verdict(NOT_TESTABLE if not known else HOLDS if 0.3 in evidence.summaries["solvers"]["a"] else FAILS, "")
+
+    assert turns(judge, world, {"relative": 0.1}, judge(world, {})) == ["fails: without a = 0.3"]
 
 
 @pytest.mark.parametrize(("a", "which"), [([0.1, 0.2, 0.3], "second"), ([0.2, 0.1, 0.2], "first")])

@@ -93,11 +93,15 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     mean = compared["mean_distance"].values
     assert np.array_equal(compared["difference"].values, mean[1:] - mean[0])
     for other, a in product(range(2), range(3)):
-        agrees = compared["agrees"].values[other, :, a]
-        expected = fraction_interval(int((agrees == 1).sum()), int((agrees >= 0).sum()))
         told = [compared[f"agreeing_{name}"].values[other, a] for name in ("fraction", "low", "high")]
-        assert told == pytest.approx(expected, nan_ok=True)
+        assert told == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[other, :, a]))
     assert len(np.unique(compared["agreeing_fraction"])) > 1
+
+
+def test_states_for_which_it_is_not_known_whether_laws_agree_count_either_way():
+    fraction, low, high = two_blocks.agreeing_fraction(np.array([1, 1, 0, -1, -1, -1, 0, 1]))
+    assert fraction == 3 / 8
+    assert (low, high) == (fraction_interval(3, 8)[1], fraction_interval(6, 8)[2])
 
 
 def test_two_blocks_are_what_their_states_end_on(compared):

@@ -20,6 +20,7 @@ from burridge_knopoff.claims.verdict import (
     by_interval,
     by_share,
     is_decided,
+    known_share,
     worst,
 )
 from burridge_knopoff.stability.motion import (
@@ -43,6 +44,14 @@ def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.nda
     return runs["a"].values, runs["kind"].values
 
 
+def _kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return where the kind of motion that a state reaches is known, and which it is: chaos that dies is chaos too."""
+    known, kind = reached(attractors, initial, law, "kind")
+    return known & (kind != MotionKind.UNDETERMINED), np.where(
+        kind == MotionKind.TRANSIENT_CHAOS, MotionKind.CHAOTIC, kind
+    )
+
+
 def all_of_kind(
     evidence: Evidence, initial: Sequence[str], laws: Sequence[str], kinds: Sequence[str], a: Range, loose_share: float
 ) -> Verdict:
@@ -59,15 +68,10 @@ def all_of_kind(
         for state in initial:
             grid, kind = _kinds(evidence, state, law, a)
             known = kind != MotionKind.UNDETERMINED
-            if not known.any():
-                raise NotTestableError(f"no kind of motion is known from {state} under the {law} law with {a}")
             right = np.isin(kind, allowed)
-            if not is_decided(right, known, loose_share):
-                raise NotTestableError(
-                    f"no kind of motion is known from {state} under the {law} law {at_values(grid, ~known)}"
-                )
+            unknown = f"no kind of motion is known from {state} under the {law} law {at_values(grid, ~known)}"
             name = f"{law}, {state}"
-            shares[name] = float(right[known].mean())
+            shares[name] = known_share(right, known, loose_share, unknown)
             measured.append(Measured(f"share of a with {what} motion, {name}", shares[name]))
             if not right[known].all():
                 exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
@@ -84,8 +88,7 @@ def all_of_kind(
         found = {}
         for law in laws:
             for state in initial:
-                known, kind = reached(evidence.choose(attractors, a), state, law, "kind")
-                known &= kind != MotionKind.UNDETERMINED
+                known, kind = _kinds_reached(evidence.choose(attractors, a), state, law)
                 right = np.isin(kind, allowed)
                 if is_decided(right, known, loose_share):
                     found[f"{law}, {state}"] = float(right[known].mean())
@@ -105,11 +108,18 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
             periodic = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC))
             if not periodic.any():
                 continue
+            # What is not known may be periodic without synchrony.
+            may_be = periodic | (kind == MotionKind.UNDETERMINED)
+            where = at_values(grid, may_be & ~periodic)
+            unknown = f"no kind of motion is known from {state} under the {law} law {where}"
             name = f"{law}, {state}"
-            shares[name] = float((kind == MotionKind.SYNCHRONIZED)[periodic].mean())
+            right = kind[may_be] == MotionKind.SYNCHRONIZED
+            shares[name] = known_share(right, periodic[may_be], loose_share, unknown)
             measured.append(Measured(f"share of periodic runs that are synchronized, {name}", shares[name]))
             if shares[name] < 1.0:
                 exceptions.append(f"periodic without synchrony {at_values(grid, kind == MotionKind.PERIODIC)} ({name})")
+            if (may_be & ~periodic).any():
+                exceptions.append(f"not known {where} ({name})")
     if not shares:
         raise NotTestableError(f"no run is periodic with {a}")
     verdict, text = judge_shares(shares, loose_share)
@@ -173,11 +183,10 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
         raise NotTestableError("the study computes no Lyapunov exponents")
     exponent, error = (runs[name].values[:, 0] for name in ("lyapunov_exponent", "lyapunov_error"))
     known = np.isfinite(exponent) & np.isfinite(error)
-    if not known.any():
-        raise NotTestableError(f"no Lyapunov exponent of a run from {initial} is known with {a}")
     settings = MotionSettings(**evidence.config["motion"]).at_speed(evidence.config["v"])
     zero = zero_exponents(exponent, error, settings)
-    share = float(zero[known].mean())
+    unknown = f"no Lyapunov exponent of the run from {initial} is known {at_values(runs['a'].values, ~known)}"
+    share = known_share(zero, known, loose_share, unknown)
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [
         Measured("share of a at which it cannot be told from 0", share),
@@ -187,8 +196,10 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
         f"The largest exponent from {initial} ({law}) cannot be told from 0 at {100 * share:.1f} % of the values of a "
         f"with {a}."
     )
-    changes = f"not 0 {at_values(runs['a'].values, known & ~zero)}" if share < 1.0 else ""
-    return Verdict(by_share(share, loose_share), reason, measured, changes)
+    changes = [f"not 0 {at_values(runs['a'].values, known & ~zero)}"] if share < 1.0 else []
+    if not known.all():
+        changes.append(f"not known {at_values(runs['a'].values, ~known)}")
+    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
 
 
 def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) -> Verdict:
@@ -215,8 +226,8 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
         for law in laws:
-            known, kind = reached(attractors.sel(a=[at]), initial, law, "kind")
-            if known[0] and kind[0] != MotionKind.UNDETERMINED:
+            known, kind = _kinds_reached(attractors.sel(a=[at]), initial, law)
+            if known[0]:
                 found[law] = int(kind[0])
         if not found:
             return "", ""
@@ -238,16 +249,17 @@ def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loos
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     period = runs["section_period"].values
     known = (period > 0) | np.isin(kind, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
-    if not known.any():
-        raise NotTestableError(f"no section of a run from {initial} is known with {a}")
     one = period == 1
-    share = float(one[known].mean())
+    unknown = f"no section of the run from {initial} is known {at_values(grid, ~known)}"
+    share = known_share(one, known, loose_share, unknown)
     measured = [Measured("share of a with one section point", share)]
     reason = (
         f"The section of runs from {initial} ({law}) is one point at {100 * share:.1f} % of the values of a with {a}."
     )
-    changes = f"more than one {at_values(grid, known & ~one)}" if share < 1.0 else ""
-    return Verdict(by_share(share, loose_share), reason, measured, changes)
+    changes = [f"more than one {at_values(grid, known & ~one)}"] if share < 1.0 else []
+    if not known.all():
+        changes.append(f"not known {at_values(grid, ~known)}")
+    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
 
 
 def cloud_at_lower_velocities(
@@ -272,8 +284,11 @@ def cloud_at_lower_velocities(
     both = np.array([bool(len(one) and len(other)) for one, other in chosen])
     many = np.array([_distinct(other) > points for _, other in chosen])
     lower = np.array([len(one) and len(other) and other.mean() < one.mean() for one, other in chosen], dtype=bool)
-    if not both.any():
-        raise NotTestableError(f"at no a with {a} do runs from {' and '.join(initial)} both cross the section")
+    if both.sum() < LEAST_VALUES:
+        raise NotTestableError(
+            f"a statement on all {a} needs {LEAST_VALUES} values of a at which runs from {' and '.join(initial)} both "
+            f"cross the section; there are {both.sum()}"
+        )
     share = float((many & lower)[both].mean())
     entirely = np.array([len(one) and len(other) and other.max() < one.min() for one, other in chosen], dtype=bool)
     measured = [

@@ -18,6 +18,7 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_share,
+    known_share,
 )
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind, same_result
@@ -31,9 +32,8 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
         found = evidence.choose(whole, a)
         agrees = found["agrees"].values
         known = agrees >= 0
-        if not known.any():
-            raise NotTestableError(f"the laws could not be compared from {state} with {a}")
-        shares[state] = float((agrees == 1)[known].mean())
+        unknown = f"the laws could not be compared from {state} {at_values(found['a'].values, ~known)}"
+        shares[state] = known_share(agrees == 1, known, loose_share, unknown)
         measured.append(Measured(f"share of a at which the laws agree, {state}", shares[state]))
         parting = whole["parting_a"].item()
         if np.isfinite(parting):
@@ -60,11 +60,10 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     )
     # One state that parts them is enough; to say that none does, all have to be known.
     known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
-    if not known.any():
-        raise NotTestableError(f"the laws could not be compared for two blocks with {a}")
-    right = (agrees == 1).all(axis=0)
-    share = float(right[known].mean())
-    grid = found["a"].values
+    right, grid = (agrees == 1).all(axis=0), found["a"].values
+    share = known_share(
+        right, known, loose_share, f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
+    )
     measured = [Measured("share of a at which the laws agree from all states", share)]
     measured.append(Measured("share of states and a at which they agree", float((agrees == 1)[agrees >= 0].mean())))
     wrong = grid[known & ~right]

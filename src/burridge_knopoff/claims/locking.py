@@ -10,7 +10,16 @@ import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import Measured, NotTestableError, Range, Verdict, at_values, by_share, worst
+from burridge_knopoff.claims.verdict import (
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    at_values,
+    by_share,
+    known_share,
+    worst,
+)
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -32,10 +41,10 @@ def end_blocks_locked(evidence: Evidence, initial: Sequence[str], a: Range, loos
         runs = evidence.choose(whole, a)
         for law in PAPER_LAWS:
             same, known = _same_frequency(runs.sel(law=law))
-            if not known.any():
-                raise NotTestableError(f"no frequency of the end blocks from {state} under the {law} law with {a}")
+            where = at_values(runs["a"].values, ~known)
+            unknown = f"no frequency of the end blocks is known from {state} under the {law} law {where}"
             name = f"{law}, {state}"
-            shares[name] = float(same[known].mean())
+            shares[name] = known_share(same, known, loose_share, unknown)
             measured.append(Measured(f"share of a at which the end blocks have one frequency, {name}", shares[name]))
             stops = runs["stop_rate"].sel(law=law).values[known]
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -48,6 +57,8 @@ def end_blocks_locked(evidence: Evidence, initial: Sequence[str], a: Range, loos
                 measured.append(Measured(f"share of all other a at which they have, {name}", float(there[seen].mean())))
             if shares[name] < 1.0:
                 apart.append(f"two frequencies {at_values(runs['a'].values, known & ~same)} ({name})")
+            if not known.all():
+                apart.append(f"not known {where} ({name})")
     verdict, text = judge_shares(shares, loose_share)
     reason = f"With {a} both end blocks have one leading frequency, within its error, at {text} of the values of a."
     if others and all(others):

@@ -2,7 +2,7 @@
 
 A tolerance is a choice. Whoever reads a verdict should see which other sensible choice would change it, or leave too
 little to judge: a tolerance within a factor of two, every second value of the grid of a, a compared value of a less, or
-another motion of the inner blocks.
+another motion of the inner blocks or level of J for which there are data.
 """
 
 from __future__ import annotations
@@ -16,11 +16,14 @@ from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, Verdict
 
 # Parameters of judges that are a choice of ours: by this factor others may choose them larger or smaller.
-CHOSEN = ("tolerance", "loose", "near", "relative", "much", "level")
+CHOSEN = ("tolerance", "loose", "near", "relative", "much")
 FACTOR = 2.0
 
 # The same for those whose distance from 1 is the choice.
 SHARES = ("share", "loose_share", "correlation")
+
+# Of these there are data for a few values only: the summary whose coordinate lists them.
+LISTED = {"inner_share": "phases", "level": "mean_distance"}
 
 # Halvings of the factor at which a verdict turns: it is then known to 2 %.
 HALVINGS = 5
@@ -38,7 +41,7 @@ def turns(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdi
     return [
         *_by_tolerance(judge, evidence, parameters, verdict.verdict),
         *_by_grid(judge, evidence, parameters, verdict.verdict),
-        *_by_inner_share(judge, evidence, parameters, verdict.verdict),
+        *_by_listed(judge, evidence, parameters, verdict.verdict),
     ]
 
 
@@ -88,7 +91,11 @@ def _changed(value: float, name: str, exponent: float) -> float:
 
 
 def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
-    """Judge on both halves of the grid, and without each of the values at which solvers are compared."""
+    """Judge on both halves of the grid, or without each of the few values at which solvers are compared."""
+    if "relative" in parameters:
+        if "solvers" in evidence.summaries:
+            yield from _by_solved(judge, evidence, parameters, verdict)
+        return
     halves = {}
     for half, first in zip(evidence.halves, ("first", "second"), strict=True):
         # Of one value there is no second half.
@@ -107,20 +114,22 @@ def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], ve
             for first, other in halves.items()
             if other != verdict
         )
-    if "relative" in parameters and "solvers" in evidence.summaries:
-        solvers = evidence.summaries["solvers"]
-        for a in solvers["a"].values.tolist():
-            without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
-            other = judge(replace(evidence, summaries=without), parameters).verdict
-            if other != verdict:
-                yield f"{other}: without a = {a:g}"
 
 
-def _by_inner_share(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
-    """Judge with each other amplitude of the inner blocks of which there are states."""
-    if "inner_share" not in parameters or "phases" not in evidence.summaries:
-        return
-    for share in evidence.summaries["phases"]["inner_share"].values.tolist():
-        other = judge(evidence, {**parameters, "inner_share": share}).verdict
+def _by_solved(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+    solvers = evidence.summaries["solvers"]
+    for a in solvers["a"].values.tolist():
+        without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
+        other = judge(replace(evidence, summaries=without), parameters).verdict
         if other != verdict:
-            yield f"{other}: inner_share = {share:g} ({parameters['inner_share']:g})"
+            yield f"{other}: without a = {a:g}"
+
+
+def _by_listed(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+    for name, summary in LISTED.items():
+        if name not in parameters or summary not in evidence.summaries:
+            continue
+        for value in evidence.summaries[summary][name].values.tolist():
+            other = judge(evidence, {**parameters, name: value}).verdict
+            if other != verdict:
+                yield f"{other}: {name} = {value:g} ({parameters[name]:g})"

@@ -20,6 +20,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_share,
     by_value,
+    known_share,
     shares_text,
     with_error,
     worst,
@@ -66,11 +67,13 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
     return under_conventions(evidence, worst(verdicts), reason, measured, never, labels)
 
 
-def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
-    """Judge whether in every motion that attracts some block stops again and again; loosely if so in nine of ten.
+def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
+    """Judge whether in every motion that attracts some block stops again and again.
 
     Attractors are known by the stops of a block: motion without any would be among what drawn states reach that is not
-    known. So their share counts as well.
+    known. So it is not testable where these are enough to decide.
+
+    loose_share : share of the attractors, and of the drawn states, from which on the claim holds loosely
     """
     evidence.check_blocks()
     attractors = evidence.choose(evidence.summary("attractors"), a)
@@ -84,7 +87,13 @@ def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
         some[law], every[law] = float(stops.any(axis=-1).mean()), float(stops.all(axis=-1).mean())
         lost = int(found["undetermined_count"].values.sum())
         drawn = int(count.sum()) + lost
-        states[law] = float(count[stops.any(axis=-1)].sum() / drawn) if drawn else some[law]
+        stopping = int(count[stops.any(axis=-1)].sum())
+        if drawn:
+            unknown = f"{lost} of {drawn} drawn states reach no attractor that is known under the {law} law"
+            numbers = np.arange(drawn)
+            states[law] = known_share(numbers < stopping, numbers < drawn - lost, loose_share, unknown)
+        else:
+            states[law] = some[law]
         measured += [
             Measured(f"share of attractors in which some block stops, {law}", some[law]),
             Measured(f"share of attractors in which every block stops, {law}", every[law]),
@@ -98,7 +107,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range) -> Verdict:
     )
     if min(every.values()) < 1.0:
         changes.append("it does not hold of every single block")
-    verdict = worst(by_share(share, 0.9) for share in (*some.values(), *states.values()))
+    verdict = worst(by_share(share, loose_share) for share in (*some.values(), *states.values()))
     return Verdict(verdict, reason, measured, "; ".join(changes))
 
 
@@ -153,13 +162,17 @@ def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: 
         opposed = runs["velocity_correlation"].sel(law=law).values < 0.0
         settled = ends["settled"].sel(law=law).values
         known = opposed & (settled >= 0)
-        if not known.any():
+        if not opposed.any():
             raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
-        shares[law] = float((settled == 1)[known].mean())
+        where = at_values(runs["a"].values, opposed & ~known)
+        unknown = f"whether the run from {initial} under the {law} law is on its attractor is not known {where}"
+        shares[law] = known_share((settled == 1)[opposed], known[opposed], loose_share, unknown)
         measured.append(Measured(f"share of the runs in antiphase that are on their attractor, {law}", shares[law]))
         measured.append(Measured(f"values of a with a run in antiphase, {law}", float(known.sum())))
         if shares[law] < 1.0:
             passing.append(f"it passes {at_values(runs['a'].values, known & (settled == 0))} ({law})")
+        if not known[opposed].all():
+            passing.append(f"not known {where} ({law})")
     verdict, text = judge_shares(shares, loose_share)
     reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase these stay so: {text}."
     return Verdict(verdict, reason, measured, "; ".join(passing))

@@ -118,6 +118,16 @@ def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
     return (worst_case == FAILS) == (best_case == FAILS)
 
 
+def known_share(right: np.ndarray, known: np.ndarray, loose: float, unknown: str) -> float:
+    """Return the share of what is known that is right, for `by_share`; both are of shape (n,).
+
+    Raises NotTestableError, with `unknown` as its reason, if what is not known decides.
+    """
+    if not is_decided(right, known, loose):
+        raise NotTestableError(unknown)
+    return float(right[known].mean())
+
+
 def shares_text(shares: Mapping[str, float]) -> str:
     """Return shares as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
     return ", ".join(f"{100 * share:.1f} % ({name})" for name, share in shares.items())

@@ -61,7 +61,7 @@ VARIABLES = {
             "synchronized_low": "lower end of its confidence interval",
             "synchronized_high": "upper end of its confidence interval, undetermined states counted as synchronized",
             "undetermined_fraction": "fraction of the states that are undetermined",
-            "partial_fraction": "fraction of the states with at least one, but not all pairs of mirror blocks synchronized",
+            "partial_fraction": "fraction of the states with some, but not all pairs of mirror blocks synchronized",
             "mean_mirror_distance": "mean over the states of the mean mirror distance; synchronized states count as 0",
         }.items()
     },

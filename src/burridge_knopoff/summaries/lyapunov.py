@@ -27,7 +27,7 @@ VARIABLES = {
     "lyapunov_error": Variable(
         (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, of the batches and of the window"
     ),
-    "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents that are -infinity"),
+    "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents known to be -infinity"),
     "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
     "unstable": Variable(_AXES, "i1", "whether the run has stayed on a closed orbit that repels", YES_OR_NO),

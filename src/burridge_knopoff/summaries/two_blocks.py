@@ -15,7 +15,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.summary import STATE, axes, summary
-from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
+from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import shared_out
@@ -60,9 +60,11 @@ PAIR_VARIABLES = {
     "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
     "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "least a at which the laws disagree, NaN if there is none"),
-    "agreeing_fraction": Variable(_FRACTION, "f8", "fraction of the initial states for which the laws agree"),
+    "agreeing_fraction": Variable(
+        _FRACTION, "f8", "fraction of the initial states for which the laws agree, as is known"
+    ),
     "agreeing_low": Variable(_FRACTION, "f8", "lower end of the confidence interval of this fraction"),
-    "agreeing_high": Variable(_FRACTION, "f8", "upper end of the confidence interval of this fraction"),
+    "agreeing_high": Variable(_FRACTION, "f8", "upper end, undetermined states counted as agreeing"),
 }
 VARIABLES = {
     "initial_position": Variable(("state", "block"), "f8", "initial position U(0)"),
@@ -76,6 +78,16 @@ def run_settings(**settings: Any) -> Settings:
     """Return the settings of the runs whose orders of events are compared: nothing is sampled, all events are kept."""
     duration = settings["transient"] + settings["window"]
     return Settings(**settings, events="all", sampling=duration, trajectory=0.0, lyapunov_exponents=0)
+
+
+def agreeing_fraction(agrees: np.ndarray) -> tuple[float, float, float]:
+    """Return the fraction of the states for which the laws are known to agree, and an interval, shape (states,).
+
+    At the ends of the interval those that are undetermined count either way.
+    """
+    known, possible = (int(np.count_nonzero(such)) for such in (agrees == Answer.YES, agrees != Answer.NO))
+    fraction, low, _ = fraction_interval(known, len(agrees))
+    return fraction, low, fraction_interval(possible, len(agrees))[2]
 
 
 def summarize(
@@ -118,9 +130,8 @@ def summarize(
             beyond = excess(both, motion.synchronization_threshold, agreement)
             compared["margin"][...] = beyond / compared["difference_error"]
         for k, column in enumerate(compared["agrees"].T):
-            interval = fraction_interval(int((column == 1).sum()), int((column >= 0).sum()))
-            for name, value in zip(("agreeing_fraction", "agreeing_low", "agreeing_high"), interval, strict=True):
-                compared[name][k] = value
+            for name, value in zip(("fraction", "low", "high"), agreeing_fraction(column), strict=True):
+                compared[f"agreeing_{name}"][k] = value
     shared = axes(law=laws, a=grid)
     about = {**shared["law"][2], "long_name": "friction law that is compared with the first one"}
     judged = asdict(motion.at_speed(models[0].v))
