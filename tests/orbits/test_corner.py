@@ -64,6 +64,29 @@ def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
     assert corner.corner_ahead(*points) == pytest.approx(expected)
 
 
+@pytest.mark.parametrize(
+    ("beyond", "goes_on"),
+    [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
+)
+def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(monkeypatch, beyond, goes_on):
+    """Nor with the stops that it came with, or with none: there orbits begin that break a symmetry."""
+    here = SimpleNamespace(
+        signature=(2, 2, 3),
+        model=SimpleNamespace(blocks=3),
+        reference=Instant(np.zeros(3), np.full(3, 0.1), np.zeros(3, dtype=bool)),
+        a=0.1,
+        return_time=1.0,
+        symmetry=None,
+    )
+    found = SimpleNamespace(orbit=SimpleNamespace(signature=beyond))
+    for name, value in (("drops", False), ("model_at", None), ("orbit_of", None), ("simpler_orbit", None)):
+        monkeypatch.setattr(corner, name, lambda *_, value=value: value)
+    monkeypatch.setattr(corner, "tangent_of", lambda orbit: np.ones(8))
+    monkeypatch.setattr(corner, "step_along", lambda point, length, tangent: found)
+    turned = corner.turn_corner(SimpleNamespace(orbit=here, tangent=np.ones(8)))
+    assert turned is (found if goes_on else None)
+
+
 @dataclass(frozen=True)
 class Place:
     """A point of a straight branch, which has a corner at 8e-4; what is 0 there falls like a power of the way left."""

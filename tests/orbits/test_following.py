@@ -172,3 +172,21 @@ def test_a_branch_ends_when_enough_is_known(walk):
 
     assert len(walk([a_step(0.11), a_step(0.12)], [], [], enough=enough)[0]) == 3
     assert told == [1, 2, 3]
+    # Also on the way to a corner.
+    told.clear()
+    assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], enough=enough)[0]) == 3
+    assert told == [1, 2, 3]
+
+
+@pytest.mark.parametrize(("most", "count"), [(2, 2), (3, 3), (4, 5), (5, 5), (6, 6)])
+def test_a_branch_ends_with_as_many_orbits_as_are_asked_for(walk, most, count):
+    """But not on a corner, beyond which nothing would be known."""
+    way = [a_step(0.11), a_step(0.12), a_step(0.13, 1e-9, corner=True)]
+    settings = Following(most_orbits=most)
+    points, _ = walk([None, a_step(0.15), a_step(0.21)], [way], [a_step(0.14)], settings=settings)
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.21][:count]
+
+
+def test_no_orbit_beyond_the_range_is_kept_but_one(walk):
+    points, _ = walk([None], [[a_step(0.11), a_step(0.21), a_step(0.22)]], [])
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.21]

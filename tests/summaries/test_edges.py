@@ -166,6 +166,24 @@ def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
     assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
 
+def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled(monkeypatch):
+    """However long it is left to settle: exact synchrony stays where it is."""
+    model = MODEL.at(0.09)
+    start = synchronized_orbit(model).reference
+    error = _closed(model, start.position + model.sliding_offset, start.velocity)
+    assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
+
+
+def test_the_values_beside_an_edge_are_those_of_the_attractors(found, grid):
+    """To the last bit, so that they can be looked up."""
+    for name in ("grid_low", "grid_high"):
+        beside = found[name].values
+        assert np.isin(beside[np.isfinite(beside)], A).all()
+    shifted = at_all_values(grid)
+    shifted["a"] = shifted["a"] * (1.0 + 1e-15)
+    assert np.isin(shifted["a"].values[2], one_law(MODEL, grid, shifted)["grid_high"].values)
+
+
 def test_numbers_are_rounded(found):
     for name in ("a", "period", "orbit_a", "orbit_mean_distance"):
         values = found[name].values

@@ -143,8 +143,13 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                 except OrbitError:
                     continue
                 # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0. Several turns of
-                # a simpler orbit, somewhere beside the corner, do not go on from it.
+                # a simpler orbit, somewhere beside the corner, do not go on from it; nor does the way that has come
+                # here, in a mirror: the corner is where orbits that break a symmetry begin.
                 signature = found.orbit.signature
-                if signature != orbit.signature and any(signature) and simpler_orbit(found.orbit) is None:
+                if (
+                    signature not in (orbit.signature, orbit.signature[::-1])
+                    and any(signature)
+                    and simpler_orbit(found.orbit) is None
+                ):
                     return found
     return None

@@ -51,11 +51,12 @@ def follow(
 
     orbit : stable or not, of any chain; a_range : (low, high)
     settings : lengths of steps; upward : whether a grows at first
-    enough : told after each orbit, with all orbits so far
+    enough : told after each orbit but those on a corner, with all orbits so far
 
     Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
     The branch also ends where it joins one of simpler orbits, where no step is short enough, and with the
-    `settings.most_orbits`-th orbit: if a is still within the range then, the rest of it was not looked at.
+    `settings.most_orbits`-th orbit, or the next one if that is on a corner: if a is still within the range then, the
+    rest of it was not looked at.
 
     Raises OrbitError if it cannot begin, as where the orbit is not within the range, and ValueError for a range that is
     none.
@@ -79,7 +80,11 @@ def follow(
         raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
     points = [begin_branch(orbit, upward)]
     length = settings.first_step
-    while len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points):
+
+    def goes_on() -> bool:
+        return len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points)
+
+    while goes_on():
         found = smooth_step(points, length)
         if found is not None:
             way = [found]
@@ -90,7 +95,7 @@ def follow(
         for point in way:
             simpler = point.joined or _passed(points[-1], point)
             points.append(replace(point, joined=simpler))
-            if simpler is not None:
+            if simpler is not None or not (point.corner or point is way[-1] or goes_on()):
                 return points
         if points[-1].corner:
             turned = turn_corner(points[-1])

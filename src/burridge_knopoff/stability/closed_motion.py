@@ -59,7 +59,7 @@ def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: f
             continue
         if _distance(found, values) <= FARTHER * max(size, CLOSENESS[0]) * model.scale:
             return simplest(found, CLOSENESS[0])
-    raise OrbitError(f"a = {model.a!r}: no periodic orbit found within {window!r}")
+    raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
 
 
 def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tuple[Instant, float, Symmetry, float]]:

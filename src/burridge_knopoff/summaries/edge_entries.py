@@ -154,6 +154,8 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
         found = closed_motion(model, state)
         # Newton's method may come to another orbit beside one that attracts slowly.
         found = closed_motion(model, state, LATER) if multipliers(found).unstable else found
+        if multipliers(found).unstable:
+            raise OrbitError(f"a = {model.a:.12g}: the closed orbit beside the motion is unstable")
     except OrbitError as error:
         return error
     found.forget_events()

@@ -91,6 +91,8 @@ def one_law(
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
+    # They are values of refined.nc, to be looked up there.
+    rounded["grid_low"], rounded["grid_high"] = np.array(values["grid_low"]), np.array(values["grid_high"])
     shapes = dict.fromkeys(("stops", "stops_beyond", "orbit_stops"), (-1, blocks)) | {
         "multiplier": (-1, 2),
         "multiplier_beyond": (-1, 2),
