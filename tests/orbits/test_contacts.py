@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Instant, Model, closed_motion, law_of
+from burridge_knopoff import Chain, Instant, Model, closed_motion, find_periodic_orbit, law_of
 from burridge_knopoff.orbits.contacts import Contacts, _derivatives, _root, contacts
 from burridge_knopoff.orbits.orbit import flow, rate
 from burridge_knopoff.running.runner import Runner
@@ -69,6 +69,18 @@ def test_contacts_do_not_depend_on_where_the_orbit_begins(six, share):
     moved = replace(six, reference=flow(six.model, six.reference, share * six.period)[0].instant())
     for name, values in vars(contacts(six)).items():
         assert getattr(contacts(moved), name) == pytest.approx(values, abs=1e-7), name
+
+
+def test_contacts_are_those_of_the_same_motion_in_other_units(six):
+    """With springs 900 times as strong all times are a thirtieth, and so are velocities."""
+    chain, start = six.model.chain, six.reference
+    stiff = Chain(3, coupling=900.0 * chain.coupling, pulling=tuple(900.0 * chain.driving))
+    model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
+    moved = Instant(start.position / 900.0, start.velocity / 30.0, start.stuck)
+    found = contacts(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
+    told = contacts(six)
+    for name, scale in {"stick": 30.0, "slip": 30.0, "speed": 30.0, "force": 1.0}.items():
+        assert scale * getattr(found, name) == pytest.approx(getattr(told, name), rel=1e-5), name
 
 
 def test_all_that_falls_to_0_in_proportion(six):

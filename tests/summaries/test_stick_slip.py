@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
@@ -199,6 +199,23 @@ def test_frequencies_are_those_of_the_motion(law, a, initial):
         if name.startswith("event_") and name != "event_count"
     }
     assert long_velocity({**kept, **none}, model, 500.0)[0] is kept["velocity"]
+
+
+def test_frequencies_are_those_of_the_same_motion_in_other_units():
+    """With springs 400 times as strong all times are a twentieth, which a tenth of a unit would not resolve."""
+    chain, state = Chain(3), InitialState("plus", [0.989, -0.993, -0.991], [0.099, 0.1012, 0.1023])
+    stiff = Chain(3, coupling=400.0 * chain.coupling, pulling=tuple(400.0 * chain.driving))
+    fast = {"transient": 25.0, "window": 30.0, "batches": 2, "trajectory_sampling": 0.005}
+    moved = InitialState("moved", np.array(state.position) / 400.0, np.array(state.velocity) / 20.0)
+    told = []
+    for model, initial, scale, settings in (
+        (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
+        (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
+    ):
+        run = vars(simulate(model, initial, Settings(trajectory=0.5 / scale, **settings)))
+        velocity, duration = long_velocity(run, model, settings["transient"])
+        told.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
+    assert told[1] == pytest.approx(told[0], rel=1e-3)
 
 
 def test_events_before_the_window_have_no_part_in_frequencies():

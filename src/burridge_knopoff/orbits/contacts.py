@@ -22,9 +22,11 @@ from burridge_knopoff.orbits.orbit import after
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.runner import Runner, new_observer
 
-# Longest time between the states among which least speeds and greatest forces are looked for; the Hermite cubic through
-# two of them finds the instant to 1e-5, a step along the acceleration there all the rest.
+# Longest time between the states among which least speeds and greatest forces are looked for, and longest phase of the
+# fastest mode; the Hermite cubic through two of them finds the instant to 1e-5, a step along the acceleration there all
+# the rest.
 SPACING = 0.1
+LARGEST_PHASE = 0.245
 
 # Instants of least speed of a block that are looked at more closely, the slowest ones.
 SLOWEST = 2
@@ -65,11 +67,12 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     """Return how far an orbit is from its grazings; raises OrbitError if it cannot be run along."""
     model = orbit.model
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
-    time, spacing = np.linspace(0.0, orbit.period, math.ceil(orbit.period / SPACING) + 1, retstep=True)
-    observer = new_observer(model, [0.0, orbit.period + SPACING], trajectory_time=time)
+    longest = min(SPACING, LARGEST_PHASE / model.chain.highest_frequency)
+    time, spacing = np.linspace(0.0, orbit.period, math.ceil(orbit.period / longest) + 1, retstep=True)
+    observer = new_observer(model, [0.0, orbit.period + longest], trajectory_time=time)
     runner = Runner(model, observer=observer)
     runner.begin(orbit.reference)
-    runner.run(orbit.period + SPACING)
+    runner.run(orbit.period + longest)
     results = observer.results()
     position, velocity = results["position"], results["velocity"]
     stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))

@@ -16,7 +16,7 @@ from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leadi
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.orbits.orbit import OrbitError, multipliers, transverse_multiplier
-from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
+from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a, unit
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
@@ -27,7 +27,7 @@ DIRECTIONS = ("upward", "downward")
 ASYMMETRIES = tuple(float(f"{10 ** (k / 5 - 3):.3e}") for k in range(13))
 LARGEST_FITTED = 1.0e-2
 
-#: Distances from a_c at which runs go up and down in a.
+#: Distances from a_c at which runs go up and down in a, for the paper's springs and thresholds.
 OFFSETS = (-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
 
 _CURVE = ("law", "a")
@@ -182,7 +182,7 @@ def _fill_transition(values: dict[str, Any], i: int, family: Family | None, asym
     values["critical_a_error"][i] = critical_a_error(family, critical)
     kind = Bifurcation.PITCHFORK if transverse_multiplier(family.at(critical)) > 0.0 else Bifurcation.FLIP
     values["bifurcation_kind"][i] = kind
-    runs = critical + np.array(OFFSETS)
+    runs = critical + unit(family.model.chain) * np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(family, runs), sweep(family, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
     if kind == Bifurcation.PITCHFORK:

@@ -22,8 +22,9 @@ STOP, START = 0, 1
 # The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
 PADDING = 8
 
-# Time between two samples of the velocities in the event window.
+# Longest time between two samples of the velocities in the event window, and longest phase of the fastest mode.
 INTERVAL = 0.1
+LARGEST_PHASE = 0.245
 
 AGAIN = "followed once more from the first stop: in chaos another trajectory than that of the run, soon"
 
@@ -118,7 +119,8 @@ def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float)
         return run["velocity"], kept
     first, duration = stops[0], float(time[-1] - time[stops[0]])
     position, velocity = run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]
-    instants = np.linspace(0.0, duration, math.ceil(duration / INTERVAL) + 1)
+    interval = min(INTERVAL, LARGEST_PHASE / model.chain.highest_frequency)
+    instants = np.linspace(0.0, duration, math.ceil(duration / interval) + 1)
     states = (position[None], velocity[None], (velocity[None] == 0.0).astype(np.intc))
     return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], duration
 
