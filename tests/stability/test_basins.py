@@ -103,6 +103,11 @@ def test_known_attractors_are_those_of_the_summary(known):
     assert found.side.tolist() == one["side"].values[there].tolist()
     for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
         assert [getattr(item, name) for item in found.attractors] == one[name].values[there].tolist()
+    for index, item in enumerate(found.attractors):
+        image = found.attractors[item.partner]
+        assert found.branch[item.partner] == found.branch[index]
+        assert found.side[item.partner] == -found.side[index]
+        assert found.attractors.index(image) == index or found.side[index] != 0
     for item, mean, state in zip(found.attractors, one["mean_distance"].values, one["position"].values, strict=False):
         assert item.motion.mean_distance == pytest.approx(mean, abs=1e-4)
         # A set that is its own mirror image holds both.

@@ -81,6 +81,7 @@ def test_maps_are_put_together_and_told(ruled):
     maps = list(zip(MODELS, tiles, near, strict=True))
     near[0]["uncertainty_exponent"][...], near[0]["uncertainty_exponent_error"][...] = 0.8125, 0.025
     near[0]["exponent_kind"][...] = ExponentKind.SINGLE
+    near[0]["exponent_change"][...], near[0]["exponent_change_error"][...] = -0.25, 0.125
     near[1]["exponent_change"][...], near[1]["exponent_change_error"][...] = 0.4375, 0.0625
     near[1]["exponent_kind"][...] = ExponentKind.VARYING
     attractors = xr.Dataset(
@@ -103,9 +104,9 @@ def test_maps_are_put_together_and_told(ruled):
     shares = "undetermined 25.00 %, synchronized 25.00 %, pair (5) (-) 50.00 %"
     decided = f"decided at tau = {np.nanmean(found['decision_time'].values[0]):.0f} in the mean"
     varying = "no single uncertainty exponent: it changes by 0.44 +- 0.06 over the separations"
+    single = "uncertainty exponent 0.812 +- 0.025 (it changes by -0.25 +- 0.12 over the separations)"
     assert basins.digest(found) == (
-        f"nonlinear, a = 0.1: {shares}; uncertainty exponent 0.812 +- 0.025; {decided}\n"
-        f"linearized, a = 0.3: {shares}; {varying}; {decided}\n"
+        f"nonlinear, a = 0.1: {shares}; {single}; {decided}\nlinearized, a = 0.3: {shares}; {varying}; {decided}\n"
     )
     found["exponent_kind"][...] = ExponentKind.UNKNOWN
     assert basins.digest(found).count("; uncertainty exponent unknown: too few pairs differ; ") == 2

@@ -46,8 +46,9 @@ def known_attractors(
     law, a = model.law.name, model.a
     found = summary.sel(law=law, a=a)
     slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
+    branch, side = found["branch"].values[slots], found["side"].values[slots]
     attractors = []
-    for slot in slots:
+    for index, slot in enumerate(slots):
         one = found.isel(attractor=slot)
         velocity = one["velocity"].values
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
@@ -70,11 +71,13 @@ def known_attractors(
         steady, slow = replace(steady, kind=MotionKind(one["kind"].item())), bool(one["slow"].item())
         if slow:
             steady = spread(model, steady, settings)
-        elif one["symmetry"].item() == Symmetry.SYMMETRIC:
+        if one["symmetry"].item() == Symmetry.SYMMETRIC:
             steady = steady.symmetrized()
         fixed = {name: one[name].item() for name in ("radius", "close_returns", "patience")}
-        attractors.append(Attractor(steady, Symmetry(one["symmetry"].item()), int(slot), slow=slow, **fixed))
-    return KnownAttractors(model, attractors, found["branch"].values[slots], found["side"].values[slots])
+        images = np.flatnonzero((branch == branch[index]) & (side == -side[index]))
+        partner = int(images[0]) if side[index] and len(images) else index
+        attractors.append(Attractor(steady, Symmetry(one["symmetry"].item()), partner, slow=slow, **fixed))
+    return KnownAttractors(model, attractors, branch, side)
 
 
 def plane(

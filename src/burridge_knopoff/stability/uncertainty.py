@@ -29,7 +29,10 @@ _STANDARD_ERRORS = 3.0
 
 
 class ExponentKind(IntEnum):
-    """Whether a boundary has an exponent: unknown, with too few pairs that differ; varying with ε; or a single one."""
+    """Whether a boundary has an exponent: unknown, with too few pairs that differ; varying with ε; or a single one.
+
+    A single one is told unless its change is beyond the error of that, which with few pairs is large.
+    """
 
     UNKNOWN = -1
     VARYING = 0

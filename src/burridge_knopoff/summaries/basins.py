@@ -241,11 +241,12 @@ def _exponent_text(one: xarray.Dataset) -> str:
     kind = ExponentKind(one["exponent_kind"].item())
     if kind == ExponentKind.UNKNOWN:
         return "uncertainty exponent unknown: too few pairs differ"
+    change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
+    changes = f"it changes by {change:.2f} +- {error:.2f} over the separations"
     if kind == ExponentKind.VARYING:
-        change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
-        return f"no single uncertainty exponent: it changes by {change:.2f} +- {error:.2f} over the separations"
+        return f"no single uncertainty exponent: {changes}"
     alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
-    return f"uncertainty exponent {alpha:.3f} +- {error:.3f}"
+    return f"uncertainty exponent {alpha:.3f} +- {error:.3f} ({changes})"
 
 
 def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:
