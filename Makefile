@@ -1,6 +1,6 @@
 # `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
 # `make kernel`: compile the kernel again.  `make test-oldest`: the workflow with the oldest Snakemake that is allowed.
-# `make benchmark`: the tables of docs/performance.md (about half an hour).  `make docs`: the figures and claims of docs/.
+# `make benchmark`: most tables of docs/performance.md (over an hour).  `make docs`: the figures and claims of docs/.
 # `make site`: the documentation, with all docstrings, as a site in build/site.
 # `make faults`, `make fuzz`, `make size`: a study killed 20 times and more; 250,000 broken inputs; 10,000 points.
 # `make mutants`: 300 random changes of the sources, do the tests notice? (up to two hours)
@@ -22,7 +22,7 @@ study: announce setup
 # Snakemake itself begins with the time that its jobs will take.
 announce:
 	@test -e .venv/kernel || echo "make: sets up .venv and compiles the kernel (a minute or two, once)," \
-		"then runs the default study on two cores (about half an hour; results/paper/report.html)"
+		"then runs the default study on two cores (half an hour to an hour; results/paper/report.html)"
 
 setup: .venv/kernel
 
