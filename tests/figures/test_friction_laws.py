@@ -6,13 +6,14 @@ import xarray as xr
 
 from burridge_knopoff.figures.friction_laws import draw
 from burridge_knopoff.laws import law_of
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 
 def runs(laws, least):
     """Runs from one state, whose least friction is that of each law and a."""
     found = xr.DataArray(least, {"law": list(laws), "initial": ["plus"], "a": [0.0, 0.3]}, ("law", "initial", "a"))
-    return found.to_dataset(name="least_friction")
+    return found.to_dataset(name="least_friction").assign(status=xr.zeros_like(found, dtype="i1"))
 
 
 def test_friction_laws_are_the_models():
@@ -25,6 +26,14 @@ def test_friction_laws_are_the_models():
         assert np.allclose(friction, {"linearized": 1.0 - 0.3 * speed, "nonlinear": 1.0 / (1.0 + 0.3 * speed)}[law])
     # As fast as runs are that feel 0.7 under the linearized law, and a little faster.
     assert laws.get_xlim()[1] == pytest.approx(1.1, rel=0.01)
+
+
+def test_a_run_that_did_not_complete_sets_no_scale():
+    found = runs(PAPER_LAWS, np.array([[[1.0, -3e9]], [[1.0, 0.8]]]))
+    found["status"][0, 0, 1] = Status.DIVERGED
+    laws, seen = draw(found, {law: {} for law in PAPER_LAWS}, 0.3).axes
+    assert seen.get_ylim()[0] > 0.7
+    assert laws.get_xlim()[1] < 2.0
 
 
 def test_the_legend_of_the_laws_has_their_formulas_and_numbers():

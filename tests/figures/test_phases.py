@@ -34,7 +34,8 @@ def phases(shares: list[float], a: list[float]) -> xarray.Dataset:
 @pytest.mark.parametrize("shares", [[0.0], [0.0, 1.0], [0.0, 0.1, 0.3, 0.7, 1.0]])
 def test_every_panel_shows_its_law_share_and_a(shares):
     found = phases(shares, [0.01, 0.02, 0.03])
-    panels = [panel for panel in draw(found).axes if panel.get_images()]
+    # Whatever the order in which a study names them.
+    panels = [panel for panel in draw(found.isel(amplitude=slice(None, None, -1))).axes if panel.get_images()]
     kept = shares if len(shares) < 4 else [0.0, 0.3, 1.0]
     assert len(panels) == 2 * len(kept) * 2
     # At the last a nothing synchronizes.

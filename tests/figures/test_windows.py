@@ -31,3 +31,23 @@ def test_a_bar_ends_halfway_to_the_next_value_and_goes_on_where_only_others_were
     assert [bar.get_x() for bar in second] == pytest.approx([0.0, 0.05, 0.15, 0.25])
     assert second[1].get_x() + second[1].get_width() == pytest.approx(0.15)
     assert second[-1].get_x() + second[-1].get_width() == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize("grid", [[0.0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.2, 0.5]])
+def test_no_bar_goes_on_over_a_value_at_which_the_branch_is_not(grid):
+    """Also where a wider step of the grid lies elsewhere."""
+    names = ("law", "value", "attractor")
+    refined = xr.Dataset(
+        {
+            "a": (names[:2], [grid]),
+            "in_grid": (names[:2], np.ones((1, 4), dtype=int)),
+            "branch": (names, np.array([[[0], [-1], [0], [0]]])),
+            "kind": (names, np.ones((1, 4, 1), dtype=int)),
+            "mean_distance": (names, np.full((1, 4, 1), 0.1)),
+            "branch_number": ("number", [0]),
+            "branch_name": ("number", ["synchronized"]),
+        },
+        {"law": ["linearized"]},
+    )
+    bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in draw(refined).axes[1].patches]
+    assert bars[:2] == [pytest.approx((0.0, 0.05)), pytest.approx((0.15, 0.5 * (0.2 + grid[3])))]

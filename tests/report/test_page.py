@@ -5,7 +5,9 @@ from html.parser import HTMLParser
 from itertools import pairwise
 
 import pytest
+import xarray
 
+from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import NEEDED, render, write_report
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
@@ -59,6 +61,25 @@ def test_what_is_missing_is_said_in_a_line(page):
     charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
     assert not {"map", "chains", "multipliers", "asymmetry", "sections"} & set(charts)
     assert {"distance", "exponents", "agreement"} <= set(charts)
+
+
+def test_an_optional_result_of_other_sources_is_left_out(poor):
+    """It is none of what the run of a study brings up to date."""
+    found = xarray.load_dataset(poor.sources.summaries["orbits"]).assign_attrs(source_fingerprint="another")
+    path = poor.folder / "old" / "chains.nc"
+    path.parent.mkdir(exist_ok=True)
+    write_summary(found, path)
+    picture = poor.sources.figures["orbits"]
+    sources = replace(
+        poor.sources,
+        summaries={**poor.sources.summaries, "chains": path},
+        figures={**poor.sources.figures, "chains": picture},
+    )
+    page = Page(render(poor.study, sources, []))
+    assert "Left out: " in page.whole_text
+    assert "old/chains.nc: was made by other sources" in page.whole_text
+    with pytest.raises(ValueError, match=r"chains\.nc: was made by other sources"):
+        render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "phases": path}))
 
 
 def test_a_failed_run_stands_with_its_file_and_command(page):

@@ -16,6 +16,7 @@ from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
     legend_entries,
+    lone_marker,
     new_figure,
     page_width,
     panel_table,
@@ -96,11 +97,12 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
         say(difference, "0 at all $a$")
     noise = (settings["standard_errors"] * run["difference_error"]).clip(min=FLOORS[0])
     name = f"{settings['standard_errors']:g} standard errors"
-    difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name)
+    alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
+    difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name, **alone)
     pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
     share = (settings["relative_tolerance"] * pair.max("law")).clip(min=FLOORS[0])
     name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
-    difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name)
+    difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name, **alone)
     _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]), unknown)
     _curve(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0), unknown)
     for panel in panels:

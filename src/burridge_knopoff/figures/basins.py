@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import branch_colors, side_color
+from burridge_knopoff.figures.branches import map_colors, side_color
 from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
 from burridge_knopoff.summaries.slots import branch_names
 
@@ -39,7 +39,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
     rows = -(-count // columns)
     figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    colors = branch_colors(attractors)
+    colors = map_colors(attractors, np.unique(basins["branch"]).tolist())
     names = branch_names(attractors)
     extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
     there = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 import xarray
@@ -26,6 +26,13 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     colors = dict.fromkeys(ranked, OTHER_COLOR)
     colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
     return {**({0: COLORS[0]} if (branch == 0).any() else {}), **colors}
+
+
+def map_colors(attractors: xarray.Dataset, shown: Collection[int]) -> dict[int, str]:
+    """Return the colours of the branches in maps: all but one of those that share one have others, not seen there."""
+    colors = branch_colors(attractors)
+    unused = iter([OTHER_COLOR, *(color for color in COLORS if color not in {colors[n] for n in shown if n >= 0})])
+    return {n: next(unused, OTHER_COLOR) if colors[n] == OTHER_COLOR else colors[n] for n in sorted(shown) if n >= 0}
 
 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:

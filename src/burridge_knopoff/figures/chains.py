@@ -92,5 +92,5 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
             a[stable], np.full(stable.sum(), 1.1 + 0.05 * index), "s", markersize=2.0, color=color(index),
             label=f"synchrony stable{name}",
         )  # fmt: skip
-    panel.set_ylim(-0.05, 1.2)
+    panel.set_ylim(-0.05, 1.15 + 0.05 * chain.sizes["law"])
     panel.set_yticks([0.0, 0.5, 1.0])

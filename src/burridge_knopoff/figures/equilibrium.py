@@ -9,7 +9,7 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, marker, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, lone_marker, marker, new_figure, styled
 
 TITLE = "Uniform sliding"
 CATEGORY = "Model"
@@ -41,7 +41,7 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
         # Not joined: eigenvalues that collide cannot be told apart.
         plane.plot(real.ravel(), imaginary.ravel(), "o", color=color(n), markersize=width, markeredgewidth=0)
         plane.plot(real[-1], imaginary[-1], marker(n), color=color(n), markersize=4)
-        growth.plot(a, real.max(axis=1), color=color(n), linewidth=1.0)
+        growth.plot(a, real.max(axis=1), color=color(n), linewidth=1.0, marker=lone_marker(a), markersize=6.0)
         some = slice(None, None, max(1, len(a) // 12))
         simulated = one["growth_rate"].values[some]
         growth.plot(a[some], simulated, marker(n), color=color(n), markersize=3.5)

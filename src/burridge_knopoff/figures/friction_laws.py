@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import PAGE, color, dashes, label_panels, lone_marker, new_figure, styled
 from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.running.status import Status
 
 TITLE = "Friction laws"
 CATEGORY = "Model"
@@ -22,9 +23,10 @@ PAPER = "Fig. 2"
 INPUTS = ("mean_distance",)
 FROM_STUDY = ("law_descriptions", "shown_a")
 CAPTION = """\
-(a) The friction Φ of each law, as a share of the static friction, against the velocity U' of a block, for the value
-of a of the single runs and the largest of the study, up to the velocity that runs at the largest a reach; a stuck block
-(U' = 0) is held by any friction up to 1. (b) The least friction on a slipping block in each run, against a.
+(a) The friction Φ of each law, as a share of the static friction, against the velocity U' of a block, for the value of
+a of the single runs and the largest of the study, up to the velocity that runs at the largest a reach; a stuck block
+(U' = 0) is held by any friction up to 1. (b) The least friction on a slipping block in each run that completed, against
+a.
 """
 
 # Velocities that runs may reach; all are drawn if the friction tells nothing.
@@ -45,7 +47,9 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     laws = [law_of(name, shown_a, description) for name, description in law_descriptions.items()]
     a_values = sorted({shown_a, float(mean_distance["a"].max())})
     figure, (left, right) = new_figure(PAGE, 3.2 + 0.17 * len(laws), columns=2)
-    last = mean_distance.sel(a=a_values[-1])["least_friction"].min("initial")
+    # A run that did not complete may have left every scale.
+    least_friction = mean_distance["least_friction"].where(mean_distance["status"] == Status.COMPLETED)
+    last = least_friction.sel(a=a_values[-1]).min("initial")
     # Where the friction has fallen to the least of the runs.
     reached = [SPEEDS[(law.at(a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws]
     fastest = 1.1 * max(reached) or 3.0
@@ -54,7 +58,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
         for k, a in enumerate(a_values):
             left.plot(speed, law.at(a)(speed), color=color(n), linestyle=dashes(k))
         for k, initial in enumerate(mean_distance["initial"].values):
-            least = mean_distance["least_friction"].sel(initial=initial, law=law.name)
+            least = least_friction.sel(initial=initial, law=law.name)
             alone = lone_marker(least.values)
             right.plot(mean_distance["a"], least, color=color(n), linestyle=dashes(k), marker=alone, markersize=3.5)
     left.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, fastest))

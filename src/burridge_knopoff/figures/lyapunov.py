@@ -25,9 +25,9 @@ TITLE = "Lyapunov exponents"
 CATEGORY = "Synchronization"
 INPUTS = ("lyapunov",)
 CAPTION = """\
-The largest Lyapunov exponents against a, with bars of three standard errors from batches, for each law and initial
-state. What lies below the frame, among it −∞, is not shown. The strips at the top show the kind of motion that follows
-from the exponents and the section points; white is undetermined.
+The largest Lyapunov exponents against a, with bars of three times their error, which is that of the batches and of
+growth by a power of time, for each law and initial state. What lies below the frame, among it −∞, is not shown. The
+strips at the top show the kind of motion that follows from the exponents and the section points; white is undetermined.
 """
 
 # Very negative exponents would take the room of those that tell kinds of motion apart.
@@ -42,7 +42,7 @@ CURVES, STRIP = 0.9, 0.93
 
 @styled
 def draw(lyapunov: xarray.Dataset) -> Figure:
-    """Draw the largest exponents against a with three standard errors, the kind of motion as a strip above them.
+    """Draw the largest exponents against a with three times their error, the kind of motion as a strip above them.
 
     A panel for each law and initial state.
     """

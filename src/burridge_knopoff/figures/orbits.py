@@ -30,11 +30,11 @@ CATEGORY = "Synchronization"
 INPUTS = ("orbits", "mean_distance")
 CONDITION = "has_synchronized_orbit"
 CAPTION = """\
-(a) Its Floquet multipliers; synchrony is lost where the modulus of the transverse multiplier μ passes 1 (dots). (b) ⟨J⟩
-of the stable and unstable orbits around that a_c, with the runs of the study that lie there, if any. (c) The distance
-of the end blocks on the orbit that takes its place grows as a power of the distance from a_c. (d) How far each law
-differs from the first one in μ and in the period T at the same a; black: the paper's two laws at the same slope of
-friction at the driver velocity. Values of 0 are left out.
+(a) Its Floquet multipliers; synchrony is lost, or gained, where the modulus of the transverse multiplier μ passes 1
+(dots). (b) ⟨J⟩ of the stable and unstable orbits around that a_c, with the runs of the study that lie there, if any.
+(c) The distance of the end blocks on the orbit that branches off grows as a power of the distance from a_c. (d) How far
+each law differs from the first one in μ and in the period T at the same a; black: the paper's two laws at the same
+slope of friction at the driver velocity. Values of 0 are left out.
 """
 
 # What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
@@ -65,7 +65,8 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     panels[0].legend(handles=_styles(("-", "--"), (r"transverse, $\mu$", "mirror-symmetric")))
     panels[1].set(xlabel="$a$", ylabel=r"$\langle J\rangle$")
     branching = orbits["branch_mean_distance"].max().item()
-    panels[1].set_ylim(-0.001, 1.08 * branching if branching > 0.0 else None)
+    if branching > 0.0:
+        panels[1].set_ylim(-0.03 * branching, 1.08 * branching)
     _, near = legend_entries(panels[1:2])
     states = [
         Line2D([], [], color="0.3", linestyle="none", label=f"run from {name}", **_run_look(k))
@@ -86,7 +87,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         [
             "multipliers of the synchronized orbit",
             r"around $a_c$",
-            r"beyond $a_c$",
+            r"what branches off at $a_c$",
             f"{compared} compared with the {first} law" if others else f"{first} law",
         ],
     )
@@ -122,8 +123,11 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
     if not np.isfinite(critical):
         return
     low, high = NEAR * critical, np.nanmax([critical, *(critical + offset)])
-    panel.plot([low, critical], [0.0, 0.0], "-", color=hue)
-    panel.plot([critical, high], [0.0, 0.0], ":", color=hue)
+    for ends, attracts in (
+        ((low, critical), _attracts(one, below=True)),
+        ((critical, high), _attracts(one, below=False)),
+    ):
+        panel.plot(ends, [0.0, 0.0], "-" if attracts else ":", color=hue)
     for mask, style in ((stable, "-"), (~stable, ":")):
         panel.plot(critical + offset, np.where(mask, distance, np.nan), style, color=hue)
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
@@ -131,6 +135,15 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
         run = runs.sel(initial=initial).isel(a=near)
         look = {"color": hue, "linestyle": "none", "label": f"run from {initial}", **_run_look(k)}
         panel.plot(run["a"].values, run["mean_distance"].values, **look)
+
+
+def _attracts(one: xarray.Dataset, *, below: bool) -> bool:
+    """Tell whether synchrony attracts on a side of a_c, by the nearest value of a; else as where it is lost there."""
+    a, modulus = one["a"].values, np.abs(one["transverse_multiplier"].values)
+    side = np.isfinite(modulus) & ((a < one["critical_a"].item()) == below)
+    if not side.any():
+        return below
+    return bool(modulus[side][-1 if below else 0] < 1.0)
 
 
 def _run_look(state: int) -> dict[str, Any]:
@@ -179,13 +192,14 @@ def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
         ("period", "effective_period_difference", "T", (":", "-.")),
     )
     handles: list[Line2D] = []
+    alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
     for plain, scaled, symbol, (style, other_style) in curves:
         for index, law in enumerate(laws[1:], 1):
             difference = orbits[plain].sel(law=law) - orbits[plain].sel(law=laws[0])
-            panel.plot(a, _positive(difference.values), style, color=color(index))
+            panel.plot(a, _positive(difference.values), style, color=color(index), **alone)
         handles += _styles((style,), (rf"$|\Delta {symbol}|$, same $a$",))
         if scaled in orbits:
-            panel.plot(a, _positive(orbits[scaled].values), other_style, color="black")
+            panel.plot(a, _positive(orbits[scaled].values), other_style, color="black", **alone)
             label = rf"$|\Delta {symbol}|$, same $\Phi$′$(v)$"
             handles.append(Line2D([], [], color="black", linestyle=other_style, label=label))
     panel.set(xlabel="$a$", ylabel="difference of the laws", yscale="log")

@@ -33,6 +33,7 @@ def draw(phases: xarray.Dataset) -> Figure:
 
     Amplitudes and differences are given equal steps, whatever their distance.
     """
+    phases = phases.sortby(["amplitude", "phase_difference"])
     difference = phases["phase_difference"].values
     # Where synchrony does not attract all panels would be white.
     others = [name for name in phases["synchronized_fraction"].dims if name != "a"]

@@ -24,9 +24,9 @@ TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
-Every solver of each law at a few values of a: ⟨J⟩, its difference from that of the study's own solver with the standard
-error of that difference as a short line, and the number of steps in a unit of time. What is 0, or below 10⁻¹⁵, lies at
-the foot of the second row.
+Every solver of each law at a few values of a: ⟨J⟩ with its standard error, its difference from that of the study's own
+solver with the standard error of that difference as a short line, and the number of steps in a unit of time. What is 0,
+or below 10⁻¹⁵, lies at the foot of the second row.
 """
 
 #: Steps in a unit of time of the paper's own numerical solution.

@@ -128,8 +128,9 @@ def panel_table(
 def begin_at_zero(panel: Axes) -> None:
     """Let the scale of a row of panels reach from just below 0 to just above its largest value."""
     tops = [each.dataLim.y1 for each in panel.get_shared_y_axes().get_siblings(panel)]
+    top = max(filter(np.isfinite, tops), default=0.0)
     # Where all is 0, rounding sets the scale of nothing.
-    top = max([0.01, *filter(np.isfinite, tops)])
+    top = top if top > 1e-9 else 0.01
     panel.set_ylim(-0.03 * top, 1.1 * top)
 
 

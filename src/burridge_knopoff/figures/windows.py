@@ -63,17 +63,19 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
 
 
 def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
-    """Draw each value of a as a bar, halfway to the next on the branch; where the branch ends, to the next of all."""
+    """Draw each value of a as a bar, halfway to the next on the branch; where the branch ends, to the next of all.
+
+    Between values of the grid only branches that change are looked for: the others go on.
+    """
     # The other law may have more values.
     refined = refined.isel(value=refined["a"].notnull().values)
     every, edges = refined["a"].values, cells(refined["a"].values)
-    # Within a step of the grid only branches that change are looked for: the others go on.
-    step = np.diff(every[refined["in_grid"].values == 1]).max(initial=0.0)
+    grid = every[refined["in_grid"].values == 1]
     for row, number in enumerate(numbers):
         slots = refined["branch"].values == number
         (here,) = np.nonzero(slots.any(axis=1))
         a, kind = every[here], refined["kind"].values[here, slots[here].argmax(axis=1)]
-        joined, middle = np.diff(a) < 1.001 * step, 0.5 * (a[1:] + a[:-1])
+        joined, middle = np.searchsorted(grid, a[1:]) == np.searchsorted(grid, a[:-1], "right"), 0.5 * (a[1:] + a[:-1])
         left = np.append(edges[here[:1]], np.where(joined, middle, edges[here[1:]]))
         right = np.append(np.where(joined, middle, edges[here[:-1] + 1]), edges[here[-1:] + 1])
         colors = [KIND_COLORS[int(item)] for item in kind]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import branch_colors, side_color
+from burridge_knopoff.figures.branches import map_colors, side_color
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.summaries.slots import branch_names
 
@@ -27,7 +27,7 @@ def basin_maps(
     time : base64 of two bytes a pixel, least significant first: decision time τ, rounded, 0 if undetermined
     marked : U_1(0) and U_N(0) of the initial states of the study in the plane
     """
-    colors = branch_colors(attractors)
+    colors = map_colors(attractors, np.unique(basins["branch"]).tolist())
     names = branch_names(attractors)
     laws = basins["law"].attrs["flag_meanings"].split()
     return {

@@ -37,6 +37,9 @@ PLACED = ("mean_distance", "bifurcation", "lyapunov", "orbits", "basins", "basin
 #: Summaries without which there is no report; all others may be missing.
 NEEDED = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits")
 
+#: The result of an optional stage, which may be older than the study.
+OPTIONAL = "chains"
+
 
 @dataclass(frozen=True)
 class Sources:
@@ -68,9 +71,21 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         if name not in sources.summaries:
             raise ValueError(f"{name}.nc: not among the summaries of the report; it needs {', '.join(NEEDED)}")
     verdicts = read_verdicts(sources.claims)
-    summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
+    summaries, left_out = {}, ""
+    for name, path in sources.summaries.items():
+        try:
+            summaries[name] = open_summary(path)
+        except ValueError as error:
+            # Made by a target of its own, it is none of what the run of a study brings up to date.
+            if name != OPTIONAL:
+                raise
+            left_out = str(error)
     # One after the other: each takes some 100 MB while it is compressed.
-    pictures = {name: read_picture(path, list(summaries)) for name, path in sources.figures.items()}
+    pictures = {
+        name: read_picture(path, list(summaries))
+        for name, path in sources.figures.items()
+        if not (left_out and name == OPTIONAL)
+    }
     commands = Commands(study, arguments)
     sections = section_counts(summaries["bifurcation"])
     environment = jinja2.Environment(
@@ -107,6 +122,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         agreement=digest(summaries["agreement"]).splitlines(),
         chains=_of(summaries, "chains", tables.chain_table, []),
         chains_command=commands.of_study("-c2", "chains"),
+        chains_left_out=left_out,
         chain_laws=_of(summaries, "chains", lambda chains: chains["law"].values.tolist(), []),
         chain_settings=_of(summaries, "chains", lambda chains: overview.foreign_settings(chains, study), []),
         unclear=unclear_runs(commands, summaries["mean_distance"], summaries["lyapunov"]),

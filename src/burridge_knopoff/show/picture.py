@@ -16,6 +16,7 @@ from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.summaries.bifurcation import ROUNDING
 
 FORMATS = (".png", ".pdf", ".svg")
 
@@ -96,6 +97,7 @@ def draw_point(point: xarray.Dataset) -> Figure:
     panels[1].set(yscale="log", ylim=(FLOOR, max(10.0, np.nanmax(distance, initial=0.0))))
     panels[1].legend(loc="lower right", handlelength=1.2)
     upward = point["crossing_velocity"].values[point["crossing_direction"].values > 0]
+    upward = upward[np.abs(upward) > ROUNDING]
     if len(upward) > 1:
         size = 2.5 if len(np.unique(upward.round(6))) > FEW else 5.0
         panels[2].plot(
@@ -107,7 +109,7 @@ def draw_point(point: xarray.Dataset) -> Figure:
         panels[2].set(xlabel="$W$′ at an upward crossing of $W=0$", ylabel="$W$′ at the next", xlim=limits, ylim=limits)
         panels[2].locator_params(nbins=5)
     else:
-        say_nothing(panels[2], "W crosses 0 less than twice in the window")
+        say_nothing(panels[2], "W crosses 0 upward less than twice in the window")
     if np.isfinite(point["velocity"].values).any():
         draw_blocks(panels[3], point, "velocity")
         panels[3].set(xlabel=r"$\tau$", ylabel="$U_i$′")

@@ -50,9 +50,14 @@ builders.distance = (box) => {
 
 /** All laws share the range of ⟨J⟩. */
 function distanceRange() {
-  const largest = Math.max(0.01, ...tops(runs.mean_distance.flat(2), runs.mean_distance_error.flat(2)), ...data.attractors.flatMap((law) => law.mean_distance.map(plain)));
+  const found = greatest([...tops(runs.mean_distance.flat(2), runs.mean_distance_error.flat(2)), ...data.attractors.flatMap((law) => law.mean_distance.map(plain))]);
+  // Where all is 0, rounding sets the scale of nothing.
+  const largest = found > 1e-9 ? found : 0.01;
   return [-0.04 * largest, 1.06 * largest];
 }
+
+/** Return the greatest of any number of values, 0 at least. */
+const greatest = (values) => values.reduce((one, other) => Math.max(one, other), 0);
 
 /** Return where the bars of three errors end; where there is no value, 0. */
 const tops = (values, errors) => values.map((value, n) => plain(value) + 3 * plain(errors[n]));
@@ -87,7 +92,7 @@ builders.exponents = (box) => {
   return {
     traces: [...curves, strip],
     xaxis: aAxis(),
-    yaxis: axis("Lyapunov exponents", { range: [-0.13, Math.max(0.08, 1.1 * Math.max(...tops(runs.exponents.flat(3), runs.exponent_errors.flat(3))))], domain: [0, 0.92] }),
+    yaxis: axis("Lyapunov exponents", { range: [-0.13, Math.max(0.08, 1.1 * greatest(tops(runs.exponents.flat(3), runs.exponent_errors.flat(3))))], domain: [0, 0.92] }),
     yaxis2: { domain: [0.945, 1], visible: false, fixedrange: true },
     shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 0, y1: 0, layer: "below", line: { color: ink("muted"), width: 1 } }],
   };
@@ -103,7 +108,6 @@ function steps(colors) {
 builders.fractions = (box) => {
   const traces = data.fractions[Number(box.dataset.law)].flatMap((curve) => {
     const color = hue(curve.color);
-    const edge = { type: "scatter", mode: "lines", x: runs.a, line: { width: 0 }, hoverinfo: "skip", connectgaps: false };
     return [
       { type: "scatter", mode: "lines+markers", x: runs.a, y: curve.fraction,
         text: curve.fraction.map((_, n) => `${short(curve.low[n])} to ${short(curve.high[n])}`),
