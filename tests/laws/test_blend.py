@@ -28,6 +28,21 @@ def test_numbers_of_one_name_are_those_of_their_own_law():
     assert float(blend(one, other, 0.5)(1.0)) == pytest.approx(1.0 - 2.0 * 0.1)
 
 
+def test_negative_numbers_stand_in_brackets():
+    law = law_of("mine", 0.1, {"formula": "1 - a*u*c**2", "c": -2.0})
+    assert float(blend(law, law, 0.5)(1.0)) == pytest.approx(0.6)
+    assert float(mirrored(law, 0.1).slope(1.0)) == pytest.approx(0.4)
+
+
+def test_laws_of_the_longest_formulas_are_blended():
+    formula = "1 - a*u" + " + 0*u" * 65
+    law = law_of("mine", 0.1, {"formula": formula})
+    np.testing.assert_allclose(blend(law, law, 0.5)(SPEEDS), law(SPEEDS), rtol=1e-14)
+    np.testing.assert_allclose(mirrored(law, 0.2).slope(SPEEDS), -law.slope(SPEEDS), rtol=1e-12)
+    with pytest.raises(ValueError, match="at most 400 characters"):
+        law_of("mine", 0.1, {"formula": formula + " + 0*u"})
+
+
 @pytest.mark.parametrize("name", ["linearized", "nonlinear", "exponential"])
 def test_the_mirror_image_of_a_law_grows_where_it_falls(name):
     law = law_of(name, 0.3)

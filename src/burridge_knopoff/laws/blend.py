@@ -7,7 +7,13 @@ import re
 from burridge_knopoff.laws.law import FormulaLaw, Law
 
 
-def blend(first: Law, second: Law, share: float) -> FormulaLaw:
+class MadeLaw(FormulaLaw):
+    """A law whose formula holds those of others, and may be longer than one that is given."""
+
+    longest = 100_000
+
+
+def blend(first: Law, second: Law, share: float) -> MadeLaw:
     """Return the law (1 − share) Φ₁ + share Φ₂ of two laws at the same a.
 
     share : 0 is the first law, 1 the second
@@ -17,17 +23,21 @@ def blend(first: Law, second: Law, share: float) -> FormulaLaw:
     if first.a != second.a:
         raise ValueError(f"a: {second.a!r} is not allowed: that of the first law, {first.a!r}")
     formula = f"{1.0 - share!r}*({_with_numbers(first)}) + {share!r}*({_with_numbers(second)})"
-    return FormulaLaw(first.a, formula, name="blend")
+    return MadeLaw(first.a, formula, name="blend")
 
 
-def mirrored(law: Law, speed: float) -> FormulaLaw:
+def mirrored(law: Law, speed: float) -> MadeLaw:
     """Return the law 2 Φ(speed) − Φ, which has the same friction at that speed and the slope reversed.
 
     Raises ValueError where that is no friction law, see `Law`.
     """
-    return FormulaLaw(law.a, f"{2.0 * float(law(speed))!r} - ({_with_numbers(law)})", name="mirrored")
+    return MadeLaw(law.a, f"{2.0 * float(law(speed))!r} - ({_with_numbers(law)})", name="mirrored")
 
 
 def _with_numbers(law: Law) -> str:
     """Return the formula of a law with its numbers in the place of their names."""
-    return re.sub(r"\b[a-zA-Z_]\w*", lambda name: repr(law.numbers.get(name[0], name[0])).strip("'"), law.formula)
+
+    def number(name: re.Match[str]) -> str:
+        return f"({law.numbers[name[0]]!r})" if name[0] in law.numbers else name[0]
+
+    return re.sub(r"\b[a-zA-Z_]\w*", number, law.formula)

@@ -57,6 +57,8 @@ class Law:
     text: str
     #: The other numbers of the formula, with their defaults.
     defaults: ClassVar[Mapping[str, float]] = {}
+    #: Characters that the formula may have.
+    longest: ClassVar[int] = 400
 
     def __init__(self, a: float, /, *, name: str = "", **numbers: float) -> None:
         self.name = name or type(self).__module__.rpartition(".")[2]
@@ -90,6 +92,8 @@ class Law:
             ) from None
 
     def _check(self) -> None:
+        if len(self.formula) > self.longest:
+            raise FormulaError(f"at most {self.longest} characters")
         if not self.tape.is_analytic(0.0, FASTEST):
             raise FormulaError(f"it is not analytic and finite for all speeds u from 0 to {FASTEST:g}")
         start = float(self(0.0))
