@@ -149,8 +149,9 @@ class LogHandler(LogHandlerBase):
                 return [cost(run)] if run.jobs else []
             if not (run.results and run.jobs):
                 return []
-            # `--quiet progress` keeps from the log which jobs were done, but their files are there.
+            # `--quiet progress` keeps from the log which jobs were done, and when, but their files are there.
             for job in run.of(RUNNING) if self._quiet else ():
+                job.timed = False
                 job.state = DONE if all(Path(path).exists() for path in job.output) else RUNNING
             # A folder that cannot be written to fails no run.
             with suppress(OSError):

@@ -17,7 +17,7 @@ from burridge_knopoff.study.job_log import SILENT
 from burridge_knopoff.study.study import load_study
 from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
 from snakemake_logger_plugin_study.durations import SHIPPED, Durations
-from snakemake_logger_plugin_study.past import write_past
+from snakemake_logger_plugin_study.past import read_past, write_past
 from snakemake_logger_plugin_study.plan import Plan
 from snakemake_logger_plugin_study.refusal import checked_cores, reworded
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
@@ -209,7 +209,11 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     last = ["study x: done in 0 s", "made: x.nc, x.nc", "report: results/x/report.html"]
     assert written(*ROUTINE, start(2), end(2), **run) == [BEGIN, *last]
     # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
+    known = read_past(run["results"])
     assert written(*BEGUN, start(2), quiet={Quietness.PROGRESS}, **run) == [BEGIN, *last]
+    # Nor when they ended, so that nothing is learnt of how long they take.
+    assert read_past(run["results"]) == known
+    assert min(job["seconds"] for job in known.values()) >= 0.0
     assert written(*BEGUN, start(2), quiet={Quietness.ALL}, **run) == []
     monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
     assert "what the run left cannot be told: division by zero" in written(*ROUTINE, **run)

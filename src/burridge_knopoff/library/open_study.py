@@ -71,7 +71,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
             axes(law=laws, initial=states, a=list(values.values())),
         )
     absent = study.absent_summaries
-    for path in sorted(results.glob("summary/*.nc")):
+    for path in sorted(results.glob("summary/[!.]*.nc")):
         if path.stem not in absent:
             nodes[f"summary/{path.stem}"] = _opened(path)
     return xarray.DataTree.from_dict(nodes, name=study.name)
