@@ -39,6 +39,14 @@ regular:
   parameters: {initial: [minus], laws: [linearized], kinds: [periodic], a: {above: 0}, loose_share: 0.9}
   figure: lyapunov
 """
+POSITION = """
+position:
+  statement: Sliding lies there.
+  place: Fig. 3
+  judge: model.equilibrium_position
+  parameters: {law: linearized, coefficients: [0.8, 0.7, 0.8], tolerance: 0.1}
+  figure: equilibrium
+"""
 
 
 def read(tmp_path: Path, text: str | bytes) -> list:
@@ -69,6 +77,8 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, "claimed: 0.08", "claimed: true", "claimed: True is not allowed"),
         (EDGE, "claimed: 0.08", "claimed: .nan", "claimed: nan is not allowed"),
         (EDGE, "loose: 0.01", "loose: 0.001", "loose: 0.001 is not allowed: at least tolerance"),
+        (POSITION, "[0.8,", "[0.9, 0.8,", "coefficients: [0.9, 0.8, 0.7, 0.8] is not allowed"),
+        (POSITION, "[0.8, 0.7, 0.8]", "[0.8, 0.7]", "coefficients: [0.8, 0.7] is not allowed"),
         (EDGE, EDGE, "[", "not YAML (line 1)"),
         (EDGE, EDGE, "a: !!python/object:os.system {}", "not YAML (line 1)"),
         (EDGE, EDGE, "? [a, b]\n: 1", "(line 1) is not allowed as a key"),

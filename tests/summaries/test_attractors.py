@@ -10,7 +10,7 @@ from burridge_knopoff.stability.lifetime import Lifetime
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION, Refine
 from burridge_knopoff.summaries import all_laws, attractors, refined
-from burridge_knopoff.summaries.slots import name_branches
+from burridge_knopoff.summaries.slots import name_branches, slot_values
 from tests.summaries.continued import SETTINGS, STATES, continuation
 
 
@@ -124,3 +124,12 @@ def test_branches_have_names_that_say_what_they_are():
         "mirror pair, block 1, 3 never sticks (3)",
         "motion (4)",
     ]
+
+
+def test_one_value_of_a_has_slots_as_well():
+    found = continuation("linearized")
+    lists = ("models", "attractors", "lifetimes", "branch", "side")
+    alone = replace(found, **{name: getattr(found, name)[:1] for name in lists})
+    values = slot_values(alone, [0], 1e5, "a")
+    assert values["stop_rate"].shape == (1, 2, 3)
+    assert values["branch"].tolist() == [[0, 1]]

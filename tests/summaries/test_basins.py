@@ -119,3 +119,8 @@ def test_undetermined_states_that_are_their_own_mirror_images_are_counted(veloci
     places = {name: [0.5, 1.5, 2.5] for name in ("last_position", "first_position")}
     plane = {"plane_position": np.array([1.0, 3.0, 2.0]), "plane_velocity": np.array(velocity)}
     assert basins.undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike
+    # Of the inner positions all have to be alike.
+    four = {"plane_velocity": np.full(4, 0.1)}
+    for inner, expected in (([3.0, 3.0], 2), ([3.0, 2.0], 0)):
+        four["plane_position"] = np.array([1.0, *inner, 2.0])
+        assert basins.undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, four)) == expected
