@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+import numpy as np
 import xarray
 import yaml
 
+from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
@@ -22,6 +24,12 @@ from burridge_knopoff.study.words import counted
 LIBRARIES = (
     *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
     *("pyyaml", "jinja2", "plotly", "pillow"),
+)
+
+#: Settings of the section `chains` by which states are drawn and judged.
+SAMPLED = (
+    *("samples", "symmetric_samples", "seed", "position", "velocity"),
+    *("time_limit", "synchronization_distance"),
 )
 
 
@@ -123,9 +131,14 @@ def software() -> list[tuple[str, str]]:
 
 
 def foreign_settings(dataset: xarray.Dataset, study: Study) -> list[str]:
-    """Return what of a summary's v, contact and start differs from the study: it was made before a change of it."""
-    return [
-        f"{key} = {dataset.attrs[key]}, here {study.config[key]}"
-        for key in ("v", "contact", "start")
-        if key in dataset.attrs and dataset.attrs[key] != study.config[key]
-    ]
+    """Return which settings of longer chains differ from the study's: they were made before a change of it."""
+    chains, first = study.config["chains"], float(dataset["a"].values[0])
+    laws = [law_of(name, first, study.config["laws"][name]) for name in chains["laws"]]
+    own = {
+        **study.config["chain"],
+        "friction": "; ".join(f"{law.name}: {law.words}" for law in laws),
+        **{key: study.config[key] for key in ("v", "contact", "start")},
+        **{key: chains[key] for key in SAMPLED},
+    }
+    made = {key: np.asarray(dataset.attrs[key]).tolist() for key in own if key in dataset.attrs}
+    return [f"{key} = {value}, here {own[key]}" for key, value in made.items() if value != own[key]]

@@ -80,6 +80,8 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         {
             "history": "snakemake chains",
             "blocks": first.blocks,
+            **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends")},
+            "friction": "; ".join(f"{model.law.name}: {model.law.words}" for model in models),
             "v": first.v,
             "contact": first.contact,
             **asdict(watch),
