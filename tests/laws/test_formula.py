@@ -68,3 +68,26 @@ def test_a_formula_is_the_law_that_it_spells():
     built_in, formula = LAWS["nonlinear"](0.2), FormulaLaw(0.2, "1/(1 + a*u)")
     assert formula.tape == built_in.tape
     assert formula != built_in
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "0.3 + (0.5 + a*u)*(1 - c*u)",
+        "0.2 + (0.1 + u)*(1 + u)*(2 + c*u)",
+        "(1 + a*u)*(1 + c*u)/(1 + u)**2",
+        "0.5 + (0.2*u)*(0.3*u)",
+        "0.9*(1 - c*u)/sqrt(1 + u)",
+        "exp(-(1 + u)*(c + u))",
+        "1 - c*tanh(a*u/c)",
+        "0.7 - 0.1*log(1 + u)*(1 + a*u)",
+    ],
+)
+def test_a_formula_is_what_python_makes_of_it(formula):
+    """Its slope against a step into the complex plane, which rounds nothing."""
+    names = {"a": 0.02, "c": 0.03, **{name: getattr(np, name) for name in ("exp", "sqrt", "tanh", "log")}}
+    law = FormulaLaw(0.02, formula, **({"c": 0.03} if "c" in formula.replace("exp", "") else {}))
+    speed = np.linspace(0.0, 3.0, 31)
+    np.testing.assert_allclose(law(speed), eval(formula, {**names, "u": speed}), rtol=1e-14)
+    step = eval(formula, {**names, "u": speed + 1e-200j}).imag / 1e-200
+    np.testing.assert_allclose(law.slope(speed), step, rtol=1e-12, atol=1e-15)

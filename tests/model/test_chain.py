@@ -103,3 +103,8 @@ def test_what_is_computed_once_is_not_written_to():
     for array in (*arrays, Model(chain, law_of("linearized", 0.1)).sliding_offset):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 2.0
+
+
+def test_ends_are_told_by_their_name():
+    """A text that was read is another object than the one in a program."""
+    assert Chain(3, coupling=(1.0, 2.0), ends="".join(["op", "en"])).stiffness[0, 2] == 0.0

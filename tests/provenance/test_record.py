@@ -87,6 +87,20 @@ def test_the_commit_of_a_checkout_a_worktree_and_a_detached_head(checkout):
     assert look(root) == commit
 
 
+def test_changed_files_are_told(checkout):
+    root, look = checkout
+    (root / "one.txt").write_text("1")
+    # What is not under version control, as results, changes no commit.
+    assert not look(root).endswith("-dirty")
+    git(root, "add", "one.txt")
+    git(root, "commit", "-q", "-m", "second")
+    git(root, "tag", "v1")
+    commit = git(root, "rev-parse", "HEAD")
+    assert look(root) == commit
+    (root / "one.txt").write_text("2")
+    assert look(root) == f"{commit}-dirty"
+
+
 def test_no_checkout_has_no_commit(checkout, tmp_path):
     _, look = checkout
     assert look(tmp_path / "elsewhere") == "unknown"

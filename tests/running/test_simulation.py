@@ -131,3 +131,9 @@ def test_motion_without_bound_ends_the_run(solver):
     assert run.status == "diverged"
     assert run.end_time < 1000.0
     assert np.isnan(run.mean_distance)
+
+
+def test_a_section_point_has_the_direction_of_its_velocity():
+    run = simulate("linearized", 0.08, "plus", transient=100.0, window=100.0)
+    assert set(run.crossing_direction.tolist()) == {-1, 1}
+    assert (np.sign(run.crossing_velocity) == run.crossing_direction).all()

@@ -100,7 +100,7 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
     difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name, **alone)
     pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
-    share = (settings["relative_tolerance"] * pair.max("law")).clip(min=FLOORS[0])
+    share = (settings["relative_tolerance"] * pair.max("law", skipna=False)).clip(min=FLOORS[0])
     name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
     difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name, **alone)
     _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]), unknown)

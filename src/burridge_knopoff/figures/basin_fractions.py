@@ -7,7 +7,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
+from burridge_knopoff.figures.branches import branch_colors, fraction_curves, undetermined_share
 from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
@@ -18,8 +18,6 @@ from burridge_knopoff.figures.style import (
     say_nothing,
     styled,
 )
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Basin fractions and sweeps"
 CATEGORY = "Attractors"
@@ -57,34 +55,17 @@ def draw(attractors: xarray.Dataset) -> Figure:
 
 def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     a = attractors["a"].values
-    samples = int(attractors.attrs["fraction_samples"])
-    if not samples:
+    if not attractors.attrs["fraction_samples"]:
         say_nothing(panel, "no states were sampled")
         return
-    branch, count = attractors["branch"].values, attractors["basin_count"].values
-    names = branch_names(attractors)
-    shown = [[number] for number, color in sorted(colors.items()) if color != OTHER_COLOR]
-    rest = [number for number, color in colors.items() if color == OTHER_COLOR]
-    for numbers in (*shown, rest):
-        members = np.isin(branch, numbers)
-        there = np.asarray(members.any(axis=1))
-        if not there.any():
-            continue
-        color = colors[numbers[0]]
-        name = names[numbers[0]] if color != OTHER_COLOR else "other branches"
-        hits = np.where(members, count, 0).sum(axis=1)
-        interval = np.array([fraction_interval(int(hit), samples) for hit in hits])
-        # Gaps where the branch does not exist.
-        interval[~there] = np.nan
+    for name, color, interval in fraction_curves(attractors, colors):
+        there = np.isfinite(interval[:, 0])
         panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=name)
         panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
         # A band has no width where neither neighbour is there.
         alone = there & ~np.append(there[1:], False) & ~np.append(False, there[:-1])
         panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
-
-    undetermined = attractors["undetermined_count"].values / samples
-    undetermined = np.where(undetermined > 0.0, undetermined, np.nan)
-    panel.plot(a, undetermined, "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
+    panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:

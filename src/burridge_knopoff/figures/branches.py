@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 import numpy as np
 import xarray
 
+from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.summaries.slots import branch_names
+
 OTHER_COLOR = "#999999"
+OTHERS = "other branches"
+UNDETERMINED_COLOR = "#000000"
 
 # The synchronized attractor has the first; the others go to the branches that most sampled states reach.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#999933", "#332288")
@@ -38,7 +43,37 @@ def map_colors(attractors: xarray.Dataset, shown: Collection[int]) -> dict[int, 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:
     """Return the colours of branches by their names, for a legend; the one that several share comes last."""
     own = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_COLOR}
-    return own | ({"other branches": OTHER_COLOR} if len(own) < len(colors) else {})
+    return own | ({OTHERS: OTHER_COLOR} if len(own) < len(colors) else {})
+
+
+def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> Iterator[tuple[str, str, np.ndarray]]:
+    """Yield name, colour and basin fraction of each branch of one law, all those that share a colour as one, at last.
+
+    The fraction has the ends of its 95 % Wilson interval beside it, shape (a, 3), NaN where there is no such attractor.
+    Both sides of a branch count together.
+
+    colors : of all branches, as of `branch_colors`
+    """
+    names, samples = branch_names(attractors), int(attractors.attrs["fraction_samples"])
+    branch, count = attractors["branch"].values, attractors["basin_count"].values
+    own = [([number], names[number], color) for number, color in sorted(colors.items()) if color != OTHER_COLOR]
+    others = [number for number, color in colors.items() if color == OTHER_COLOR]
+    for numbers, name, color in (*own, (others, OTHERS, OTHER_COLOR)):
+        members = np.isin(branch, numbers)
+        there = members.any(axis=1)
+        if there.any():
+            hits = np.where(members, count, 0).sum(axis=1)
+            known = {hit: fraction_interval(hit, samples) for hit in set(hits.tolist())}
+            interval = np.array([known[hit] for hit in hits.tolist()])
+            interval[~there] = np.nan
+            yield name, color, interval
+
+
+def undetermined_share(attractors: xarray.Dataset) -> np.ndarray:
+    """Return the share of the sampled states whose attractor is undetermined, shape (a,); NaN where there are none."""
+    with np.errstate(invalid="ignore"):
+        share = attractors["undetermined_count"].values / int(attractors.attrs["fraction_samples"])
+    return np.where(share > 0.0, share, np.nan)
 
 
 def side_color(color: str, side: int) -> tuple[float, float, float]:

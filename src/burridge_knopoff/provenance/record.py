@@ -26,10 +26,13 @@ _TYPES = {
 
 @cache
 def git_commit() -> str:
-    """Return the commit that is checked out around the package, or "unknown" outside a checkout."""
+    """Return the commit that is checked out around the package, or "unknown" outside a checkout.
+
+    Where files differ from that commit it ends with "-dirty".
+    """
     checkout = PACKAGE.parent.parent
     # The checkout may lie in the folder of another user.
-    command = ["git", "-c", "safe.directory=*", "rev-parse", "HEAD"]
+    command = ["git", "-c", "safe.directory=*", "describe", "--always", "--abbrev=40", "--exclude=*", "--dirty"]
     with contextlib.suppress(OSError, subprocess.CalledProcessError):
         if (checkout / ".git").exists():
             return subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True).stdout.strip()

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import map_colors, side_color
+from burridge_knopoff.figures.branches import UNDETERMINED_COLOR, map_colors, side_color
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.summaries.slots import branch_names
-
-UNDETERMINED_COLOR = "#000000"
 
 #: Largest decision time that two bytes hold; 0 stands for undetermined.
 LARGEST_TIME = 65535

@@ -7,12 +7,18 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors
+from burridge_knopoff.figures.branches import (
+    OTHER_COLOR,
+    OTHERS,
+    UNDETERMINED_COLOR,
+    branch_colors,
+    fraction_curves,
+    undetermined_share,
+)
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.orbits.loss import Bifurcation, OrbitStatus
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.summaries.slots import branch_names
 
 
@@ -30,7 +36,7 @@ def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
         {
             "number": number,
             "name": names[number],
-            "group": "other branches" if colors[number] == OTHER_COLOR else names[number],
+            "group": OTHERS if colors[number] == OTHER_COLOR else names[number],
             "color": colors[number],
         }
         for number in ordered
@@ -52,28 +58,15 @@ def attractor_points(attractors: xarray.Dataset) -> list[dict[str, list[Any]]]:
 def basin_fractions(attractors: xarray.Dataset) -> list[list[dict[str, Any]]]:
     """Return, for each law and each group of branches, fraction of the sampled states and its 95 % Wilson interval.
 
-    Both sides of a branch count together; None where it does not exist.
+    The last one of each law is the share of the undetermined states, which has no interval. None where there are none.
     """
-    samples = int(attractors.attrs["fraction_samples"])
-    groups: dict[str, list[dict[str, Any]]] = {}
-    for item in branches(attractors):
-        groups.setdefault(item["group"], []).append(item)
-    laws = []
+    colors, laws = branch_colors(attractors), []
     for law in attractors["law"].values:
         one = attractors.sel(law=law)
-        curves = []
-        for group, items in groups.items():
-            members = np.isin(one["branch"].values, [item["number"] for item in items])
-            there = members.any(axis=1)
-            if not there.any():
-                continue
-            hits = np.where(members, one["basin_count"].values, 0).sum(axis=1)
-            known = {hit: fraction_interval(hit, samples) for hit in set(hits.tolist())}
-            interval = np.array([known[hit] for hit in hits.tolist()])
-            interval[~there] = np.nan
-            fraction, low, high = rounded(interval.T)
-            curves.append({"name": group, "color": items[0]["color"], "fraction": fraction, "low": low, "high": high})
-        laws.append(curves)
+        undetermined = np.repeat(undetermined_share(one)[:, None], 3, axis=1)
+        curves = [*fraction_curves(one, colors), ("undetermined", UNDETERMINED_COLOR, undetermined)]
+        parts = [(name, color, *rounded(interval.T)) for name, color, interval in curves]
+        laws.append([dict(zip(("name", "color", "fraction", "low", "high"), part, strict=True)) for part in parts])
     return laws
 
 

@@ -108,12 +108,13 @@ function steps(colors) {
 builders.fractions = (box) => {
   const traces = data.fractions[Number(box.dataset.law)].flatMap((curve) => {
     const color = hue(curve.color);
+    const group = groups.get(curve.name);
     return [
-      { type: "scatter", mode: "lines+markers", x: runs.a, y: curve.fraction,
+      { type: "scatter", mode: group ? "lines+markers" : "markers", x: runs.a, y: curve.fraction,
         text: curve.fraction.map((_, n) => `${short(curve.low[n])} to ${short(curve.high[n])}`),
         error_y: { type: "data", symmetric: false, array: curve.fraction.map((value, n) => (value === null ? 0 : curve.high[n] - value)),
           arrayminus: curve.fraction.map((value, n) => (value === null ? 0 : value - curve.low[n])), color: translucent(color, 0.45), thickness: 1.2, width: 0 },
-        line: { color, width: 1 }, marker: { color, size: 5, symbol: groups.get(curve.name).shape },
+        line: { color, width: 1 }, marker: { color, size: 5, symbol: group?.shape ?? "x-thin-open" },
         hovertemplate: `${curve.name}<br>a = %{x}<br>fraction %{y:.4g} (%{text})<extra></extra>` },
     ];
   });
