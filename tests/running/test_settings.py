@@ -127,10 +127,3 @@ def test_a_run_keeps_a_hundred_million_numbers_of_a_kind_at_most(key, fits, too_
     Settings(**{**usual, **fits}).check_chain(Chain(40))
     with pytest.raises(ValueError, match=f"^{key}: .* the run would keep 1.* numbers for it, at most 1e[+]08$"):
         Settings(**{**usual, **too_long}).check_chain(Chain(40))
-
-
-def test_no_more_samples_of_a_trajectory_count_than_are_kept():
-    """One that is asked to last longer than the run lasts as long as the run."""
-    assert Settings(transient=0.0, window=100.0, trajectory=1e6).trajectory == 1e6
-    with pytest.raises(ValueError, match="trajectory_sampling"):
-        Settings(transient=0.0, window=1e6, trajectory=1e6)

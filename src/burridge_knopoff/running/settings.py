@@ -81,7 +81,7 @@ class Settings:
         check_fields(self)
         for key, samples in (
             ("sampling", self.duration / self.sampling),
-            ("trajectory_sampling", min(self.trajectory, self.duration) / self.trajectory_sampling),
+            ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
         ):
             if samples > 1e7:
                 raise refusal(key, getattr(self, key), "it asks for more than 1e7 samples")
