@@ -112,7 +112,7 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     rows = [row for law in LAWS for state in ("plus", "minus") for row in compare(law, state, rounds)]
     print(f"\nOne trajectory to τ = {TRANSIENT + WINDOW:g}, a = {A}, v = {V}, with all observables; ms of CPU.")
-    print("Ratio: CPU of the peer over that of the solver; the claim is the least ratio that should hold.\n")
+    print("Ratio: CPU of the peer over that of the solver; the aim is the least ratio that should hold.\n")
     header = ["ratio", "aim, kept", "law", "initial", "peer", "ours ms", "peer ms", "measured on"]
     header += ["events peer / ours", "Δ<J>", f"Δ event times to {HORIZON:g}"]
     print_table(header, rows)

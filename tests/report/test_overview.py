@@ -6,7 +6,7 @@ from burridge_knopoff.report.overview import foreign_settings
 from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.study.study import load_study
-from burridge_knopoff.summaries.chains import chain_dataset
+from burridge_knopoff.summaries.chains import chain_dataset, merge
 
 CONFIG = {
     "study": "x",
@@ -41,7 +41,7 @@ def test_longer_chains_of_other_settings_are_told(change, expected):
         **{key: chains[key] for key in ("samples", "symmetric_samples", "seed", "position", "velocity")},
     )
     watch = Watch(chains["time_limit"], chains["synchronization_distance"])
-    dataset = chain_dataset([model_of(model, "linearized", 0.1, 2)], [0.1], sample, watch)
+    dataset = merge([chain_dataset([model_of(model, "linearized", 0.1, 2)], [0.1], sample, watch)])
     told = foreign_settings(dataset, load_study({**CONFIG, **change}, "x.yaml"))
     assert len(told) == len(expected)
     assert all(line.startswith(start) for line, start in zip(told, expected, strict=True))

@@ -21,6 +21,7 @@ from burridge_knopoff.claims.verdict import (
     by_share,
     by_value,
     known_share,
+    share_is_decided,
     shares_text,
     with_error,
     worst,
@@ -88,12 +89,11 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         lost = int(found["undetermined_count"].values.sum())
         drawn = int(count.sum()) + lost
         stopping = int(count[stops.any(axis=-1)].sum())
-        if drawn:
-            unknown = f"{lost} of {drawn} drawn states reach no attractor that is known under the {law} law"
-            numbers = np.arange(drawn)
-            states[law] = known_share(numbers < stopping, numbers < drawn - lost, loose_share, unknown)
-        else:
-            states[law] = some[law]
+        if drawn and (lost == drawn or not share_is_decided(stopping, stopping + lost, drawn, loose_share)):
+            raise NotTestableError(
+                f"{lost} of {drawn} drawn states reach no attractor that is known under the {law} law"
+            )
+        states[law] = stopping / (drawn - lost) if drawn else some[law]
         measured += [
             Measured(f"share of attractors in which some block stops, {law}", some[law]),
             Measured(f"share of attractors in which every block stops, {law}", every[law]),

@@ -114,7 +114,12 @@ def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
     """Tell whether «for all» fails, or does not, whatever is not known; not if nothing is. Both are of shape (n,)."""
     if not known.any():
         return False
-    worst_case, best_case = (by_share(float(such.mean()), loose) for such in (right & known, right | ~known))
+    return share_is_decided(int((right & known).sum()), int((right | ~known).sum()), len(right), loose)
+
+
+def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
+    """Tell the same of so many that are right, at least and at most."""
+    worst_case, best_case = (by_share(right / count, loose) for right in (least, most))
     return (worst_case == FAILS) == (best_case == FAILS)
 
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.orbit import after
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
@@ -63,11 +64,16 @@ def drops(model: Model) -> bool:
     return float(model.law(0.0)) < 1.0 - ROUNDING
 
 
+def longest_spacing(chain: Chain) -> float:
+    """Return the longest time between two samples that show the motion of a chain."""
+    return min(SPACING, LARGEST_PHASE / chain.highest_frequency)
+
+
 def contacts(orbit: PeriodicOrbit) -> Contacts:
     """Return how far an orbit is from its grazings; raises OrbitError if it cannot be run along."""
     model = orbit.model
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
-    longest = min(SPACING, LARGEST_PHASE / model.chain.highest_frequency)
+    longest = longest_spacing(model.chain)
     time, spacing = np.linspace(0.0, orbit.period, math.ceil(orbit.period / longest) + 1, retstep=True)
     observer = new_observer(model, [0.0, orbit.period + longest], trajectory_time=time)
     runner = Runner(model, observer=observer)

@@ -19,17 +19,12 @@ from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.report.numbers import text
 from burridge_knopoff.study.study import Study, all_points
 from burridge_knopoff.study.words import counted
+from burridge_knopoff.summaries.chains import friction
 
 #: Distributions whose versions the report states.
 LIBRARIES = (
     *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
     *("pyyaml", "jinja2", "plotly", "pillow"),
-)
-
-#: Settings of the section `chains` by which states are drawn and judged.
-SAMPLED = (
-    *("samples", "symmetric_samples", "seed", "position", "velocity"),
-    *("time_limit", "synchronization_distance"),
 )
 
 
@@ -133,12 +128,11 @@ def software() -> list[tuple[str, str]]:
 def foreign_settings(dataset: xarray.Dataset, study: Study) -> list[str]:
     """Return which settings of longer chains differ from the study's: they were made before a change of it."""
     chains, first = study.config["chains"], float(dataset["a"].values[0])
-    laws = [law_of(name, first, study.config["laws"][name]) for name in chains["laws"]]
     own = {
         **study.config["chain"],
-        "friction": "; ".join(f"{law.name}: {law.words}" for law in laws),
+        "friction": friction(law_of(name, first, study.config["laws"][name]) for name in chains["laws"]),
         **{key: study.config[key] for key in ("v", "contact", "start")},
-        **{key: chains[key] for key in SAMPLED},
+        **chains,
     }
     made = {key: np.asarray(dataset.attrs[key]).tolist() for key in own if key in dataset.attrs}
     return [f"{key} = {value}, here {own[key]}" for key, value in made.items() if value != own[key]]

@@ -5,7 +5,7 @@ A chain file holds what `stability.chains` found for one number of blocks; the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.laws import Law
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.stability.chains import (
@@ -81,7 +82,7 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
             "history": "snakemake chains",
             "blocks": first.blocks,
             **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends")},
-            "friction": "; ".join(f"{model.law.name}: {model.law.words}" for model in models),
+            "friction": friction(model.law for model in models),
             "v": first.v,
             "contact": first.contact,
             **asdict(watch),
@@ -89,6 +90,11 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         },
         module=__name__,
     )
+
+
+def friction(laws: Iterable[Law]) -> str:
+    """Return how laws read, with their names and numbers."""
+    return "; ".join(f"{law.name}: {law.words}" for law in laws)
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:

@@ -12,6 +12,7 @@ from scipy.signal import find_peaks, periodogram
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.orbits.contacts import longest_spacing
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.summaries.correlation import correlation, is_constant
@@ -21,10 +22,6 @@ STOP, START = 0, 1
 
 # The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
 PADDING = 8
-
-# Longest time between two samples of the velocities in the event window, and longest phase of the fastest mode.
-INTERVAL = 0.1
-LARGEST_PHASE = 0.245
 
 AGAIN = "followed once more from the first stop: in chaos another trajectory than that of the run, soon"
 
@@ -119,8 +116,7 @@ def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float)
         return run["velocity"], kept
     first, duration = stops[0], float(time[-1] - time[stops[0]])
     position, velocity = run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]
-    interval = min(INTERVAL, LARGEST_PHASE / model.chain.highest_frequency)
-    instants = np.linspace(0.0, duration, math.ceil(duration / interval) + 1)
+    instants = np.linspace(0.0, duration, math.ceil(duration / longest_spacing(model.chain)) + 1)
     states = (position[None], velocity[None], (velocity[None] == 0.0).astype(np.intc))
     return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], duration
 
