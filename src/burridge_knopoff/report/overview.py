@@ -18,8 +18,7 @@ from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.report.numbers import text
 from burridge_knopoff.study.study import Study, all_points
-from burridge_knopoff.study.words import counted
-from burridge_knopoff.summaries.chains import friction
+from burridge_knopoff.study.words import counted, friction_words
 
 #: Distributions whose versions the report states.
 LIBRARIES = (
@@ -130,7 +129,7 @@ def foreign_settings(dataset: xarray.Dataset, study: Study) -> list[str]:
     chains, first = study.config["chains"], float(dataset["a"].values[0])
     own = {
         **study.config["chain"],
-        "friction": friction(law_of(name, first, study.config["laws"][name]) for name in chains["laws"]),
+        "friction": friction_words(law_of(name, first, study.config["laws"][name]) for name in chains["laws"]),
         **{key: study.config[key] for key in ("v", "contact", "start")},
         **chains,
     }

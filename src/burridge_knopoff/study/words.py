@@ -1,4 +1,8 @@
-"""Words that messages share."""
+"""Words that messages and files share."""
+
+from collections.abc import Iterable
+
+from burridge_knopoff.laws import Law
 
 
 def counted(number: int, noun: str) -> str:
@@ -9,3 +13,8 @@ def counted(number: int, noun: str) -> str:
 def span(low: str, high: str) -> str:
     """Return from where to where numbers reach, or the one that they all are as they are written."""
     return low if low == high else f"{low} to {high}"
+
+
+def friction_words(laws: Iterable[Law]) -> str:
+    """Return how laws read, with their names and numbers."""
+    return "; ".join(f"{law.name}: {law.words}" for law in laws)

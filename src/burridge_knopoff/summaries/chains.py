@@ -5,7 +5,7 @@ A chain file holds what `stability.chains` found for one number of blocks; the s
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.laws import Law
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.stability.chains import (
@@ -25,6 +24,7 @@ from burridge_knopoff.stability.chains import (
     watch_chain,
 )
 from burridge_knopoff.stability.sampling import CONFIDENCE, fraction_interval
+from burridge_knopoff.study.words import friction_words
 
 _POINT = ("law", "a")
 _OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance(__name__))
@@ -82,7 +82,7 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
             "history": "snakemake chains",
             "blocks": first.blocks,
             **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends")},
-            "friction": friction(model.law for model in models),
+            "friction": friction_words(model.law for model in models),
             "v": first.v,
             "contact": first.contact,
             **asdict(watch),
@@ -90,11 +90,6 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         },
         module=__name__,
     )
-
-
-def friction(laws: Iterable[Law]) -> str:
-    """Return how laws read, with their names and numbers."""
-    return "; ".join(f"{law.name}: {law.words}" for law in laws)
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
