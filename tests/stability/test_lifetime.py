@@ -1,6 +1,7 @@
 """Lifetimes of chaos: what an ensemble of known rate gives, and chaos of the paper's chain that dies."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -47,6 +48,23 @@ def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
     """The time of all trajectories is just enough for that."""
     assert Lifetime(0, TUNING.exposure * 1e5).lasts(1e5)
     assert not Lifetime(1, TUNING.exposure * 1e5).lasts(1e5)
+
+
+@pytest.mark.parametrize(("share", "least", "most"), [(1.0, 0.025, 0.04), (0.8, 0.0, 0.012)])
+def test_chaos_that_is_too_short_passes_for_lasting_no_more_often_than_settings_say(monkeypatch, share, least, most):
+    """Both looks together, by lifetimes drawn at random: of just that mean, and of a shorter one."""
+
+    def drawn(model, attractors, index, settings, tuning, random, count):
+        lives = random.exponential(share * settings.lifetime, count)
+        time = tuning.exposure * settings.lifetime / tuning.followed
+        return Lifetime(int((lives < time).sum()), float(np.minimum(lives, time).sum()))
+
+    monkeypatch.setattr(lifetime, "_followed", drawn)
+    passed = 0
+    for seed in range(6000):
+        settings = replace(SETTINGS, seed=seed)
+        passed += lifetime._lifetime(MODEL, [], 0, settings, TUNING).lasts(settings.lifetime)
+    assert least <= passed / 6000 <= most
 
 
 #: Exponent, radius, close returns and stops of the other attractor, for the time in which it captures a trajectory.

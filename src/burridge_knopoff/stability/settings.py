@@ -128,7 +128,7 @@ class SearchSettings:
     lifetime: Annotated[
         float,
         TIME,
-        "chaos is an attractor if its mean lifetime is above this with 97.5 % certainty, and transient if not",
+        "chaos is an attractor if its mean lifetime is above this with 96 % certainty, and transient if not",
     ] = 100_000.0
 
     def __post_init__(self) -> None:

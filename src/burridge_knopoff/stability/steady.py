@@ -117,21 +117,21 @@ def measure(
         return found
     usual, last = found, found.instant()
     orbit = locked_orbit(model, found.returns, found.recurrence, tuning)
+    seen, longer = tuning.longer_window * window, None
     if orbit is None:
-        seen = tuning.longer_window * window
         longer = measure_once(model, start, transient, seen, settings.scaled(tuning.longer_window**-0.5), tuning)
-        if longer is not None:
-            # The returns stay those of the usual window: their number decides how attractors are told apart.
-            found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
-            last = longer.instant()
+    if longer is not None:
+        # The returns stay those of the usual window: their number decides how attractors are told apart.
+        found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
+        last = longer.instant()
         if found.kind in OPEN:
-            orbit = None if longer is None else locked_orbit(model, longer.returns, longer.recurrence, tuning)
-            if orbit is None:
-                if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
-                    return found
-                return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
+            orbit = locked_orbit(model, longer.returns, longer.recurrence, tuning)
     if orbit is not None:
         found, last = _locked(found, orbit, settings), orbit.reference
+    elif found.kind in OPEN:
+        if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
+            return found
+        return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
     if found.kind == MotionKind.CHAOTIC:
         return found
     later = measure_once(model, last, transient, window, settings, tuning)

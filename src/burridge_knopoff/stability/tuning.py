@@ -110,11 +110,12 @@ class Tuning:
     # Whether chaos lasts.
 
     #: Trajectories of chaos that are followed, and the time for all of them together, in units of the lifetime beyond
-    #: which it counts as lasting. If none of them leaves it, its lifetime is beyond that with 97.5 % certainty.
+    #: which it counts as lasting. If none of them leaves it, its lifetime is beyond that with 98 % certainty.
     followed: int = 32
     exposure: float = 4.0
     #: Where these leave open whether the lifetime is below or beyond, or where fewer than `fewest_ends` leave, so many
-    #: times more are followed: stopping at few ends would favour samples in which, by chance, many left.
+    #: times more are followed: stopping at few ends would favour samples in which, by chance, many left. Looking twice
+    #: leaves 96 %.
     undecided: int = 10
     fewest_ends: int = 30
     #: Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are
