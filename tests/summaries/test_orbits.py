@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
-from burridge_knopoff.orbits.branching import branch_orbit, leading_modulus, mean_distance, sweep
+from burridge_knopoff.orbits.branching import branch_orbit, leading_modulus, sweep
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.orbit import multipliers, transverse_multiplier
 from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
@@ -69,7 +69,7 @@ def test_the_transition_is_that_of_the_stability_room(found):
         "period": orbit.period,
         "residual": orbit.residual,
         "multiplier": leading_modulus(orbit),
-        "mean_distance": mean_distance(orbit),
+        "mean_distance": orbit.mean_distance,
     }.items():
         assert one[f"branch_{name}"].values[7] == pytest.approx(value, rel=1e-7, abs=1e-14), name
     small = slice(0, 6)
@@ -161,12 +161,12 @@ def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatc
 def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(monkeypatch, side, rises, expected):
     """Whether the multiplier rises or falls through 1 as a grows."""
     critical = 0.2
-    for name in ("leading_modulus", "mean_distance"):
-        monkeypatch.setattr(orbits, name, lambda orbit: 0.5)
+    monkeypatch.setattr(orbits, "leading_modulus", lambda orbit: 0.5)
     monkeypatch.setattr(orbits, "transverse_multiplier", lambda a: 1.0 + rises * (a - critical))
 
     def branch_orbit(family, a, asymmetry):
-        return SimpleNamespace(model=SimpleNamespace(a=a + side * asymmetry**2), period=1.0, residual=0.0)
+        model = SimpleNamespace(a=a + side * asymmetry**2)
+        return SimpleNamespace(model=model, period=1.0, residual=0.0, mean_distance=0.5)
 
     monkeypatch.setattr(orbits, "branch_orbit", branch_orbit)
     names = [name for name in orbits.VARIABLES if name.startswith(("branch_", "amplitude_"))]

@@ -33,7 +33,7 @@ from burridge_knopoff.orbits.orbit import (
     solve,
 )
 from burridge_knopoff.orbits.transition import TOLERANCE, apart
-from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
 # Rounding of positions, which g carries divided by the asymmetry.
@@ -85,15 +85,6 @@ def leading_modulus(orbit: Orbit) -> float:
     values = np.linalg.eigvals(orbit.monodromy)
     others = np.delete(values, np.abs(values - 1.0).argmin())
     return round(float(np.abs(others).max()), 8)
-
-
-def mean_distance(orbit: Orbit) -> float:
-    """Return ⟨J⟩ over one period of an orbit."""
-    observer = new_observer(orbit.model, [0.0, orbit.period])
-    runner = Runner(orbit.model, observer=observer)
-    runner.begin(orbit.reference)
-    runner.run()
-    return float(observer.results()["batch_integral"][0]) / orbit.period
 
 
 @dataclass(frozen=True)

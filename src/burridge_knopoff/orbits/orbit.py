@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import root
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.values import instance_of
 
 #: Largest difference, in any position or velocity, between the state and the state one period later; times v beyond 1,
@@ -92,6 +92,11 @@ class Orbit:
         """x_1 − x_3 while both blocks stick; 0 on the synchronized orbit."""
         return float(self.reference.position[0] - self.reference.position[2])
 
+    @property
+    def mean_distance(self) -> float:
+        """⟨J⟩ over a period."""
+        return mean_distance(self.model, self.reference, self.period)
+
 
 def model_at(model: Model, a: float) -> Model:
     """Return a model at another friction parameter; raises OrbitError where its law does not allow that."""
@@ -123,6 +128,13 @@ def after(runner: Runner, start: Instant, time: float) -> Instant:
     if end is None:
         raise OrbitError(f"the run ends at τ = {runner.clock!r}, before {time!r}")
     return end
+
+
+def mean_distance(model: Model, start: Instant, period: float) -> float:
+    """Return ⟨J⟩ over one period from a state on an orbit."""
+    observer = new_observer(model, [0.0, period])
+    after(Runner(model, observer=observer), start, period)
+    return float(observer.results()["batch_integral"][0]) / period
 
 
 def _free_directions(start: Instant) -> np.ndarray:

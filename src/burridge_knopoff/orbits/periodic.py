@@ -20,10 +20,9 @@ import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.model.ranges import Number
-from burridge_knopoff.orbits.orbit import OrbitError, flow, model_at, rate
+from burridge_knopoff.orbits.orbit import OrbitError, flow, mean_distance, model_at, rate
 from burridge_knopoff.orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.orbits.symmetry import Symmetry
-from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.settings import LONGEST
 
 #: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
@@ -121,11 +120,7 @@ class PeriodicOrbit:
     @cached_property
     def mean_distance(self) -> float:
         """⟨J⟩ over a period."""
-        observer = new_observer(self.model, [0.0, self.period])
-        runner = Runner(self.model, observer=observer)
-        runner.begin(self.reference)
-        runner.run()
-        return float(observer.results()["batch_integral"][0]) / self.period
+        return mean_distance(self.model, self.reference, self.period)
 
     def start(self, block: int) -> Instant:
         """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""

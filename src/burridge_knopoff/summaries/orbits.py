@@ -12,7 +12,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, mean_distance, sweep
+from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, sweep
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.orbits.orbit import OrbitError, multipliers, transverse_multiplier
@@ -201,7 +201,7 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
         values["branch_period"][i, k] = orbit.period
         values["branch_residual"][i, k] = orbit.residual
         values["branch_multiplier"][i, k] = leading_modulus(orbit)
-        values["branch_mean_distance"][i, k] = mean_distance(orbit)
+        values["branch_mean_distance"][i, k] = orbit.mean_distance
     small = np.array(ASYMMETRIES) <= LARGEST_FITTED
     offset = values["branch_offset"][i, small]
     if (offset > 0.0).all() or (offset < 0.0).all():
