@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import runpy
 from pathlib import Path
 
@@ -45,6 +46,14 @@ def test_the_colours_of_the_branches_survive() -> None:
     for name in COLORS:
         wanted = np.array([int(name[k : k + 2], 16) for k in (1, 3, 5)])
         assert (np.abs(picture - wanted).sum(axis=1) <= 24).sum() > 100, name
+
+
+def test_the_page_on_edges_counts_what_precedes_chaos(content: dict) -> None:
+    reason = next(claim["reason"] for claim in content["claims"] if claim["name"] == "locking_precedes_chaos")
+    counts = re.findall(r"\d+ of \d+ \(\w+\)", reason)
+    assert len(counts) == 2
+    text = " ".join((ROOT / "docs/edges.md").read_text(encoding="utf-8").split())
+    assert f"a closed orbit comes before chaos at {' and '.join(counts)} places" in text
 
 
 def test_the_readme_counts_them(content: dict) -> None:

@@ -20,7 +20,7 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
 from burridge_knopoff.summaries.edge_entries import _closed
-from burridge_knopoff.summaries.edges import VARIABLES, _rounded, merge, one_law
+from burridge_knopoff.summaries.edges import VARIABLES, _rounded, digest, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -230,3 +230,36 @@ def test_edges_of_laws_come_one_after_the_other(found):
     assert both["law"].attrs["flag_meanings"] == both["orbit_law"].attrs["flag_meanings"] == "linearized mine"
     np.testing.assert_array_equal(both["a"].values, [*found["a"].values, other["a"].item()])
     np.testing.assert_array_equal(both["orbit_stops"].values[-2:], other["orbit_stops"].values)
+
+
+def test_edges_in_words(found):
+    """A line each, of what is known there."""
+    shown = xr.concat([found.isel(edge=[0], orbit=[])] * 5, "edge", data_vars="minimal").load()
+    values = {
+        "law": [0, 0, 1, 1, 1],
+        "a": [0.0869729047, 0.1, 0.12345678912, 0.2, 0.20125],
+        "a_error": [1e-10, 1e-9, 1e-10, 5e-5, 0.00125],
+        "kind": [EdgeKind.PITCHFORK, EdgeKind.NEIMARK_SACKER, EdgeKind.GRAZING, EdgeKind.CRISIS, EdgeKind.UNDETERMINED],
+        "change": [Change.END, Change.CHANGE, Change.PASSED, Change.BEGINNING, Change.CHANGE],
+        "from_branch": [0, 3, 3, -1, 4],
+        "to_branch": [3, 3, 3, 4, 4],
+        "motion_before": [MotionKind.SYNCHRONIZED, MotionKind.PERIODIC, MotionKind.PERIODIC, -1, MotionKind.PERIODIC],
+        "motion_after": [MotionKind.PERIODIC, MotionKind.QUASIPERIODIC, MotionKind.PERIODIC, 3, MotionKind.PERIODIC],
+        "turns": [0, 0, 1, -1, -1],
+        "period": [5.6912345678, 5.7, 34.4, np.nan, np.nan],
+        "stops": [[1, 1, 1], [1, 1, 1], [6, 6, 3], [-1] * 3, [-1] * 3],
+        "stops_beyond": [[1, 1, 1], [-1] * 3, [6, 6, 2], [-1] * 3, [-1] * 3],
+        "lifetime_low": [np.nan, np.nan, np.nan, 1240.0, np.nan],
+        "lifetime_high": [np.nan, np.nan, np.nan, np.inf, np.nan],
+    }
+    for name, value in values.items():
+        shown[name] = found[name].dims, np.array(value)
+    assert digest(shown.assign_attrs(laws="linearized mine")).splitlines() == [
+        "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; above, it leads to branch 3; "
+        "period 5.69123, stops 1 1 1, beyond 1 1 1",
+        "linearized, a = 0.1 +/- 1e-09: neimark_sacker; branch 3, periodic to quasiperiodic; period 5.7, stops 1 1 1",
+        "mine, a = 0.1234567891 +/- 1e-10: grazing, turns; branch 3 goes on, periodic; period 34.4, stops 6 6 3, "
+        "beyond 6 6 2",
+        "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; chaos lasts for 1240 to inf in the mean",
+        "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4, to another periodic motion",
+    ]

@@ -19,8 +19,8 @@ CATEGORIES = {
     "Runs": ["distance.png", "motion_minus.png", "motion_plus.png", "stick_slip.png"],
     "Synchronization": ["bifurcation.png", "lyapunov.png", "mean_distance.png", "orbits.png", "proof.txt"],
     "Attractors": [
-        *("attractors.txt", "basin_fractions.png", "basins.png", "basins.txt", "edges.png", "phases.png"),
-        "windows.png",
+        *("attractors.txt", "basin_fractions.png", "basins.png", "basins.txt", "edges.png", "edges.txt"),
+        *("phases.png", "windows.png"),
     ],
     "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],
 }

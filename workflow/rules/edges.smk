@@ -37,6 +37,12 @@ rule edges:
         expand(rules.edges_of_law.output, law=STUDY.laws),
     output:
         f"{SUMMARY}/edges.nc",
+        report(
+            f"{SUMMARY}/edges.txt",
+            caption="../report/edges_text.rst",
+            category="Attractors",
+            labels={"result": "edges in words", "paper": "none"},
+        ),
     log:
         f"{RESULTS}/logs/edges.log",
     benchmark:

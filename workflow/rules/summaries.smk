@@ -42,7 +42,7 @@ rule summary:
         multiext(f"{SUMMARY}/agreement", ".csv", ".txt"),
         [
             f"{SUMMARY}/{stage}.txt"
-            for stage in ("attractors", "basins", "proof")
+            for stage in ("attractors", "basins", "edges", "proof")
             if stage in STUDY.stages
         ],
         CLAIMS_MADE,

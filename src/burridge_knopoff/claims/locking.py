@@ -110,7 +110,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         measured.append(Measured(f"share of the beginnings of chaos at which a closed orbit ends, {name}", share))
         ends = Counter(int(edges["kind"].values[k]) for k in np.flatnonzero(onset))
         for kind, count in sorted(ends.items()):
-            measured.append(Measured(f"edges there that are a {EdgeKind(kind).name.lower()}, {name}", count))
+            measured.append(Measured(f"edges there, {EdgeKind(kind).name.lower()}, {name}", count))
         if unknown.any():
             values = np.unique(edges["a"].values[unknown])
             others.append(f"what comes before is not known at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")

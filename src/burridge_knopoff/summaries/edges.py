@@ -112,6 +112,42 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     return _dataset([part.attrs["laws"] for part in parts], values, parts[0]["block"].variable, head)
 
 
+def digest(dataset: xarray.Dataset) -> str:
+    """Return, in a line for each edge, what happens there, to which branch, and the stops on both sides of it."""
+    laws = dataset.attrs["laws"].split()
+    lines = []
+    for number in range(dataset.sizes["edge"]):
+        one = {name: dataset[name].values[number] for name in VARIABLES if dataset[name].dims[0] == "edge"}
+        kind = EdgeKind(one["kind"]).name.lower() + (", turns" if one["turns"] == 1 else "")
+        parts = [f"{laws[one['law']]}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
+        if np.isfinite(one["lifetime_low"]):
+            parts.append(f"chaos lasts for {one['lifetime_low']:g} to {one['lifetime_high']:g} in the mean")
+        if np.isfinite(one["period"]):
+            beyond = f", beyond {_listed(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
+            parts.append(f"period {one['period']:.6g}, stops {_listed(one['stops'])}{beyond}")
+        lines.append("; ".join(parts) + "\n")
+    return "".join(lines)
+
+
+def _happening(one: Mapping[str, Any]) -> str:
+    """Return what a branch does at an edge as a grows, in words."""
+    before, after = (MotionKind(one[f"motion_{side}"]).words for side in ("before", "after"))
+    low, high = (f"branch {one[name]}" if one[name] >= 0 else "" for name in ("from_branch", "to_branch"))
+    match Change(one["change"]):
+        case Change.BEGINNING:
+            return f"{high} begins, {after}" + (f"; below, it leads to {low}" if low else "")
+        case Change.END:
+            return f"{low} ends, {before}" + (f"; above, it leads to {high}" if high else "")
+        case Change.CHANGE:
+            return f"{low}, {before} to {after}" if before != after else f"{low}, to another {after} motion"
+        case _:
+            return f"{low} goes on, {before}"
+
+
+def _listed(stops: np.ndarray) -> str:
+    return " ".join(map(str, stops))
+
+
 def _dataset(
     names: Sequence[str], values: Mapping[str, np.ndarray], block: xarray.Variable, head: Mapping[str, Any]
 ) -> xarray.Dataset:
