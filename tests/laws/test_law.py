@@ -168,3 +168,21 @@ def test_equal_laws(name):
     assert pickle.loads(pickle.dumps(law)) == copy.deepcopy(law) == law
     with pytest.raises(ValueError, match="a"):
         law.at(-0.1)
+
+
+def test_a_law_may_be_above_1_at_rest_by_rounding():
+    law = FormulaLaw(0.1, "3*1.1 - 2.3 - a*u")
+    assert 1.0 < float(law(0.0)) < 1.0 + 1e-15
+    with pytest.raises(ValueError, match="at u = 0 it is 1: above 0 and at most 1"):
+        FormulaLaw(0.1, "1.0000001 - a*u")
+
+
+def test_minus_0_is_0():
+    """The same number must not make two different files."""
+    law = FormulaLaw(-0.0, "1 - a*u - c*u", c=-0.0)
+    assert repr((law.a, law.numbers["c"])) == "(0.0, 0.0)"
+
+
+def test_the_least_friction_is_that_where_a_law_is_defined():
+    """Beyond u = 20, where the root of a negative number is none, it says nothing."""
+    assert 0.0 <= FormulaLaw(0.0, "sqrt(1 - 0.05*u)").least(30.0) < 0.08

@@ -108,3 +108,12 @@ def test_what_is_computed_once_is_not_written_to():
 def test_ends_are_told_by_their_name():
     """A text that was read is another object than the one in a program."""
     assert Chain(3, coupling=(1.0, 2.0), ends="".join(["op", "en"])).stiffness[0, 2] == 0.0
+
+
+@pytest.mark.parametrize(
+    "options", [{"coupling": [1.0, 2.0]}, {"pulling": [1.0, 2.0, 3.0]}, {"threshold": [1.0, 1.0, 2]}, {"ends": "ring"}]
+)
+def test_springs_that_differ_have_no_closed_form(options):
+    law = law_of("linearized", 0.1)
+    assert Model(Chain(3, coupling=0.5, pulling=2.0, threshold=1.5), law).has_closed_form
+    assert not Model(Chain(3, **options), law).has_closed_form

@@ -17,6 +17,9 @@ def test_initial_state_by_name_or_numbers():
     assert initial_state("plus") is PAPER_STATES["plus"]
     assert initial_state("mine", (1.0, 2.0), (0.0, 0.1)) == InitialState("mine", (1.0, 2.0), (0.0, 0.1))
     assert initial_state("plus", (1.0, 2.0, 3.0)).velocity == PAPER_STATES["plus"].velocity
+    assert initial_state("plus", velocity=(0.0, 0.1, 0.2)) == InitialState(
+        "plus", PAPER_STATES["plus"].position, (0.0, 0.1, 0.2)
+    )
     with pytest.raises(ValueError, match="minus"):
         initial_state("mine")
 

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Instant, Model, closed_motion, find_periodic_orbit, law_of
-from burridge_knopoff.orbits.contacts import Contacts, _derivatives, _root, contacts
+from burridge_knopoff import Chain, FormulaLaw, Instant, Model, Symmetry, closed_motion, find_periodic_orbit, law_of
+from burridge_knopoff.orbits.contacts import Contacts, _derivatives, _root, contacts, drops
 from burridge_knopoff.orbits.orbit import flow, rate
+from burridge_knopoff.orbits.periodic import orbit_of
 from burridge_knopoff.running.runner import Runner
 
 
@@ -108,15 +109,75 @@ def test_friction_pulls_a_block_forward_that_slips_backward(law):
         assert derivatives[0][slope][0, :2] == pytest.approx(change, abs=1e-3)
 
 
-def test_where_friction_drops_slips_end_with_a_deceleration():
+@pytest.fixture(scope="module")
+def dropping():
+    """The orbit on which the end blocks stop seven and four times, where friction drops at the start of a slip."""
     model = Model(Chain(3), law_of("carlson_langer", 0.15))
     start = Instant(np.array([0.74, -0.17, -0.87]) - model.sliding_offset, np.full(3, 0.1), np.zeros(3, dtype=bool))
-    orbit = closed_motion(model, start, settling=10_000.0)
-    least, runner = np.full(3, np.inf), Runner(model)
-    for time, block, kind in orbit.events:
+    return closed_motion(model, start, settling=10_000.0)
+
+
+def test_where_friction_drops_slips_end_with_a_deceleration(dropping):
+    least, runner = np.full(3, np.inf), Runner(dropping.model)
+    for time, block, kind in dropping.events:
         if kind == 0:
-            before = [runner.after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
+            before = [runner.after(dropping.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
             least[block] = min(least[block], (before[1] - before[0]) / 1e-4)
-    found = contacts(orbit).deceleration
+    found = contacts(dropping).deceleration
     assert np.isfinite(found).any()
     assert found == pytest.approx(least, abs=1e-3)
+
+
+def test_a_deceleration_grows_with_the_threshold(dropping):
+    """With thresholds three times as high so are all lengths, velocities and forces, at a third of a."""
+    law, start = dropping.model.law, dropping.reference
+    model = Model(Chain(3, threshold=3.0), law.at(law.a / 3.0), 3.0 * dropping.model.v)
+    moved = Instant(3.0 * start.position, 3.0 * start.velocity, start.stuck)
+    found = contacts(find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)).deceleration
+    assert found == pytest.approx(3.0 * contacts(dropping).deceleration, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("law", "told"),
+    [
+        (law_of("linearized", 0.1), False),
+        # What it is at rest rounds to the number below 1.
+        (FormulaLaw(0.1, "0.7 + 0.2 + 0.1*exp(-a*u)"), False),
+        (FormulaLaw(0.1, "0.7 + 0.2 + 0.099999*exp(-a*u)"), True),
+        (law_of("carlson_langer", 0.1), True),
+    ],
+)
+def test_rounding_is_no_drop_of_friction(law, told):
+    assert float(law(0.0)) < 1.0 or law.name == "linearized"
+    assert drops(Model(Chain(3), law)) is told
+
+
+def peaks(values, among):
+    """Return the values larger than those before and after, all three among some."""
+    inner = among[:-2] & among[1:-1] & among[2:] & (values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])
+    return values[1:-1][inner]
+
+
+@pytest.mark.parametrize(
+    ("threshold", "position", "velocity", "stuck"),
+    [
+        ((1.0, 1.0, 1.0), (-0.5, 0.7, -1.9), (-1.3, 1.2, -0.8), (False, False, False)),
+        # A block that holds while its neighbour is thrown forward, and backward.
+        ((1.5, 1.0), (0.9, 0.5), (0.0, 2.0), (True, False)),
+        ((1.5, 1.0), (0.9, 0.5), (0.0, -2.0), (True, False)),
+    ],
+)
+def test_what_slips_backward_or_is_pulled_back_is_as_near_to_grazing(threshold, position, velocity, stuck):
+    """Any motion has such contacts as an orbit has."""
+    chain = Chain(len(threshold), threshold=threshold)
+    model = Model(chain, law_of("linearized", 0.2), contact="symmetric")
+    motion = orbit_of(model, Instant(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
+    at, rate, still = sampled(motion, 3000)
+    force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T
+    found = contacts(motion)
+    for k in range(chain.blocks):
+        slow = [peaks(-side * rate[:, k], ~still[:, k] & (side * rate[:, k] > 0.0)) for side in (1.0, -1.0)]
+        pulled = [peaks(side * force[:, k], still[:, k]) for side in (1.0, -1.0)]
+        assert found.speed[k] == pytest.approx(-np.concatenate(slow).max(initial=-np.inf), abs=1e-3)
+        assert found.force[k] == pytest.approx(threshold[k] - np.concatenate(pulled).max(initial=-np.inf), abs=1e-3)
+    assert np.isfinite([*found.speed, *found.force]).any()

@@ -43,3 +43,17 @@ def test_where_it_is_lost_the_error_is_told_after_the_least_step(known, monkeypa
         known.at(here + 0.02)
     assert tried[-1] - here == pytest.approx(family.LEAST_STEP, rel=1.0)
     assert len(tried) < 20
+
+
+def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
+    """It vanishes with a, and with it how far Newton's method comes."""
+    known.known = {1e-4: known.at(1e-4)}
+    find = family.find_orbit
+
+    def near_only(model, reference, period):
+        if min(abs(model.a - a) for a in known.known) > 3e-7:
+            raise OrbitError("too far")
+        return find(model, reference, period)
+
+    monkeypatch.setattr(family, "find_orbit", near_only)
+    assert known.at(0.99e-4).model.a == 0.99e-4

@@ -101,6 +101,21 @@ def test_an_orbit_does_not_depend_on_the_way_to_it(families):
     assert transverse_multiplier(orbit) == pytest.approx(transverse_multiplier(direct), abs=1e-12)
 
 
+@pytest.mark.parametrize("v", [1e-3, 1e3])
+def test_an_orbit_is_found_at_any_velocity(families, v):
+    """As closely as the rounding of positions and velocities, which grow with v, allows."""
+    orbit = families["linearized"].at(0.08)
+    other = Family(replace(orbit.model, v=v)).at(0.08)
+    assert other.period == pytest.approx(orbit.period, abs=1e-12)
+    assert transverse_multiplier(other) == pytest.approx(transverse_multiplier(orbit), abs=1e-11)
+
+
+def test_an_orbit_gone_round_twice_is_refused(families):
+    orbit = families["linearized"].at(0.08)
+    with pytest.raises(OrbitError, match="an end block stops more than once a period, or not at all"):
+        find_orbit(orbit.model, orbit.reference, 2.0 * orbit.period)
+
+
 def test_a_guess_far_from_any_orbit_is_refused(families):
     orbit = families["linearized"].at(0.05)
     with pytest.raises(OrbitError, match=r"a = 0\.05: "):

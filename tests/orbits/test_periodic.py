@@ -1,5 +1,7 @@
 """Periodic orbits of any stops, and their multipliers, against the synchronized orbit, differences and long runs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from burridge_knopoff.orbits.return_map import ReturnMap, directions
 from burridge_knopoff.orbits.simpler import simplest
 from burridge_knopoff.orbits.transition import critical_a
 from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 PAPER, UNEVEN = Chain(3), Chain(3, coupling=(1.0, 2.0))
@@ -124,6 +127,32 @@ def test_an_orbit_gone_round_twice_is_told(orbits):
     twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
     assert twice.signature == (2, 2, 2)
     assert simplest(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
+    # What comes back in a mirror after a half does so after three halves too, not after two.
+    thrice = find_periodic_orbit(half.model, half.reference, 3.0 * half.return_time, SYMMETRIC)
+    assert thrice.signature == (3, 0, 3)
+    assert simplest(thrice, 1e-9).period == pytest.approx(half.period, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["synchronized", "symmetric"])
+def test_a_chain_that_is_not_its_own_mirror_image_has_no_such_orbit(orbits, name):
+    """However near it is to one that is."""
+    even = orbits[name]
+    model = replace(even.model, chain=Chain(3, coupling=(1.0, 1.0 + 1e-7)))
+    uneven = find_periodic_orbit(model, even.reference, even.period, ASYMMETRIC)
+    assert uneven.period == pytest.approx(even.period, abs=1e-5)
+    assert simplest(uneven, 1e-4) is uneven
+
+
+def test_an_orbit_starts_at_the_first_stop_of_a_block(orbits):
+    orbit = orbits["asymmetric"]
+    for block in range(3):
+        runner = Runner(orbit.model)
+        runner.begin(orbit.reference)
+        assert runner.run(orbit.period, halting_block=block) == Status.HALTED
+        start, stopped = orbit.start(block), runner.instant()
+        assert start.vector() == pytest.approx(stopped.vector(), abs=1e-12)
+        assert start.stuck.tolist() == stopped.stuck.tolist()
+        assert start.velocity[block] == 0.0
 
 
 def test_what_is_no_orbit_is_refused(orbits):

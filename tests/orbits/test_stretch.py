@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from burridge_knopoff.orbits.stretch import CLOSE, Half, Stretch
+from burridge_knopoff.orbits.stretch import CLOSE, Half, Stretch, _enough
 from burridge_knopoff.orbits.symmetry import Symmetry
 
 
@@ -92,3 +92,19 @@ def test_another_orbit_of_the_same_stops_and_period_is_not_held(look, expected):
     """In a ring the rotated images of two orbits may share both."""
     whole = Stretch(half(point(0.09)), half(point(0.11, mean_distance=0.3)))
     assert whole.holds(an_orbit(0.105, **look), 1e-3) is expected
+
+
+@pytest.mark.parametrize(("off", "scale", "expected"), [(9e-4, 1.0, True), (1.1e-3, 1.0, False), (9e-3, 10.0, True)])
+def test_the_mean_distance_may_be_off_by_a_thousandth_for_v_0_1(off, scale, expected):
+    whole = Stretch(half(point(0.09)), half(point(0.11)))
+    orbit = an_orbit(0.105, mean_distance=0.2 + off)
+    orbit.model.scale = scale
+    assert whole.holds(orbit, 1e-3) is expected
+
+
+def test_two_orbits_after_the_first_unstable_one_are_enough():
+    enough, points, told = _enough(2), [], []
+    for unstable in (0, 0, 2, 0, 1):
+        points.append(point(0.1, unstable=unstable))
+        told.append(enough(points))
+    assert told == [False, False, False, False, True]

@@ -175,3 +175,30 @@ def test_a_flip_is_a_single_multiplier_that_passes_minus_1(monkeypatch, families
     monkeypatch.setattr(transition, "multipliers", lambda orbit: np.array([0.5, 1.0, *pair, 0.0, 0.0]))
     monkeypatch.setattr(transition, "change_point", lambda family, value: value(None))
     assert symmetric_flip_a(families["linearized"]) == pytest.approx(expected)
+
+
+def test_a_sweep_ends_on_the_branch(families, critical, law):
+    """While both stick, blocks 1 and 3 are as far apart as on the orbit that Newton's method finds."""
+    orbit = branch_orbit(families[law], critical[law], 1e-2)
+    assert sweep(families[law], np.array([orbit.model.a])) == pytest.approx([1e-2], abs=1e-9)
+
+
+def test_beyond_where_end_blocks_no_longer_stick_together_a_sweep_tells_nothing(families, monkeypatch):
+    settled = branching._settled
+
+    def lost(family, a, state):
+        if a == 0.1:
+            raise OrbitError("lost")
+        return settled(family, a, state)
+
+    monkeypatch.setattr(branching, "_settled", lost)
+    found = sweep(families["linearized"], np.array([0.08, 0.1, 0.08]))
+    assert np.isnan(found).tolist() == [False, True, True]
+
+
+def test_the_error_of_critical_a_is_how_far_a_multiplier_that_is_off_moves_it(monkeypatch, families):
+    """One that rises by 5 a, and is too small by a hundredth, comes to 1 later by 0.002."""
+    monkeypatch.setattr(transition, "transverse_multiplier", lambda a: 1.0 + 5.0 * (a - 0.2))
+    monkeypatch.setattr(transition, "finite_difference_multiplier", lambda a: 0.99 + 5.0 * (a - 0.2))
+    family = SimpleNamespace(model=families["linearized"].model, at=lambda a: a)
+    assert transition.critical_a_error(family, 0.2) == pytest.approx(0.002, rel=1e-9)

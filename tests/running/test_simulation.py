@@ -1,5 +1,6 @@
 """What must hold for whole runs: symmetries, synchronization, energy, and how a run ends."""
 
+import statistics
 from itertools import product
 
 import numpy as np
@@ -137,3 +138,24 @@ def test_a_section_point_has_the_direction_of_its_velocity():
     run = simulate("linearized", 0.08, "plus", transient=100.0, window=100.0)
     assert set(run.crossing_direction.tolist()) == {-1, 1}
     assert (np.sign(run.crossing_velocity) == run.crossing_direction).all()
+
+
+def test_states_of_events_are_kept_in_the_window_only():
+    run = simulate("linearized", 0.08, "plus", transient=40.0, window=20.0, event_window=1e3)
+    assert run.earlier_event_time.max() < 40.0 <= run.event_time.min()
+
+
+def test_the_error_of_the_mean_is_that_of_independent_batches():
+    run = simulate("nonlinear", 0.26, "minus", transient=50.0, window=300.0, batches=3)
+    batch = run.batch_mean_distance.tolist()
+    assert run.mean_distance_error == pytest.approx(statistics.stdev(batch) / 3**0.5, rel=1e-12)
+
+
+def test_perturbations_align_no_longer_than_the_transient_lasts():
+    """An alignment that is longer is one from the beginning, with the same exponents and errors."""
+    one, other = (
+        simulate("linearized", 0.06, "plus", transient=100.0, window=700.0, lyapunov_alignment=alignment)
+        for alignment in (100.0, 1e4)
+    )
+    assert one.lyapunov_exponent.tolist() == other.lyapunov_exponent.tolist()
+    assert one.lyapunov_error.tolist() == other.lyapunov_error.tolist()
