@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Symmetry, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
@@ -75,16 +75,25 @@ def test_runs_of_the_paper_end_on_the_branch_that_is_told(known):
         check_run(known, initial, branch, contact=contact, start=start)
 
 
-@pytest.mark.parametrize(("share", "lasts"), [(0.99, True), (-0.99, True), (2.0, False)])
-def test_an_attractor_that_does_not_last_is_told(known, share, lasts):
-    """Its state is followed once more: what it shows now has to be what the summary says, to 0.001 and five errors."""
-    altered = known.copy(deep=True)
+@pytest.mark.parametrize(
+    ("v", "share", "lasts"),
+    [(0.1, 0.99, True), (0.1, -0.99, True), (0.1, 2.0, False), (0.2, 1.98, True), (0.2, 4.0, False)],
+)
+def test_an_attractor_that_does_not_last_is_told(known, v, share, lasts):
+    """Its state is followed once more: what it shows now has to be what the summary says, to 0.001 and five errors.
+
+    Twice that at twice the speed, at which under the linearized law all positions and velocities are twice as large.
+    """
+    altered, model = known.copy(deep=True), Model(Chain(3), MODEL.law, v)
+    altered["position"][...] = model.sliding_offset + v / 0.1 * (known["position"].values - MODEL.sliding_offset)
+    for name in ("velocity", "mean_distance"):
+        altered[name][...] = v / 0.1 * known[name].values
     here = {"law": 0, "a": 0, "attractor": 1}
     altered["mean_distance_error"][here] = 0.0
     altered["mean_distance"][here] += share * 1e-3
     words = r"branch \d+ of the linearized law at a = 0.08 has <J> 0\.\d{5} now and 0\.\d{5} in the file: motion that"
     with nullcontext() if lasts else pytest.raises(ValueError, match=words):
-        known_attractors(altered, MODEL, SEARCH, MOTION)
+        known_attractors(altered, model, SEARCH, MOTION)
 
 
 def test_a_plane_of_states():
@@ -95,9 +104,10 @@ def test_a_plane_of_states():
     assert velocity.tolist() == [[0.1, 0.2, 0.3]] * 8
 
 
-def test_known_attractors_are_those_of_the_summary(known):
-    found = known_attractors(known, MODEL, SEARCH, MOTION)
-    one = known.sel(law="linearized", a=0.08)
+@pytest.mark.parametrize(("a", "pairs"), [(0.08, 0), (0.1, 1)])
+def test_known_attractors_are_those_of_the_summary(known, a, pairs):
+    found = known_attractors(known, MODEL.at(a), SEARCH, MOTION)
+    one = known.sel(law="linearized", a=a)
     there = one["branch"].values >= 0
     assert found.branch.tolist() == one["branch"].values[there].tolist()
     assert found.side.tolist() == one["side"].values[there].tolist()
@@ -107,12 +117,24 @@ def test_known_attractors_are_those_of_the_summary(known):
         image = found.attractors[item.partner]
         assert found.branch[item.partner] == found.branch[index]
         assert found.side[item.partner] == -found.side[index]
-        assert found.attractors.index(image) == index or found.side[index] != 0
+        assert (item.partner == index) == (found.side[index] == 0)
+        assert found.attractors[image.partner] is item
+    assert np.count_nonzero(found.side) == 2 * pairs
     for item, mean, state in zip(found.attractors, one["mean_distance"].values, one["position"].values, strict=False):
         assert item.motion.mean_distance == pytest.approx(mean, abs=1e-4)
-        # A set that is its own mirror image holds both.
+        # What is no closed orbit is seen for four times as long, and a set that is its own mirror image holds both.
+        closed = item.motion.kind in (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
+        time = SEARCH.window * (1 if closed else 4) * (2 if item.symmetry == Symmetry.SYMMETRIC else 1)
+        assert len(item.motion.returns) == pytest.approx(time * item.motion.stop_rate[item.motion.block - 1], rel=0.02)
         assert (item.motion.returns is item.motion.mirror_returns) == (item.symmetry == Symmetry.SYMMETRIC)
-        assert np.abs(item.motion.returns[:, :3] - (state - MODEL.sliding_offset)).max(axis=1).min() < 2e-2
+        assert np.abs(item.motion.returns[:, :3] - (state - MODEL.at(a).sliding_offset)).max(axis=1).min() < 2e-2
+
+
+def test_a_slow_set_is_shown_by_pushed_states_once_more(known):
+    altered = known.copy(deep=True)
+    altered["slow"][{"law": 0, "a": 0, "attractor": 1}] = True
+    plain, slow = (known_attractors(summary, MODEL, SEARCH, MOTION).attractors for summary in (known, altered))
+    assert [len(slow[k].motion.returns) > 5 * len(plain[k].motion.returns) for k in (0, 1)] == [False, True]
 
 
 def test_without_attractors_nothing_is_determined(known):

@@ -3,6 +3,7 @@
 import math
 from dataclasses import astuple, fields, replace
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -209,6 +210,37 @@ def test_the_fate_that_distances_tell(tell, distances, exponent, expected):
     found = watch_state(Scripted(distances), Instant(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0))
     assert astuple(found) == pytest.approx(astuple(expected), nan_ok=True)
     assert [told[2:] for told in asked] == ([(200.0, 50.0)] if exponent else [])
+
+
+@pytest.mark.parametrize(("v", "pair", "near"), [(0.05, 0.5e-6, 0.005), (0.2, 1e-6, 0.02)])
+def test_distances_are_judged_by_the_speed(tell, v, pair, near):
+    """Those of pairs below the speed of the paper alone, those from symmetric motion at any."""
+    runner = Scripted([])
+    runner.model = Model(Chain(4), law_of("linearized", 0.1), v)
+    for share, inside in ((0.99, True), (1.01, False)):
+        asked = tell(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
+        runner.distances = [(0.5, share * pair)] * 10
+        assert watch_state(runner, None, Watch(200.0)).pairs == inside
+        assert not asked
+        runner.distances = [(share * near, 0.0)] * 10
+        watch_state(runner, None, Watch(200.0))
+        assert len(asked) == inside
+
+
+@pytest.mark.parametrize("start", ["moving", "tested"])
+def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
+    """Tested, blocks with a spring force −(K U) of at most the threshold stick."""
+    watched = tell(chains, "watch_state", [Fate(APART)] * SAMPLE.samples)
+    perturbed = tell(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
+    runs = tell(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
+    chains.watch_chain([model(3, 0.0)], [0.05], replace(SAMPLE, start=start))
+    position = np.array([state.position for state in SAMPLE.initial(3, 0.05)])
+    stuck = position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
+    assert stuck.any(axis=1).all()
+    expected = (stuck & (start == "tested")).tolist()
+    assert [at.stuck.tolist() for _, at, *_ in watched] == expected
+    assert [at.stuck.tolist() for _, at, *_ in perturbed] == expected[: SAMPLE.symmetric_samples]
+    assert [settings.start for *_, settings in runs] == [start]
 
 
 def test_a_window_of_several_parts_is_their_mean():

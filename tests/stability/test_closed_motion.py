@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model, OrbitError, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Instant
 from burridge_knopoff.orbits.family import synchronized_orbit
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.stability import closed_motion as module
 from burridge_knopoff.stability.closed_motion import _returns, closed_motion
 
 
@@ -27,6 +28,32 @@ def test_a_state_returns_after_the_time_that_is_told(initial, a, symmetry):
         end = Runner(model).after(start, time)
         image = end.mirrored() if symmetry == Symmetry.SYMMETRIC else end
         assert np.abs(image.vector() - start.vector()).max() <= 2.0 * size
+
+
+@pytest.mark.parametrize(("v", "mirrored"), [(0.1, [2.0, 1.1, 1.1, 1.1]), (0.2, [1.1, 1.1, 1.1, 1.1])])
+def test_of_states_as_near_as_each_other_the_first_is_the_return(v, mirrored):
+    """How near is told by the speed; the mirror block stops too soon at first, or too far from where it has to be."""
+    state = np.array([0.1, 0.2, 0.3, 0.0, 0.05, 0.06])
+    image = state[[2, 1, 0, 5, 4, 3]]
+    stops = [(0.0, 1, state), (0.05, 3, image), (0.5, 3, image + 0.5), (1.0, 1, state + 0.5)]
+    stops += [(1.1, 3, image + 1.5e-7), (2.0, 1, state), (3.0, 1, state)]
+    values = np.array([[block, 0, *at] for _, block, at in stops])
+    found = list(
+        _returns(Model(Chain(3), law_of("linearized", 0.08), v), np.array([time for time, *_ in stops]), values)
+    )
+    assert [time for _, time, *_ in found] == [2.0, *mirrored]
+    kinds = {2.0: Symmetry.ASYMMETRIC, 1.1: Symmetry.SYMMETRIC}
+    assert [symmetry for *_, symmetry, _ in found] == [kinds[time] for _, time, *_ in found]
+    assert all(np.array_equal(start.vector(), state) for start, *_ in found)
+
+
+def test_an_orbit_elsewhere_is_not_that_of_a_motion(monkeypatch):
+    """Newton's method may come to any: here to synchrony, from motion in opposite phases."""
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    elsewhere = closed_motion(model, synchronized_orbit(model).reference)
+    monkeypatch.setattr(module, "find_periodic_orbit", lambda *_: elsewhere)
+    with pytest.raises(OrbitError, match="no periodic orbit found"):
+        closed_motion(model, model.begin(PAPER_STATES["plus"]), 2000.0, 500.0)
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-11, 1e-10, 1e-9, 3e-9, 1e-8])

@@ -62,6 +62,14 @@ def test_what_one_value_has_is_looked_for_at_the_others(scripted):
     assert found.grid == [0, 1, 2, 3]
 
 
+def test_a_number_is_remembered_for_two_of_the_widest_steps(scripted, tell):
+    """So that no branch ends where the grid is coarser."""
+    asked = tell(continuation, "branches", [([], [])])
+    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=Refine(1.0))
+    ((_, _, _, reach, *_),) = asked
+    assert reach == pytest.approx(0.6)
+
+
 def same(one, other):
     """Require everything that two results hold to be equal to the bit."""
     assert type(one) is type(other)

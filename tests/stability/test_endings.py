@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from burridge_knopoff.stability.labels import UNDETERMINED, moved
 from burridge_knopoff.stability.lifetime import Lifetime
 from burridge_knopoff.stability.settings import MOTION, SEARCH, Sample
 from burridge_knopoff.stability.tuning import TUNING
+from tests.stability.stand_in import stand_in
 from tests.stability.test_chains import two_block_exponent
 
 STATES = Sample(samples=8, symmetric_samples=0).initial(2)
@@ -33,10 +35,18 @@ def test_slow_synchrony_is_synchrony(law, a):
     assert simulate(pair(law, a), APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
 
 
-@pytest.mark.parametrize(("apart", "kind"), [(0.9e-3, MotionKind.SYNCHRONIZED), (1.1e-3, MotionKind.UNDETERMINED)])
-def test_only_what_is_next_to_synchrony_is_on_its_way_there(apart, kind):
-    """Within the distance that tells attractors apart."""
-    model = Model(Chain(3), law_of("linearized", 0.05))
+@pytest.mark.parametrize(
+    ("v", "apart", "kind"),
+    [
+        (0.1, 0.9e-3, MotionKind.SYNCHRONIZED),
+        (0.1, 1.1e-3, MotionKind.UNDETERMINED),
+        (0.2, 1.8e-3, MotionKind.SYNCHRONIZED),
+        (0.2, 2.1e-3, MotionKind.UNDETERMINED),
+    ],
+)
+def test_only_what_is_next_to_synchrony_is_on_its_way_there(v, apart, kind):
+    """Within the distance that tells attractors apart, which grows with the speed."""
+    model = Model(Chain(3), law_of("linearized", 0.05), v)
     on_it = synchronized_orbit(model).reference
     end = replace(on_it, position=on_it.position + np.array([0.0, 0.0, apart]))
     found = module._slow_synchrony(model, end, SEARCH, MOTION, TUNING)
@@ -112,6 +122,46 @@ def test_an_average_over_chaos_that_ends_is_not_taken(monkeypatch):
     assert short.kind == whole.kind
     assert short.mean_distance_error > 2.0 * whole.mean_distance_error
     assert short.mean_distance == pytest.approx(whole.mean_distance, abs=4.0 * short.mean_distance_error)
+
+
+@pytest.mark.parametrize(("at", "whole"), [(0, True), (1, True), (2, False), (UNDETERMINED, False)])
+def test_an_average_over_chaos_and_its_mirror_image_is_taken(tell, at, whole):
+    """That over chaos and another motion is not, nor that over chaos and nothing that is known."""
+    chaos = [stand_in(kind=MotionKind.CHAOTIC, mean_distance=0.3, partner=partner) for partner in (1, 0)]
+    states = np.zeros((1, 3))
+    long = SimpleNamespace(
+        **{"status": "completed", "event_time": np.ones(1), "event_position": states, "event_velocity": states},
+        **{"mean_distance": 0.2, "mean_distance_error": 0.01},
+    )
+    tell(module, "run", [long])
+    tell(module, "label", [(np.array([at]), None)])
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    found = module._ending(model, [*chaos, stand_in(partner=2)], 0, SEARCH, TUNING)
+    assert found.kind == MotionKind.CHAOTIC
+    assert (found.mean_distance, found.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
+
+
+def test_mirror_images_have_the_same_numbers(monkeypatch):
+    images = [stand_in(kind=MotionKind.CHAOTIC, partner=partner) for partner in (1, 0)]
+    monkeypatch.setattr(module, "find_attractors", lambda *_, **__: (images, np.array([1, 0, 1])))
+    monkeypatch.setattr(module, "lifetimes", lambda *_: [Lifetime(0, 1e9)] * 2)
+    monkeypatch.setattr(module, "_ending", lambda model, attractors, index, *_: index)
+    assert endings(pair("linearized", 0.18), [APART] * 3) == [0, 0, 0]
+
+
+@pytest.mark.parametrize("start", ["moving", "tested"])
+def test_states_that_are_followed_on_begin_as_they_are_told_to(monkeypatch, tell, start):
+    """Tested, blocks with a spring force −(K U) of at most the threshold stick."""
+    initial = Sample(samples=12).initial(2)
+    position = np.array([state.position for state in initial])
+    stuck = position @ np.array([[-2.0, 1.0], [1.0, -2.0]]) <= 1.0
+    assert 0.2 < stuck.mean() < 0.9
+    monkeypatch.setattr(module, "find_attractors", lambda *_, **__: ([], np.full(12, UNDETERMINED)))
+    followed = tell(module, "label", [(np.full(12, UNDETERMINED), None)])
+    monkeypatch.setattr(module, "moved", lambda model, starts, time: starts)
+    monkeypatch.setattr(module, "_slow_synchrony", lambda model, end, *_: end.stuck.tolist())
+    assert endings(pair("linearized", 0.1), initial, start=start) == (stuck & (start == "tested")).tolist()
+    assert [at.stuck.tolist() for at in followed[0][2]] == (stuck & (start == "tested")).tolist()
 
 
 def test_what_settles_on_nothing_is_undetermined():

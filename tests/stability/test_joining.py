@@ -80,7 +80,7 @@ def follow(tell):
     def found(places):
         sets = [None if place is None else np.full((10, 6), place) for place in places]
         asked = tell(joining, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
-        pair = [Model(Chain(3), law_of(law, 0.5), 0.2) for law in ("linearized", "nonlinear")]
+        pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
         start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).instant()
         return follow_law(*pair, start, SETTINGS), asked
 
@@ -97,6 +97,34 @@ def test_a_law_is_changed_in_even_steps(follow):
     # Each goes on from where the last one was.
     assert [float(start.position[0]) for start in starts] == pytest.approx([7.0, *places[:-1]])
     assert set(transients) == {1500.0}
+    # Nothing else of the model is.
+    assert {(model.v, model.contact) for model in models} == {(0.2, "symmetric")}
+
+
+def test_a_torus_may_be_locked_on_the_way(follow):
+    """The orbit lies on it, before and after, although most of it is far from the orbit."""
+    torus = np.linspace(0.0, 0.9, 10)[:, None]
+    assert follow([torus, 0.3, *[torus] * 15])[0] is not None
+
+
+def test_of_two_branches_that_come_to_one_the_longer_one_is_it(monkeypatch):
+    """Each is followed from three values of a of those at which it exists; the longer one arrives from two of them."""
+    models = [[Model(Chain(3), law_of(law, 0.1 * k)) for k in range(6)] for law in ("linearized", "nonlinear")]
+    here, there = (shown(np.full((1, 6), place), np.zeros((0, 6)), 0.0, 0.0) for place in (0.0, 9.0))
+    asked = []
+
+    def follow(first, second, start, **_):
+        assert first.a == second.a
+        asked.append((start is there_on_it, first.a))
+        return None if asked[-1] == (True, 0.0) else here
+
+    on_it, there_on_it = here.instant(), there.instant()
+    monkeypatch.setattr(joining, "follow_law", follow)
+    states = {1: dict.fromkeys(range(3), on_it), 2: dict.fromkeys(range(6), there_on_it)}
+    assert joined(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
+    expected = [(False, a) for a in (0.0, 0.1, 0.2)] + [(True, a) for a in (0.0, 0.2, 0.5)]
+    assert [long for long, _ in asked] == [long for long, _ in expected]
+    assert [a for _, a in asked] == pytest.approx([a for _, a in expected])
 
 
 def test_what_does_not_go_on_smoothly_is_given_up(follow):

@@ -59,6 +59,44 @@ def test_patience_is_spared_where_a_sample_comes_early(tell, came, expected):
     assert [(len(position), limit) for _, _, position, _, _, limit in asked] == [(20, 20_000.0), (50, 200_000.0)]
 
 
+def sticking(position):
+    """Return which blocks have a spring force −(K U) of at most the threshold."""
+    return position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
+
+
+def test_states_of_the_basin_fractions_begin_as_they_are_told_to(tell):
+    """Tested, blocks whose springs do not pull hard enough stick; each a has states of its own."""
+    asked = tell(fractions, "label_together", [(np.zeros(50, dtype=int), None)] * 3)
+    settings = SearchSettings(samples=0, fraction_samples=50)
+    for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
+        with shared_out(1) as each:
+            fractions.fraction_labels([Search(MODEL.at(a), settings, attractors=[stand_in()])], start, each)
+    positions, velocities, sticks = zip(*(arguments[2:5] for arguments in asked), strict=True)
+    expected = sticking(positions[0] + MODEL.sliding_offset)
+    assert 0.2 < expected.mean() < 0.9
+    assert sticks[0].tolist() == (velocities[0] == 0.0).tolist() == expected.tolist()
+    assert not sticks[1].any()
+    assert velocities[1].min() > 0.0
+    assert (positions[0] == positions[1]).all()
+    assert abs(np.corrcoef(positions[0].ravel(), positions[2].ravel())[0, 1]) < 0.3
+
+
+def test_states_begin_as_they_are_told_to(found):
+    """Tested, those blocks begin at rest."""
+    orbit, (position, velocity), (_, moving) = found
+    labels, times = label_states(MODEL, [orbit], position, velocity, start="tested", time_limit=END)
+    expected = label_states(MODEL, [orbit], position, np.where(sticking(position), 0.0, velocity), time_limit=END)
+    assert labels.tolist() == expected[0].tolist()
+    np.testing.assert_allclose(times, expected[1], atol=1e-6)
+    assert np.mean(np.abs(times - moving) > 1e-3) > 0.3
+
+
+def test_blocks_may_slip_backward_under_a_symmetric_contact():
+    model = Model(Chain(3), law_of("linearized", 0.08), contact="symmetric")
+    labels, _ = label_states(model, [], np.full((2, 3), -0.9), np.full((2, 3), -0.1))
+    assert labels.tolist() == [UNDETERMINED] * 2
+
+
 @pytest.mark.parametrize("threads", [1, 2, 3, 7, 101])
 def test_labels_do_not_depend_on_the_threads_that_share_them_out(found, threads):
     orbit, states, (labels, times) = found

@@ -72,9 +72,10 @@ CAUGHT = {
     "exponent": np.array([0.0, -1.0, -2.0]),
     "radius": 0.2 / math.e,
     "close_returns": 4,
-    "stop_rate": np.array([0.2, 0.2, 0.2]),
+    "stop_rate": np.array([0.1, 0.2, 0.3]),
+    "block": 2,
 }
-#: Twice 1 / 1.0 for the way and 4 returns.
+#: Twice 1 / 1.0 for the way and 4 returns, at the stops of its block.
 LATE = 2.0 * (1.0 + 4 / 0.2)
 
 
@@ -130,6 +131,9 @@ def test_of_chaos_that_is_over_soon_all_captures_count(find):
     when = [10.0] * 28 + [NEVER] * 4
     found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 2, [0, -1]))
     assert found == [Lifetime(30, 28 * 10.0 + 2 * (LATE + TIME) + 2 * 0.5 * LATE), None]
+    # As where less than eight are left, with those that had come to nothing by then.
+    found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], ([10.0] * 21 + [NEVER] * 11, 9, [-1] * 4 + [0] * 5))
+    assert found == [Lifetime(30, 21 * 10.0 + 2 * (LATE + TIME) + 9 * 0.5 * LATE), None]
 
 
 def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
@@ -150,7 +154,7 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
     assert find([stand_in()]) == ([None], [])
 
 
-@pytest.mark.parametrize(("rate", "radius"), [(0.0, 0.005), (1e-9, 0.005), (-1e-4, 0.2)])
+@pytest.mark.parametrize(("rate", "radius"), [(0.0, 0.005), (1e-9, 0.005), (-1e-4, 0.2), (-1e-4, 0.4)])
 def test_an_attractor_that_hardly_attracts_is_waited_for_no_longer_than_any(find, rate, radius):
     slow = stand_in(partner=1, **{**CAUGHT, "exponent": np.array([0.0, -rate, -1.0]), "radius": radius})
     _, asked = find([chaos(), slow], ([NEVER] * 32, 0, []))
@@ -170,6 +174,18 @@ def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
     assert low < 122_700
     assert high > 97_100
     assert lives[0].mean == pytest.approx(109_000, rel=0.35)
+
+
+def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
+    """At twice the speed of the paper they are pushed by up to twice a tenth of the resolution."""
+    fast, away = Model(Chain(3), MODEL.law, 0.2), []
+    for seed in (3, 3, 4):
+        never, nowhere = (np.full(32, -1), np.zeros(32)), (np.zeros(32, int), None)
+        asked = tell(lifetime, "label", [never, nowhere, (np.zeros(0, int), None)])
+        lifetimes(fast, [chaos()], replace(SETTINGS, seed=seed, lifetime=100.0))
+        away.append([np.abs(start.vector() - chaos().motion.returns).max(axis=1).min() for start in asked[0][2]])
+    assert 1.8e-4 < max(away[0]) <= 2e-4
+    assert away[0] == away[1] != away[2]
 
 
 def test_thin_chaos_is_begun_on_and_known_however_small_its_radius(tell):

@@ -128,6 +128,15 @@ def test_each_turn_has_to_be_nearer(tell, away, expected):
     assert asked[0][:4] == (LOCKED, "reference", 0.0, 100.0)
 
 
+@pytest.mark.parametrize(("v", "approached"), [(0.1, False), (0.2, True)])
+def test_how_near_a_locked_orbit_lies_grows_with_the_velocity(tell, v, approached):
+    on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
+    tell(locking, "visit", [SimpleNamespace(returns=on_orbit)])
+    orbit = SimpleNamespace(model=Model(Chain(3), LOCKED.law, v), reference="reference", period=100.0)
+    returns = np.concatenate([on_orbit + away for away in (0.06, 0.059, 0.058)])
+    assert locking._approaches(returns, orbit, Tuning()) == approached
+
+
 def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):
     tell(locking, "visit", [None])
     orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)

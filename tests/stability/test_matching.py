@@ -124,5 +124,8 @@ def test_branches_are_numbered_by_their_mean_distance():
     """Of one a in that order; what comes from synchrony is not synchrony."""
     first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
     assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
+    # Where it differs by rounding they keep the order in which they were found.
+    alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + 1e-9, 0.1, 0.2))]
+    assert followed([alike], 1.0)[0] == [[1, 2, 3]]
     still = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0)]
     assert followed([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]

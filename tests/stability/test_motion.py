@@ -94,6 +94,8 @@ def test_the_numbers_of_the_kinds():
         # With errors larger than the exponents of chaos only a repetition tells something.
         (0.1, 0, (1e-4, -0.01), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 3, (1e-4, -0.01), 1e-2, MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 0.9e-3, MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 1.1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (2.3e-2, -3e-3), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
         (1e-9, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
@@ -129,6 +131,40 @@ def test_the_numbers_of_the_kinds():
 def test_kinds(mean_distance, period, exponents, error, kind):
     errors = np.full(len(exponents), error)
     assert motion_kind(mean_distance, period, np.array(exponents), errors, MOTION) == kind
+
+
+@pytest.mark.parametrize(
+    ("mean_distance", "exponents", "errors", "kind"),
+    [
+        # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
+        (0.1, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.PERIODIC),
+        (0.1, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
+        (0.1, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
+        # Each is judged by its own one.
+        (1e-9, (0.0, -9e-4), (1e-4, 1e-3), MotionKind.QUASIPERIODIC),
+        (1e-9, (0.0, -9e-4), (1e-3, 5e-4), MotionKind.UNDETERMINED),
+        (0.1, (2e-3, 0.0), (1e-4, 1e-3), MotionKind.CHAOTIC),
+        (0.1, (2e-3, 0.0), (1e-3, 1e-4), MotionKind.UNDETERMINED),
+    ],
+)
+def test_kinds_by_errors_that_differ(mean_distance, exponents, errors, kind):
+    assert motion_kind(mean_distance, 0, np.array(exponents), np.array(errors), MOTION) == kind
+
+
+@pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.UNDETERMINED)])
+def test_stops_tell_a_period_only_where_section_points_do_not(points, kind):
+    """Three points would show a repetition, and these do not."""
+    run = run_of(np.arange(points), np.ones((points, 3)))
+    told = {
+        "status": "completed",
+        "mean_distance": 0.1,
+        "lyapunov_exponent": np.zeros(0),
+        "lyapunov_error": np.zeros(0),
+    }
+    states = np.tile([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]], (20, 1))
+    stops = {"event_position": states, "event_velocity": states, "event_time": np.arange(40.0)}
+    stops |= {"event_block": np.tile([2, 3], 20), "event_kind": np.zeros(40, dtype=int)}
+    assert motion_of_run({**run, **told, **stops}, True, MOTION).kind == kind
 
 
 @pytest.mark.parametrize("name", ["period_tolerance", "zero_exponent", "chaotic_exponent"])

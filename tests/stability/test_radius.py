@@ -127,17 +127,28 @@ def test_a_closed_orbit_is_gone_round_twice(length, spacing, expected):
 def test_a_slow_set_is_shown_by_pushed_states(tell):
     seen = [shown(np.full((1, 6), float(n)), np.full((1, 6), float(-n)), 0.0, 0.0) for n in range(1, 13)]
     seen[4] = None
-    # One has left for another motion, on which the middle block stops less often.
+    # Some have left for another motion: the middle block stops less often there, or it is seen at another block.
     seen[6] = replace(seen[6], stop_count=np.array([10, 18, 10]))
+    seen[8], seen[10] = replace(seen[8], block=2), replace(seen[10], mirror_block=3)
     asked = tell(attractor, "visit", seen)
     found = spread(MODEL, at(1.0).motion, SETTINGS)
-    numbers = [n for n in range(1, 13) if n not in (5, 7)]
+    numbers = [n for n in range(1, 13) if n not in (5, 7, 9, 11)]
     assert found.returns[:, 0].tolist() == [*numbers, 1.0]
     assert found.mirror_returns[:, 0].tolist() == [*(-n for n in numbers), 1.0]
     assert {(transient, window) for _, _, transient, window, *_ in asked} == {(30.0, 70.0)}
     # By five resolutions at the scale 2, and that in all directions.
     sizes = np.abs([start.position - 1.0 for _, start, *_ in asked])
     assert 0.009 < sizes.max() <= 0.01
+
+
+def test_pushed_states_begin_all_over_a_slow_set_and_by_the_seed(tell):
+    begun = []
+    for seed in (3, 3, 4):
+        asked = tell(attractor, "visit", [None] * 12)
+        spread(MODEL, at(*range(50)).motion, replace(SETTINGS, seed=seed))
+        begun.append([start.position[0] for _, start, *_ in asked])
+    assert len({round(place) for place in begun[0]}) > 6
+    assert begun[0] == begun[1] != begun[2]
 
 
 def test_without_attractors_nothing_is_reached():

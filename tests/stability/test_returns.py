@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.stability import returns
-from burridge_knopoff.stability.returns import instant_of, orbit_length, returns_of
+from burridge_knopoff.stability.returns import instant_of, orbit_length, returns_of, stops_alike
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import shown
 
@@ -30,6 +30,32 @@ def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mi
     assert (found.returns == states[number == block]).all()
     assert (found.returns == mirrored.mirror_returns).all()
     assert (found.mirror_returns == mirrored.returns).all()
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "symmetric", "seen"),
+    [(8, 8, True, True), (7, 8, True, False), (8, 7, True, False), (8, 7, False, True), (7, 8, False, False)],
+)
+def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, seen):
+    """In a chain that is its own mirror image both of them; else the stops of the first block are all."""
+    chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
+    block = np.array([1] * first + [3] * last)
+    states = np.random.default_rng(3).uniform(size=(len(block), 6))
+    found = returns_of(Model(chain, law_of("linearized", 0.1)), block, np.zeros(len(block)), states, TUNING)
+    assert (found is not None) == seen
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "alike"),
+    [
+        ((10, 20, 30), (300, 200, 100), True),  # seen from the other end, for ten times as long
+        ((10, 20, 10), (10, 20, 10.6), True),
+        ((10, 20, 10), (10, 22, 10), False),
+        ((1, 0, 0, 1), (0, 1, 1, 0), False),
+    ],
+)
+def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike):
+    assert stops_alike(np.array(first), np.array(second)) == stops_alike(np.array(second), np.array(first)) == alike
 
 
 @pytest.mark.parametrize(

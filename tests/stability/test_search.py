@@ -1,11 +1,12 @@
 """The search of attractors step by step, each with what the others answer told beforehand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, law_of
+from burridge_knopoff import Chain, Model, MotionKind, OrbitError, SearchSettings, law_of
 from burridge_knopoff.stability import attractors, settling
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.returns import instant_of
@@ -26,7 +27,18 @@ def add(monkeypatch):
     With what is found comes what has been asked: transients and windows, or an index and the least radius.
     """
 
-    def added(measured, lasting, radii, model=MODEL, mirror=OTHER, spacing=CLOSED, in_chaos=False, mirror_cloud=ONE):
+    def added(
+        measured,
+        lasting,
+        radii,
+        model=MODEL,
+        mirror=OTHER,
+        spacing=CLOSED,
+        in_chaos=False,
+        mirror_cloud=ONE,
+        known=(),
+        inner=(),
+    ):
         asked, answers = [], {"measure": measured, "visit": [lasting], "captured": radii}
 
         def tell(name, left):
@@ -40,12 +52,12 @@ def add(monkeypatch):
             tell(name, iter(left))
         monkeypatch.setattr(Search, "lies_in_chaos", lambda *_: in_chaos)
         monkeypatch.setattr(attractors, "bounded", lambda _, known, *__: list(known))
-        monkeypatch.setattr(attractors, "midst", lambda *_: [])
+        monkeypatch.setattr(attractors, "midst", lambda *_: [*inner])
         monkeypatch.setattr(
             attractors, "spread", lambda _, motion, *__: replace(motion, returns=ONE, mirror_returns=mirror_cloud)
         )
-        search = Search(model, SETTINGS)
-        assert search._add(shown(ONE, mirror, spacing, 0.0)) == bool(search.attractors)
+        search = Search(model, SETTINGS, attractors=[*known])
+        assert search._add(shown(ONE, mirror, spacing, 0.0)) == (len(search.attractors) > len(known))
         names = [name for name, *_ in asked]
         assert (names.count("measure"), names.count("captured")) == (len(measured), len(radii))
         return search.attractors, asked
@@ -71,6 +83,24 @@ def test_a_motion_is_added_with_its_mirror_image(add):
     unequal = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.08))
     (alone,), _ = add([motion(9e-7)], None, [0.02], unequal, mirror=ONE[:0])
     assert (alone.symmetry, alone.partner) == (ASYMMETRIC, 0)
+
+
+def test_partners_are_numbered_after_what_is_known(add):
+    """As what is known is left as it was, whether something is added or not."""
+    known = [stand_in(partner=k) for k in range(2)]
+    for mean, mirror, partners in ((9e-7, OTHER, [2]), (0.1, ONE, [2]), (0.1, OTHER, [3, 2])):
+        found, asked = add([motion(mean)], None, [0.02], mirror=mirror, known=known)
+        assert found[:2] == known
+        assert [item.partner for item in found[2:]] == partners
+        assert asked[-1] == ("captured", 2, TUNING.smallest_radius)
+    assert add([motion(9e-7)], None, [0.0], known=known)[0] == known
+
+
+def test_a_slow_set_with_a_known_attractor_in_its_midst_is_no_other_one(add):
+    drifting = motion(exponent=np.array([0.0, -0.1, -0.2]))
+    pair, asked = add([drifting], None, [0.0, 1e-7], known=[stand_in()], inner=[0])
+    assert [item.slow for item in pair] == [False] * 3
+    assert [least for name, _, least in asked if name == "captured"] == [TUNING.smallest_radius, TUNING.tiny_radius]
 
 
 def test_chaos_has_to_last(add):
@@ -151,6 +181,43 @@ def test_what_attracts_as_a_whole_is_a_slow_set(add):
     assert len(add([replace(drifting, mean_distance=1.01e-2)], None, [0.0, 0.02])[0]) == 1
 
 
+@pytest.mark.parametrize(
+    ("modulus", "mean", "found"),
+    [
+        (0.999, 5e-4, [SYNCHRONIZED]),
+        (1.0, 5e-4, []),
+        (None, 5e-4, []),  # there is no such orbit
+        (0.999, 1.1e-3, [ASYMMETRIC] * 2),
+    ],
+)
+def test_synchrony_that_is_slow_is_told_by_its_multipliers(monkeypatch, modulus, mean, found):
+    """Within the resolution of it; pushes need not come back as close as off any other motion."""
+    exact, asked = motion(0.0), []
+
+    def orbit(model):
+        if modulus is None:
+            raise OrbitError("none")
+        return SimpleNamespace(reference=instant_of(OTHER[0]))
+
+    def captured(*arguments):
+        asked.append((arguments[2], arguments[-1].recovery))
+        return 0.02
+
+    monkeypatch.setattr(attractors, "synchronized_orbit", orbit)
+    monkeypatch.setattr(attractors, "leading_modulus", lambda orbit: modulus)
+    monkeypatch.setattr(attractors, "measure", lambda model, start, *_: exact if start.position[0] == 2.0 else None)
+    monkeypatch.setattr(settling, "measure", lambda *_: motion(mean))
+    monkeypatch.setattr(attractors, "captured", captured)
+    search = Search(MODEL, SETTINGS, attractors=[stand_in(ASYMMETRIC, returns=9.0 * ONE)])
+    assert search._add(shown(ONE, OTHER, CLOSED, 0.0)) == bool(found)
+    new = search.attractors[1:]
+    assert [item.symmetry for item in new] == found
+    slow = found == [SYNCHRONIZED]
+    assert [item.motion is exact for item in new] == [slow] * len(found)
+    assert asked == [(1, TUNING.slow_recovery if slow else TUNING.recovery)] * bool(found)
+    assert not slow or new[0].partner == 1
+
+
 @pytest.fixture
 def search(monkeypatch):
     """A search that knows a mirror pair and a slow set, and whose trajectories reach what is told."""
@@ -171,7 +238,13 @@ def search(monkeypatch):
 
 @pytest.mark.parametrize(
     ("place", "spacing", "expected"),
-    [(ONE, CLOSED, 0), (OTHER + 5e-4, CLOSED, 1), (3.0 * ONE, CLOSED, 2), (5.0 * ONE, WIDE, -1)],
+    [
+        (ONE, CLOSED, 0),
+        (OTHER + 5e-4, CLOSED, 1),
+        (3.0 * ONE + 9e-4, CLOSED, 2),
+        (3.0 * ONE + 1.1e-3, CLOSED, -1),
+        (5.0 * ONE, WIDE, -1),
+    ],
 )
 def test_what_a_state_reaches(search, monkeypatch, place, spacing, expected):
     sizes = []
@@ -183,6 +256,26 @@ def test_what_a_state_reaches(search, monkeypatch, place, spacing, expected):
     assert sizes == pytest.approx([1e-4, 1e-4] if expected < 0 else [])
     monkeypatch.setattr(search, "settle", lambda start: None)
     assert Search.reach(search, None) == -1
+
+
+def test_an_orbit_on_a_slow_set_is_itself_where_it_is_known(search, monkeypatch):
+    """Although the set is listed before it, and is as near as its own returns are to each other."""
+    slow = stand_in(returns=ONE + 0.05, spacing=0.1, slow=True)
+    search.attractors = [slow, stand_in(partner=1, returns=ONE)]
+    monkeypatch.setattr(search, "settle", lambda start: shown(ONE, -ONE, CLOSED, 0.0))
+    assert Search.reach(search, None) == 1
+
+
+def test_what_is_handed_on_is_pushed_off_its_symmetry():
+    """By up to a tenth of the resolution, at twice the speed of the paper twice that, and by the seed."""
+    many = [stand_in(partner=k) for k in range(20)]
+    pushes = []
+    for seed in (3, 3, 4):
+        search = Search(Model(Chain(3), law_of("linearized", 0.08), 0.2), replace(SETTINGS, seed=seed))
+        pushes.append([start.position - many[0].motion.instant().position for start in search.seeds(many)])
+    assert 1.8e-4 < np.abs(pushes[0]).max() <= 2e-4
+    assert np.array_equal(pushes[0], pushes[1])
+    assert not np.array_equal(pushes[0], pushes[2])
 
 
 def test_states_are_followed_until_something_is_found(search):

@@ -89,6 +89,15 @@ def test_a_motion_that_has_left_for_another_one_is_not_listed(tell):
     assert Settling(MODEL, SETTINGS).measured(shown(ONE, ONE, WIDE, 0.0)) is None
 
 
+def test_a_motion_that_changes_again_and_again_is_listed_as_it_was_last(tell):
+    first, second = (shown(ONE, ONE, WIDE, 0.0, stops) for stops in ((9, 9, 9), (9, 18, 9)))
+    visited = tell(settling, "visit", [first, second, first])
+    tell(settling, "measure", [motion(1.0, kind=MotionKind.QUASIPERIODIC, mean_distance_error=0.1)] * 3)
+    found, _ = Settling(MODEL, SETTINGS).measured(second)
+    assert found is second
+    assert len(visited) == TUNING.trials + 1
+
+
 def test_distances_grow_with_the_speed_of_the_driver():
     """In slower motion also those within which a closed orbit repeats are smaller."""
     for v, resolution, tolerance in ((0.2, 2e-3, 1e-6), (0.1, 1e-3, 1e-6), (0.05, 5e-4, 5e-7)):

@@ -88,6 +88,8 @@ def test_the_same_seed_gives_the_same_pairs():
     one, same, other = (follow_pairs(half_plane, UNIT, UNIT, 100, seed) for seed in (3, 3, 4))
     assert (one.different == same.different).all()
     assert (one.different != other.different).any()
+    # A batch has one pair at least, unless there are none.
+    assert (follow_pairs(half_plane, UNIT, UNIT, 1, 3).known.sum(axis=1) > 0.0).mean() > 0.5
     none = follow_pairs(half_plane, UNIT, UNIT, 0, 3)
     assert not none.known.any()
     assert none.known_count.tolist() == [0] * len(SEPARATIONS)
