@@ -45,6 +45,7 @@ def attractors():
     [
         ({"velocity": VELOCITY[:1]}, "shapes"),
         ({"velocity": VELOCITY[:3]}, "shapes"),
+        ({"position": -1.0, "velocity": 0.1}, "shapes"),
         ({"position": POSITION[:, :2], "velocity": VELOCITY[:, :2]}, "shapes"),
         ({"position": POSITION * np.nan}, "finite"),
         ({"velocity": -VELOCITY}, "velocities of 0 or more"),

@@ -117,15 +117,40 @@ def dropping():
     return closed_motion(model, start, settling=10_000.0)
 
 
-def test_where_friction_drops_slips_end_with_a_deceleration(dropping):
-    least, runner = np.full(3, np.inf), Runner(dropping.model)
-    for time, block, kind in dropping.events:
+def two_blocks(contact, state):
+    """Return the orbit of two blocks that a state leads to, where friction drops by a fifth."""
+    model = Model(Chain(2), law_of("carlson_langer", 3.0, {"sigma": 0.2}), contact=contact)
+    return closed_motion(model, Instant(*map(np.array, state), np.zeros(2, dtype=bool)), settling=3000.0, window=500.0)
+
+
+#: With slips that end while the springs pull backward; and with backward slips, and a block that turns round.
+STATES = {
+    "one_sided": ((-0.5, 0.4), (0.1, 0.1)),
+    "symmetric": ((0.27043814, 0.44241565), (0.14660621, 0.10622318)),
+}
+
+
+@pytest.mark.parametrize("contact", [None, *STATES])
+def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
+    orbit = two_blocks(contact, STATES[contact]) if contact else dropping
+    least, runner = np.full(orbit.model.blocks, np.inf), Runner(orbit.model)
+    for time, block, kind in orbit.events:
         if kind == 0:
-            before = [runner.after(dropping.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
-            least[block] = min(least[block], (before[1] - before[0]) / 1e-4)
-    found = contacts(dropping).deceleration
+            before = [runner.after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
+            along = np.sign(before[0])
+            least[block] = min(least[block], along * (before[1] - before[0]) / 1e-4)
+    found = contacts(orbit).deceleration
     assert np.isfinite(found).any()
     assert found == pytest.approx(least, abs=1e-3)
+
+
+def test_where_a_block_turns_round_no_stick_shrinks():
+    """It stops and starts at one instant, for as long as the springs pull it back beyond its threshold."""
+    orbit = two_blocks("symmetric", STATES["symmetric"])
+    time, kind = orbit.events_of(1)
+    sticks = np.diff(time, append=time[:1] + orbit.period)[kind == 0]
+    assert sorted(sticks == 0.0) == [False] * 3 + [True]
+    assert contacts(orbit).stick[1] == sticks[sticks > 0.0].min() > 1.0
 
 
 def test_a_deceleration_grows_with_the_threshold(dropping):

@@ -287,6 +287,15 @@ def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
     assert 0.75 < ratio < 1.5
 
 
+def test_a_state_is_watched_up_to_the_time_limit_at_most(monkeypatch):
+    """There are checks every 20 until then."""
+    asked, run = [], Runner.run
+    monkeypatch.setattr(Runner, "run", lambda runner, time: asked.append(time) or run(runner, time))
+    chain = model(3, 0.2)
+    assert fate(chain, SAMPLE.initial(3)[0], Watch(time_limit=219.0)).outcome != Outcome.SYNCHRONIZED
+    assert asked == [20.0 * check for check in range(1, 11)]
+
+
 def test_a_watched_chain_is_its_states_one_by_one():
     watch = Watch(time_limit=600.0)
     results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)

@@ -223,3 +223,12 @@ def test_what_repeats_without_a_section_point_is_periodic():
     run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), start, transient=2000.0, window=2000.0)
     assert not len(run.crossing_time)
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.PERIODIC
+
+
+@pytest.mark.parametrize(("mean", "kind"), [(0.0, MotionKind.SYNCHRONIZED), (0.1, MotionKind.PERIODIC)])
+def test_an_orbit_of_a_long_period_is_known_by_its_section(mean, kind):
+    """Its exponents alone look like those of a torus."""
+    section = np.tile(np.random.default_rng(3).random(150), 8)
+    run = run_of(section, np.arange(3.0 * len(section)).reshape(-1, 3))
+    told = {"status": "completed", "mean_distance": mean, "lyapunov_exponent": np.array([0.0, 0.0, -0.1])}
+    assert motion_of_run({**run, **told, "lyapunov_error": np.full(3, 1e-5)}, True, MOTION).kind == kind

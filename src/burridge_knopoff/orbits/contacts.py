@@ -116,19 +116,25 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
     if drops(model):
         runner = Runner(model, keep_events=True)
         after(runner, orbit.reference, orbit.period)
-        values = runner.log.events.values()
-        stops = values[values[:, 1] == 0]
-        block, position = stops[:, 0].astype(int) - 1, stops[:, 2 : 2 + model.blocks]
-        force = _derivatives(model, position, np.zeros_like(position))[0][np.arange(len(stops)), block]
-        friction = model.chain.thresholds[block] * float(model.law(0.0))
-        np.minimum.at(least, block, friction - np.abs(force))
+        events = runner.log.events.values()
+        for number, threshold in enumerate(model.chain.thresholds):
+            own = events[events[:, 0] == number + 1]
+            position = own[:, 2 : 2 + model.blocks]
+            force = _derivatives(model, position, np.zeros_like(position))[0][:, number]
+            # A slip goes where the spring force points at its start, the event before its stop.
+            along = np.sign(np.roll(force, 1)) * force
+            decelerations = threshold * float(model.law(0.0)) - along
+            least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
     return least
 
 
 def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
     """Return the shortest time from an event of a kind to the next one of the block; infinite if there is none."""
     time, event = orbit.events_of(block)
-    return float(np.diff(time, append=time[:1] + orbit.period)[event == kind].min(initial=np.inf))
+    length = np.diff(time, append=time[:1] + orbit.period)[event == kind]
+    # A block that turns round stops and starts at one instant: no stick shrinks there.
+    turns = (length == 0.0) & (orbit.model.contact == "symmetric")
+    return float(length[~turns].min(initial=np.inf))
 
 
 def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -90,7 +90,7 @@ def watch_state(runner: Runner, start: Instant, watch: Watch = WATCH) -> Fate:
     _check_mirror(model)
     runner.begin(start)
     history: list[np.ndarray] = []
-    for check in range(1, round(watch.time_limit / INTERVAL) + 1):
+    for check in range(1, int(watch.time_limit / INTERVAL) + 1):
         if runner.run(check * INTERVAL) != Status.COMPLETED:
             return Fate(Outcome.UNDETERMINED)
         state = runner.instant()

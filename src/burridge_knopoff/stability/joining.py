@@ -17,7 +17,7 @@ from burridge_knopoff.stability.returns import Returns, visit
 from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
-#: {branch: the states on it}, with the models that they belong to by position: at each of them one state.
+#: {branch: the states on it, at stops}, with the models that they belong to by position: at each of them one state.
 States = Mapping[int, Mapping[int, Instant]]
 
 
@@ -80,8 +80,7 @@ def joined(
         followed = each("turned into the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
     for (row, k, _, weight), found in zip(tried, followed, strict=True):
-        mirror = firsts[k].chain.is_mirror_symmetric
-        near = {n: _nearest(found, second[n][k], mirror=mirror) for n in numbers[1] if k in second[n]} if found else {}
+        near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
         best = min(near, key=lambda n: near[n], default=None)
         if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
             arrivals[row, numbers[1].index(best)] += weight
@@ -89,8 +88,7 @@ def joined(
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
 
-def _nearest(found: Returns, state: Instant, *, mirror: bool) -> float:
-    """Return how far a state, or with `mirror` its mirror image, is from the nearest of some returns."""
-    tree = cKDTree(found.returns)
-    images = (state, state.mirrored()) if mirror else (state,)
-    return float(min(tree.query(item.vector(), p=np.inf)[0] for item in images))
+def _nearest(found: Returns, state: Instant) -> float:
+    """Return how far the state at a stop is from the nearest return of a motion, or of its mirror image."""
+    tree = cKDTree(np.concatenate([found.returns, found.mirror_returns]))
+    return float(tree.query(state.vector(), p=np.inf)[0])

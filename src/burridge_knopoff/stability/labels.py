@@ -120,7 +120,7 @@ def label_states(
     for number, attractor in enumerate(attractors):
         instance_of(attractor, Attractor, f"attractors[{number}]")
     position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
-    if not position.shape == velocity.shape == (len(position), model.blocks):
+    if not position.shape == velocity.shape == (*position.shape[:1], model.blocks):
         raise ValueError(
             f"position, velocity: shapes {position.shape}, {velocity.shape} are not allowed: (n, {model.blocks}), both"
         )

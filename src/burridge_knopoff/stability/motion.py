@@ -255,9 +255,8 @@ def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSetti
         mean = judged_distance(float(run["mean_distance"]), symmetric)
         kind = motion_kind(mean, period, exponent, error, settings)
         upward = run["crossing_velocity"][run["crossing_direction"] > 0]
-        if kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance):
-            # A weakly attracting orbit of a long period.
-            kind = MotionKind.PERIODIC
-        if kind in OPEN and len(upward) < REPETITIONS and _stops_repeat(run, settings):
+        # Weakly attracting orbits of a long period, and those that hardly ever cross the section.
+        closed = kind == MotionKind.QUASIPERIODIC and section_closed(upward, settings.period_tolerance)
+        if closed or (kind in OPEN and len(upward) < REPETITIONS and _stops_repeat(run, settings)):
             kind = closed_kind(mean, settings)
     return MotionOfRun(kind, period, is_unstable(period, exponent, error, settings))
