@@ -196,6 +196,7 @@ def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdi
     if not len(finite(growth)):
         raise NotTestableError(f"the mirror image of the {law} law is no friction law with {a}")
     largest = float(np.nanmax(growth))
-    reason = f"With {a} and the slope of the {law} law reversed perturbations grow at a rate of {largest:.3g} at most."
+    words = f"decay at a rate of {-largest:.3g} or more" if largest < 0.0 else f"grow, at a rate of up to {largest:.3g}"
+    reason = f"With {a} and the slope of the {law} law reversed perturbations {words}."
     changes = f"growth {at_values(found['a'].values, growth >= 0.0)}" if largest >= 0.0 else ""
     return Verdict(HOLDS if largest < 0.0 else FAILS, reason, [Measured("largest growth rate", largest)], changes)
