@@ -1,8 +1,13 @@
 """Words that messages and files share."""
 
-from collections.abc import Iterable
+from __future__ import annotations
 
-from burridge_knopoff.laws import Law
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from burridge_knopoff.laws import Law
 
 
 def counted(number: int, noun: str) -> str:

@@ -115,9 +115,10 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 def digest(dataset: xarray.Dataset) -> str:
     """Return, in a line for each edge, what happens there, to which branch, and the stops on both sides of it."""
     laws = dataset.attrs["laws"].split()
+    columns = {name: dataset[name].values for name, item in VARIABLES.items() if item.dimensions[0] == "edge"}
     lines = []
     for number in range(dataset.sizes["edge"]):
-        one = {name: dataset[name].values[number] for name in VARIABLES if dataset[name].dims[0] == "edge"}
+        one = {name: values[number] for name, values in columns.items()}
         kind = EdgeKind(one["kind"]).name.lower() + (", turns" if one["turns"] == 1 else "")
         parts = [f"{laws[one['law']]}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
         if np.isfinite(one["lifetime_low"]):
