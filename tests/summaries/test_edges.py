@@ -19,8 +19,8 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
-from burridge_knopoff.summaries.edge_entries import _closed
 from burridge_knopoff.summaries.edges import VARIABLES, _rounded, digest, merge, one_law
+from burridge_knopoff.summaries.followed_orbits import _closed
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]

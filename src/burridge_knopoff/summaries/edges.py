@@ -20,7 +20,8 @@ from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.stretch import Stretch
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
-from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries, followed
+from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries
+from burridge_knopoff.summaries.followed_orbits import followed
 
 PARTS = ("real", "imaginary")
 _EDGE, _ORBIT = ("edge",), ("orbit",)
@@ -80,13 +81,11 @@ def one_law(
     blocks = model.blocks
     one = refined.load()
     changes = branch_changes(attractors, one)
-    stretches, of_slot = followed(model, one, changes, processes, folder)
-    for entry in sorted(entries(one, changes, stretches, of_slot), key=lambda entry: (entry.a, entry.change)):
+    orbits = followed(model, one, changes, processes, folder)
+    for entry in sorted(entries(one, changes, orbits), key=lambda entry: (entry.a, entry.change)):
         _append_edge(values, entry, blocks)
-    branch = one["branch"].values
-    branch_of = {index: int(branch[slot]) for slot, index in reversed(of_slot.items())}
-    for index, stretch_ in enumerate(stretches):
-        _append_orbits(values, index, branch_of[index], stretch_)
+    for index, (place, stretch_) in enumerate(zip(orbits.places, orbits.stretches, strict=True)):
+        _append_orbits(values, index, int(one["branch"].values[place]), stretch_)
     rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])

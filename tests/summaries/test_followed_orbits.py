@@ -10,7 +10,7 @@ from burridge_knopoff import Chain, Model, MotionKind, OrbitError, Symmetry, fin
 from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.pseudo_arclength import begin_branch
 from burridge_knopoff.orbits.stretch import Half
-from burridge_knopoff.summaries import edge_entries
+from burridge_knopoff.summaries import followed_orbits
 
 
 @pytest.mark.parametrize("processes", [1, 4, 8])
@@ -33,21 +33,23 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
             raise OrbitError("cannot be followed")
         return Half([begin_branch(one, True)])
 
-    monkeypatch.setattr(edge_entries, "closed_motion", closed_motion)
-    monkeypatch.setattr(edge_entries, "half", alone)
+    monkeypatch.setattr(followed_orbits, "closed_motion", closed_motion)
+    monkeypatch.setattr(followed_orbits, "half", alone)
     slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4}
     one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
     names, position = ("value", "attractor", "block"), np.zeros((1, 4, 3))
     position[0, :, 0] = range(4)
     one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
     one["velocity"] = names, np.zeros((1, 4, 3))
-    found, of_slot = edge_entries.followed(orbit.model, one, [], processes)
-    assert of_slot == {(0, slot): number for slot, number in numbers.items()}
-    assert [item.upward.orbits[0].orbit.period / orbit.period for item in found] == pytest.approx(expected)
+    found = followed_orbits.followed(orbit.model, one, [], processes)
+    assert found.of_place == {(0, slot): number for slot, number in numbers.items()}
+    assert [found.of_place[place] for place in found.places] == list(range(len(expected)))
+    followed = [item.upward.orbits[0].orbit.period / orbit.period for item in found.stretches]
+    assert followed == pytest.approx(expected)
 
 
 def test_the_longest_orbits_are_followed_first_and_neighbours_late():
     periods = [6.0] * 8 + [100.0, 6.3, 90.0]
     placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
     # Their places within an octave are those of the van der Corput sequence.
-    assert [k for (k, _), _ in edge_entries._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
+    assert [k for (k, _), _ in followed_orbits._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
