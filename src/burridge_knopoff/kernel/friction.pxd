@@ -3,6 +3,8 @@
 from burridge_knopoff.kernel.vector cimport Vectors, convolution, each_exp, each_log, each_power, splat, vec
 
 cdef double ROUNDING
+cdef double FOLLOWED
+cdef double SPENT
 
 cdef enum:
     LINEAR = 0
@@ -20,6 +22,7 @@ cdef class Friction:
     cdef readonly double rate
     cdef readonly double steepest
     cdef readonly double at_rest
+    cdef readonly bint exponential
     cdef readonly Py_ssize_t columns
     cdef readonly Py_ssize_t length
     cdef int[:, ::1] operation
@@ -31,6 +34,8 @@ cdef class Friction:
     cdef double[::1] number
 
     cdef double at(self, double speed) noexcept nogil
+    cdef double shorten(self, double t) noexcept nogil
+    cdef bint _is_followed(self, double t) noexcept nogil
     cdef void start(self, Py_ssize_t column, vec speed) noexcept nogil
     cdef void extend(self, Py_ssize_t column, Py_ssize_t n, int first, int last) noexcept nogil
     cdef void complete(self, Py_ssize_t column, Py_ssize_t first, Py_ssize_t count) noexcept nogil

@@ -19,12 +19,20 @@ from cython.cimports.burridge_knopoff.kernel.friction import (
     slopes,
     squares,
 )
-from cython.cimports.burridge_knopoff.kernel.vector import Vectors, lane_of, splat, vec
+from cython.cimports.burridge_knopoff.kernel.vector import Vectors, bits, lane_of, less, magnitude, splat, vec
 from cython.cimports.libc.math import exp, log
 from cython.cimports.libc.math import pow as power
 
 # Rounding of friction at rest.
 ROUNDING = 1e-12
+
+# How far the argument of an exponential may change in a series, per order. Its coefficients y_n follow from p_n, those
+# of the argument, by n y_n = Σ k p_k y_(n−k). Where Σ k |p_k| t^k is at most n/2, terms from n on are at most half of
+# the largest before. Else they grow unseen from next to nothing, as exp(−U'/w) does where a block brakes.
+FOLLOWED = 0.5
+
+# Modulus of the argument beyond which an exponential, or its reciprocal, is less than what rounding leaves of friction.
+SPENT = 50.0
 
 # Codes and registers of a multiple of the reciprocal of a straight line.
 HYPERBOLIC = [(LINEAR, 0, -1), (RECIPROCAL, 1, -1), (LINEAR, 2, -1)]
@@ -35,12 +43,14 @@ class Friction:
 
     operations, constants : the tape, shape (n, 3) each; value, slope : registers of Φ and of its slope
     linear : whether Φ is the straight line Φ(0) − rate·U'; it then needs no series
+    exponential : whether an operation is EXP, see `shorten`
     rate : −dΦ/dU' at rest; steepest : largest modulus of threshold times slope that occurs
     """
 
     value: cython.int
     slope: cython.int
     linear: cython.bint
+    exponential: cython.bint
     hyperbolic: cython.bint
     scale: cython.double
     rate: cython.double
@@ -73,6 +83,7 @@ class Friction:
         self.value = value
         self.slope = slope
         self.linear = linear
+        self.exponential = any(operation[0] == EXP for operation in operations[:value])
         # Whether Φ is a multiple of the reciprocal of a straight line, the most usual law, which has a loop of its own.
         shape = [tuple(operation) for operation in operations[:value]]
         self.hyperbolic = shape in (HYPERBOLIC, HYPERBOLIC[:2])
@@ -120,6 +131,34 @@ class Friction:
                 made = log(p)
             self.number[r + 1] = made
         return self.number[self.value]
+
+    def shorten(self, t: cython.double) -> cython.double:
+        """Return a time, t or a part of it, over which every exponential is followed or spent."""
+        while not self._is_followed(t):
+            t *= 0.5
+        return t
+
+    def _is_followed(self, t: cython.double) -> cython.bint:
+        """Tell whether every exponential is followed or spent up to t.
+
+        All coefficients but the last have been filled.
+        """
+        r: cython.int
+        c: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        total: vec
+        limit: vec = splat(FOLLOWED * (self.length - 1))
+        argument: cython.pointer[vec]
+        for r in range(self.value):
+            if self.operation[r, 0] == EXP:
+                for c in range(self.columns):
+                    argument = row(self, self.operation[r, 1], c)
+                    total = splat(0.0)
+                    for k in range(self.length - 2, 0, -1):
+                        total = (total + cython.cast(cython.double, k) * magnitude(argument[k])) * t
+                    if bits(less(limit, total) & less(magnitude(argument[0]) - splat(SPENT), total)):
+                        return False
+        return True
 
     def start(self, column: cython.Py_ssize_t, speed: vec) -> None:
         """Fill coefficient 0 of all registers from a speed, and their derivatives by it."""

@@ -1,4 +1,4 @@
-from burridge_knopoff.kernel.vector cimport Vectors, vec
+from burridge_knopoff.kernel.vector cimport Vectors, mask, vec
 
 cdef int LINEAR
 cdef int MULTIPLY
@@ -12,6 +12,7 @@ cdef class FrictionSeries:
     cdef readonly Py_ssize_t length
     cdef readonly Py_ssize_t operations
     cdef readonly bint affine
+    cdef readonly bint exponential
     cdef readonly double constant
     cdef readonly double slope
     cdef Vectors register
@@ -27,6 +28,7 @@ cdef class FrictionSeries:
     cdef double[::1] reciprocal
 
     cdef void begin(self, Py_ssize_t column) noexcept nogil
+    cdef vec shorten(self, vec t) noexcept nogil
     cdef void extend(self, Py_ssize_t n) noexcept nogil
     cdef void _add(self, Py_ssize_t r, Py_ssize_t n) noexcept nogil
     cdef void _divide(self, Py_ssize_t r, Py_ssize_t n) noexcept nogil

@@ -12,12 +12,18 @@ Derivatives", 2nd ed., SIAM (2008), chapter 13.
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.friction import FOLLOWED, SPENT
 from cython.cimports.burridge_knopoff.kernel.vector import (
     Vectors,
+    bits,
     convolution,
     each_exp,
     each_log,
     each_power,
+    less,
+    magnitude,
+    mask,
+    select,
     splat,
     vec,
 )
@@ -45,6 +51,7 @@ class FrictionSeries:
     length: cython.Py_ssize_t
     operations: cython.Py_ssize_t
     affine: cython.bint
+    exponential: cython.bint
     constant: cython.double
     slope: cython.double
     register: Vectors
@@ -82,6 +89,7 @@ class FrictionSeries:
         self.gamma = np.array(gamma, dtype=float)
         self.reciprocal = 1.0 / np.maximum(np.arange(order + 1, dtype=float), 1.0)
         self.affine = not np.any(np.asarray(self.code) != LINEAR)
+        self.exponential = EXP in code
         self.constant = 0.0
         self.slope = 0.0
         if self.affine:
@@ -140,6 +148,36 @@ class FrictionSeries:
                 self._divide(r, n)
             else:
                 self._convolve(r, n)
+
+    def shorten(self, t: vec) -> vec:
+        """Return times, t or parts of them, over which every exponential is followed or spent, as in `friction`.
+
+        All coefficients but the last have been filled.
+        """
+        r: cython.Py_ssize_t
+        column: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        total: vec
+        weighted: cython.pointer[vec]
+        argument: vec
+        limit: vec = splat(FOLLOWED * (self.length - 1))
+        spent: vec
+        far: mask
+        for r in range(self.operations):
+            if self.code[r] == EXP:
+                for column in range(self.columns):
+                    weighted = self.weighted.at + (r * self.columns + column) * self.length
+                    argument = self.register.at[(self.first[r] * self.columns + column) * self.length]
+                    spent = magnitude(argument) - splat(SPENT)
+                    while True:
+                        total = splat(0.0)
+                        for k in range(self.length - 2, 0, -1):
+                            total = (total + magnitude(weighted[k])) * t
+                        far = less(limit, total) & less(spent, total)
+                        if not bits(far):
+                            break
+                        t = select(far, splat(0.5) * t, t)
+        return t
 
     def _add(self, r: cython.Py_ssize_t, n: cython.Py_ssize_t) -> None:
         """Extend α r_i + β r_j + γ."""

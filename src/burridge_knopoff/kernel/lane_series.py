@@ -99,6 +99,8 @@ class LaneSeries:
                 self._row(lanes, n)
         self._last_row(lanes)
         self._bound()
+        if lanes.friction.exponential:
+            self.reach.at[0] = lanes.friction.shorten(self.reach.at[0])
 
     def _begin(self, lanes: Lanes) -> None:
         """Fill the rows 0 and 1 that follow from the states."""

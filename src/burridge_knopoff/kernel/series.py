@@ -112,6 +112,8 @@ class Series:
             self._extend_one(state, piece)
         else:
             self._extend(state, piece)
+        if state.friction.exponential:
+            return state.friction.shorten(self._step(piece))
         return self._step(piece)
 
     def _extend(self, state: State, piece: Piece) -> None:

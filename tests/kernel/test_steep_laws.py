@@ -1,0 +1,56 @@
+"""Laws in which friction rises next to rest: while a block slips fast nothing in its motion tells of that."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, FormulaLaw, Model
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.together import new_ensemble
+from tests.flows import check_events
+from tests.kernel.test_ensemble import check_against_scalar
+from tests.scipy_flow import model_events
+
+# Speeds of slip are about 0.1.
+FORMULAS = {
+    "exponential": "0.95 + 0.05*exp(-u/w) - a*u",
+    "tanh": "1 - 0.05*tanh(u/w) - a*u",
+    "gaussian": "0.95 + 0.05*exp(-(u/w)**2) - a*u",
+    "lorentzian": "0.95 + 0.05/(1 + (u/w)**2) - a*u",
+    "logarithmic": "1 - 0.01*log(1 + u/w)",
+    "power": "0.95 + 0.05*(1 + u/w)**-3.5 - a*u",
+}
+
+
+@pytest.mark.parametrize("contact", ["one_sided", "symmetric"])
+@pytest.mark.parametrize("w", [1e-2, 1e-3])
+@pytest.mark.parametrize("name", FORMULAS)
+def test_events_against_scipy(name, w, contact):
+    """On a horizon on which the peer, whose steps have to be short, loses nothing."""
+    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS[name], w=w), contact=contact)
+    start = model.begin(PAPER_STATES["minus"])
+    expected, end = model_events(model, start, 6.0)
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    runner.run(6.0)
+    time, block, kind = runner.events()
+    assert len(expected) > 4
+    check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
+    assert np.allclose(runner.instant().vector(), end, rtol=0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("w", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("name", FORMULAS)
+def test_lanes_against_one_state(name, w):
+    """The orders of their series differ, and so do their steps."""
+    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS[name], w=w))
+    assert check_against_scalar(model, new_ensemble(model), 20, 6.0) > 50
+
+
+def test_an_exponential_that_is_next_to_nothing_costs_no_steps():
+    """Its argument changes by millions while the block slips."""
+    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS["gaussian"], w=1e-4))
+    runner = Runner(model)
+    runner.begin(model.begin(PAPER_STATES["minus"]))
+    runner.run(20.0)
+    assert runner.kernel.steps < 2000
