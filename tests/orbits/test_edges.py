@@ -187,6 +187,28 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
     assert -offset / slope == pytest.approx(flip.a, abs=5e-5)
 
 
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_a_flip_may_break_the_mirror_symmetry(law):
+    """Two blocks that move as one part so that each does in a period what the other one does in the next."""
+    model = Model(Chain(2), law_of(law, 0.05))
+    one = closed_motion(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
+    (flip,) = locate_edges(follow(one, (0.045, 0.055)))
+    assert flip.kind == EdgeKind.FLIP
+    start = flip.at.orbit.reference
+    start = Instant(start.position + np.array([0.002, -0.002]), start.velocity, start.stuck)
+    doubled = find_periodic_orbit(model.at(flip.a + 2e-4), start, flip.at.orbit.period, Symmetry.SYMMETRIC)
+    branch = follow(doubled, (0.045, 0.055), upward=False)
+    assert branch[-1].joined.period == pytest.approx(0.5 * doubled.period, rel=1e-3)
+    (end,) = locate_edges(branch)
+    assert end.kind == EdgeKind.FLIP
+    assert end.a == pytest.approx(flip.a, abs=1e-9)
+    # Found without its symmetry it is followed as what it is.
+    plain = find_periodic_orbit(doubled.model, doubled.reference, doubled.period, Symmetry.ASYMMETRIC)
+    again = follow(plain, (0.045, 0.055), upward=False)
+    assert [edge.kind for edge in locate_edges(again)] == [EdgeKind.FLIP]
+    assert again[0].orbit.symmetry == Symmetry.SYMMETRIC
+
+
 def test_a_torus_branches_off_where_perturbations_stop_decaying():
     orbit = settled(0.12, (-0.787, -0.661, -0.869), velocity=(0.0, 0.101, 0.189))
     assert (orbit.symmetry, orbit.signature) == (Symmetry.SYMMETRIC, (1, 0, 1))

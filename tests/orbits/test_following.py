@@ -122,6 +122,7 @@ def walk(monkeypatch):
             lengths.append(length)
             return next(smooth)
 
+        monkeypatch.setattr(following, "simpler_orbit", lambda orbit: None)
         monkeypatch.setattr(following, "begin_branch", lambda orbit, upward: Step(orbit))
         monkeypatch.setattr(following, "smooth_step", step)
         monkeypatch.setattr(following, "come_to_corner", lambda points, length: next(corners))

@@ -209,6 +209,7 @@ def _kind(at: BranchOrbit, key: tuple[EdgeKind, str]) -> EdgeKind | None:
 
 def _joint_kind(orbit: PeriodicOrbit, simple: PeriodicOrbit) -> EdgeKind | None:
     """Return the kind of edge at which orbits begin as simpler ones; None if these are no simpler."""
-    if simple.symmetry != orbit.symmetry:
-        return EdgeKind.PITCHFORK
-    return EdgeKind.FLIP if simple.period < 0.75 * orbit.period else None
+    # A flip may break the mirror symmetry as well.
+    if simple.period < 0.75 * orbit.period:
+        return EdgeKind.FLIP
+    return EdgeKind.PITCHFORK if simple.symmetry != orbit.symmetry else None

@@ -11,7 +11,7 @@ from burridge_knopoff.orbits.floquet import critical_values
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch
-from burridge_knopoff.orbits.simpler import simplest
+from burridge_knopoff.orbits.simpler import simpler_orbit, simplest
 
 # Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
 # comes back to itself in a mirror, or after half its period.
@@ -49,7 +49,7 @@ def follow(
 ) -> list[BranchOrbit]:
     """Return the orbits of a branch from one on, until a leaves a range or enough is known.
 
-    orbit : stable or not, of any chain; a_range : (low, high)
+    orbit : stable or not, of any chain; one of simpler orbits is followed as that; a_range : (low, high)
     settings : lengths of steps; upward : whether a grows at first
     enough : told after each orbit but those on a corner, with all orbits so far
 
@@ -78,7 +78,7 @@ def follow(
         raise ValueError(f"a_range: {a_range!r} is not allowed: (low, high) with low ≤ high")
     if not low <= orbit.a <= high:
         raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
-    points = [begin_branch(orbit, upward)]
+    points = [begin_branch(simpler_orbit(orbit) or orbit, upward)]
     length = settings.first_step
 
     def goes_on() -> bool:
