@@ -191,6 +191,14 @@ def test_numbers_are_rounded(found):
         assert [float(f"{value:.8e}") for value in values] != values.tolist()
 
 
+@pytest.mark.parametrize(("name", "digits"), [("multiplier", 5), ("multiplier_beyond", 5), ("stick_time", 5)])
+def test_what_is_less_well_known_has_fewer_digits(found, name, digits):
+    values = found[name].values
+    values = values[np.abs(values) > 1e-5]
+    assert [float(f"{value:.{digits - 1}e}") for value in values] == values.tolist()
+    assert [float(f"{value:.{digits - 2}e}") for value in values] != values.tolist()
+
+
 def test_a_negative_rounding_of_0_is_0():
     assert not np.signbit(_rounded(VARIABLES["a"], [-1e-13], 10)).any()
 
