@@ -1,4 +1,4 @@
-from burridge_knopoff.kernel.vector cimport Vectors, mask, vec
+from burridge_knopoff.kernel.vector cimport Vectors, vec
 
 cdef int LINEAR
 cdef int MULTIPLY
