@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, OrbitError, law_of
+from burridge_knopoff import Chain, Model, OrbitError, law_of, multipliers
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Instant
 from burridge_knopoff.orbits.family import synchronized_orbit
+from burridge_knopoff.orbits.periodic import find_periodic_orbit
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability import closed_motion as module
@@ -54,6 +55,33 @@ def test_an_orbit_elsewhere_is_not_that_of_a_motion(monkeypatch):
     monkeypatch.setattr(module, "find_periodic_orbit", lambda *_: elsewhere)
     with pytest.raises(OrbitError, match="no periodic orbit found"):
         closed_motion(model, model.begin(PAPER_STATES["plus"]), 2000.0, 500.0)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "law", "a", "position"),
+    [(3, "nonlinear", 0.19, [0.0, -0.04, -0.9]), (2, "linearized", 0.08, [0.0, -0.5])],
+)
+def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, position, monkeypatch):
+    """Of three blocks, and a thin one of two: Newton's method finds unstable ones beside the motion."""
+    passed = []
+
+    def find(*arguments):
+        passed.append(find_periodic_orbit(*arguments))
+        return passed[-1]
+
+    monkeypatch.setattr(module, "find_periodic_orbit", find)
+    model = Model(Chain(blocks), law_of(law, a))
+    start = Instant(np.array(position), np.full(blocks, 0.1), np.zeros(blocks, dtype=bool))
+    with pytest.raises(OrbitError, match="no periodic orbit found"):
+        closed_motion(model, start, settling=2000.0)
+    assert passed
+    assert all(multipliers(orbit).unstable for orbit in passed)
+
+
+def test_an_unstable_orbit_is_that_of_a_motion_that_never_leaves_it():
+    model = Model(Chain(3), law_of("linearized", 0.09))
+    found = closed_motion(model, synchronized_orbit(model).reference)
+    assert (found.symmetry, multipliers(found).unstable) == (Symmetry.SYNCHRONIZED, 1)
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-11, 1e-10, 1e-9, 3e-9, 1e-8])

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.orbits.floquet import multipliers
 from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.orbits.return_map import mirror
@@ -21,7 +23,7 @@ from burridge_knopoff.stability.returns import instant_of
 CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 
 #: Time for which returns are looked for: longer orbits, as locked tori may have, are not found; and how much farther
-#: than it returned the orbit that is found may lie.
+#: than it returned the motion may still be from the orbit in the end.
 WINDOW = 8000.0
 FARTHER = 30.0
 
@@ -36,8 +38,11 @@ def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: f
     model, state : of the motion
     settling, window : times that it is left to settle first, and in which it has to return
 
-    Raises OrbitError if the motion does not return within the window, or to no periodic orbit, ValueError for a time or
-    a state that is not allowed.
+    It lies on an orbit that attracts if it comes nearer in the window, on one that does not, such as synchrony from
+    equal states, only if it never leaves it: in chaos a motion passes by one unstable orbit after another.
+
+    Raises OrbitError if the motion does not return within the window, or to no periodic orbit on which it lies,
+    ValueError for a time or a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -57,7 +62,7 @@ def closed_motion(model: Model, state: Instant, settling: float = 0.0, window: f
             found = find_periodic_orbit(model, start, time, symmetry)
         except OrbitError:
             continue
-        if _distance(found, values) <= FARTHER * max(size, CLOSENESS[0]) * model.scale:
+        if _stays(found, values, FARTHER * size * model.scale):
             return simplest(found, CLOSENESS[0])
     raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
 
@@ -88,8 +93,19 @@ def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tu
                 break
 
 
-def _distance(orbit: PeriodicOrbit, values: np.ndarray) -> float:
-    """Return how far the orbit's own stop lies from the nearest of those that were observed, of the same block."""
-    block = min(moved for _, moved, kind in orbit.events if kind == 0)
-    stops = values[(values[:, 0] == block + 1) & (values[:, 1] == 0), 2:]
-    return float(np.abs(stops - orbit.start(block).vector()).max(axis=1).min())
+def _stays(orbit: PeriodicOrbit, values: np.ndarray, reach: float) -> bool:
+    """Tell whether a motion, by its events, lies on an orbit: how far its first and its last turn are from it."""
+    block = min(moved for _, moved, kind in orbit.events if kind == 0) + 1
+    around = Runner(orbit.model, keep_events=True)
+    around.begin(orbit.reference)
+    around.run(orbit.period)
+    own, seen = _stops(around.log.events.values(), block), _stops(values, block)
+    turns = seen[: len(own)], seen[-len(own) :]
+    first, last = (cKDTree(own).query(turn, p=np.inf)[0].max() for turn in turns)
+    rounding = CLOSENESS[0] * orbit.model.scale
+    return bool(last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach))))
+
+
+def _stops(values: np.ndarray, block: int) -> np.ndarray:
+    """Return the states at the stops of one block, from 1, shape (stops, 2 blocks)."""
+    return values[(values[:, 0] == block) & (values[:, 1] == 0), 2:]

@@ -149,9 +149,11 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
     """Return the closed orbit on which a motion through a state U_i, U_i' has settled, or why there is none."""
     state = instant_of(np.concatenate([position - model.sliding_offset, velocity]))
     try:
-        found = closed_motion(model, state)
-        # Newton's method may come to another orbit beside one that attracts slowly.
-        found = closed_motion(model, state, LATER) if multipliers(found).unstable else found
+        try:
+            found = closed_motion(model, state)
+        except OrbitError:
+            # One that attracts slowly is told later from others beside it.
+            found = closed_motion(model, state, LATER)
         if multipliers(found).unstable:
             raise OrbitError(f"a = {model.a:.12g}: the closed orbit beside the motion is unstable")
     except OrbitError as error:
