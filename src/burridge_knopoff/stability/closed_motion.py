@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.floquet import multipliers
-from burridge_knopoff.orbits.orbit import OrbitError
+from burridge_knopoff.orbits.orbit import OrbitError, flow
 from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.orbits.return_map import mirror
 from burridge_knopoff.orbits.simpler import simplest
@@ -17,6 +16,7 @@ from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import DURATION
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.nearness import distance
 from burridge_knopoff.stability.returns import instant_of
 
 #: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
@@ -95,15 +95,12 @@ def _returns(model: Model, times: np.ndarray, values: np.ndarray) -> Iterator[tu
 
 def _stays(orbit: PeriodicOrbit, values: np.ndarray, reach: float) -> bool:
     """Tell whether a motion, by its events, lies on an orbit: how far its first and its last turn are from it."""
-    block = min(moved for _, moved, kind in orbit.events if kind == 0) + 1
-    around = Runner(orbit.model, keep_events=True)
-    around.begin(orbit.reference)
-    around.run(orbit.period)
+    block = int(np.flatnonzero(orbit.signature)[0]) + 1
+    around, _ = flow(orbit.model, orbit.reference, orbit.period)
     own, seen = _stops(around.log.events.values(), block), _stops(values, block)
-    turns = seen[: len(own)], seen[-len(own) :]
-    first, last = (cKDTree(own).query(turn, p=np.inf)[0].max() for turn in turns)
+    first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
     rounding = CLOSENESS[0] * orbit.model.scale
-    return bool(last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach))))
+    return last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach)))
 
 
 def _stops(values: np.ndarray, block: int) -> np.ndarray:
