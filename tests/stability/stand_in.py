@@ -36,9 +36,10 @@ def shown(
     spacing: float,
     drift: float,
     stop_count: tuple[int, ...] = (1, 2, 1),
+    window: float = 100.0,
 ) -> Returns:
     """Return what a window is told to have shown."""
-    return Returns(returns, mirror_returns, spacing, drift, np.array(stop_count))
+    return Returns(returns, mirror_returns, spacing, drift, np.array(stop_count), window)
 
 
 def at(*places: float, ahead: float = 0.0, **told: Any) -> Attractor:

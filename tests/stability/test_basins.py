@@ -10,10 +10,13 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, Symmetry, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
+from burridge_knopoff.stability import basins as stability_basins
+from burridge_knopoff.stability import settling
 from burridge_knopoff.stability.basins import known_attractors, pixel_centres, plane
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MOTION, BasinSettings, Refine
 from burridge_knopoff.summaries import all_laws, attractors, basins
+from tests.stability.stand_in import shown
 from tests.stability.test_attractors import SETTINGS
 
 SEARCH = replace(SETTINGS, samples=25, fraction_samples=25)
@@ -128,6 +131,16 @@ def test_known_attractors_are_those_of_the_summary(known, a, pairs):
         assert len(item.motion.returns) == pytest.approx(time * item.motion.stop_rate[item.motion.block - 1], rel=0.02)
         assert (item.motion.returns is item.motion.mirror_returns) == (item.symmetry == Symmetry.SYMMETRIC)
         assert np.abs(item.motion.returns[:, :3] - (state - MODEL.at(a).sliding_offset)).max(axis=1).min() < 2e-2
+
+
+def test_a_long_orbit_is_seen_for_as_long_as_it_takes_to_close(known, tell):
+    """As in the search: in a shorter window its returns would not repeat."""
+    rows = np.ones((20, 6))
+    tell(settling, "visit", [shown(rows, rows, 0.1, 0.0), shown(rows, rows, 0.0, 0.0, window=12_000.0)])
+    asked = tell(stability_basins, "measure_once", [None])
+    with pytest.raises(ValueError, match="is not an attractor"):
+        known_attractors(known, MODEL, SEARCH, MOTION)
+    assert asked[0][3] == 12_000.0
 
 
 def test_a_slow_set_is_shown_by_pushed_states_once_more(known):

@@ -98,6 +98,14 @@ def test_a_motion_that_changes_again_and_again_is_listed_as_it_was_last(tell):
     assert len(visited) == TUNING.trials + 1
 
 
+@pytest.mark.parametrize(("spacing", "measured"), [(CLOSED, 800.0), (WIDE, 100 * TUNING.filling)])
+def test_a_closed_orbit_is_measured_in_the_window_in_which_it_was_seen_to_close(tell, spacing, measured):
+    """In a shorter one a long orbit does not repeat: its returns would lie apart."""
+    asked = tell(settling, "measure", [None])
+    Settling(MODEL, SETTINGS).measured(shown(ONE, ONE, spacing, 0.0, window=800.0))
+    assert asked[0][3] == measured
+
+
 def test_distances_grow_with_the_speed_of_the_driver():
     """In slower motion also those within which a closed orbit repeats are smaller."""
     for v, resolution, tolerance in ((0.2, 2e-3, 1e-6), (0.1, 1e-3, 1e-6), (0.05, 5e-4, 5e-7)):

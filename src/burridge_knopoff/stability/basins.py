@@ -17,6 +17,7 @@ from burridge_knopoff.stability.attractor import Attractor, spread
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+from burridge_knopoff.stability.settling import Settling
 from burridge_knopoff.stability.steady import measure_once
 from burridge_knopoff.stability.tuning import TUNING
 
@@ -47,13 +48,13 @@ def known_attractors(
     found = summary.sel(law=law, a=a)
     slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
     branch, side = found["branch"].values[slots], found["side"].values[slots]
-    attractors = []
+    settling, attractors = Settling(model, settings, motion), []
     for index, slot in enumerate(slots):
         one = found.isel(attractor=slot)
         velocity = one["velocity"].values
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
-        closed = one["kind"].item() in CLOSED
-        window = settings.window * (1 if closed else TUNING.filling)
+        closed = settling.settle(start) if one["kind"].item() in CLOSED else None
+        window = TUNING.filling * settings.window if closed is None else settling.window_of(closed)
         # The search has seen which kind it is, in longer windows.
         steady = measure_once(model, start, settings.transient, window, motion.at_speed(model.v), TUNING)
         if steady is None:

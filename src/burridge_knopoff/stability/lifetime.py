@@ -148,4 +148,4 @@ def _capture_time(model: Model, attractor: Attractor, tuning: Tuning) -> float:
     rate = max(-motion.exponent[1], 1.0 / tuning.patient_time)
     nearer = math.log(tuning.far * tuning.largest_radius * model.scale / attractor.radius) / rate
     close = attractor.close_returns / motion.stop_rate[motion.block - 1]
-    return min(tuning.patient_time, tuning.lateness * (max(nearer, 0.0) + close))
+    return tuning.lateness * (max(nearer, 0.0) + close)

@@ -25,6 +25,7 @@ class Returns:
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
     stop_count : stops of each block in the window, shape (blocks,)
+    window : how long the motion was seen
     block, mirror_block : the block of these returns, the outermost one that stops regularly, and that of the mirrored
         motion: the same if both of the pair stop
     """
@@ -34,6 +35,7 @@ class Returns:
     spacing: float
     drift: float
     stop_count: np.ndarray
+    window: float
     block: int = 1
     mirror_block: int = 1
 
@@ -66,11 +68,13 @@ def visit(model: Model, start: Instant, transient: float, window: float, tuning:
     if runner.run(transient + window) != Status.COMPLETED:
         return None
     events = runner.log.events.values()
-    return returns_of(model, events[:, 0], events[:, 1], events[:, 2:], tuning)
+    return returns_of(model, window, events[:, 0], events[:, 1], events[:, 2:], tuning)
 
 
-def returns_of(model: Model, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning) -> Returns | None:
-    """Return the returns among the states at events of blocks 1 … N and kinds, or None if there are too few."""
+def returns_of(
+    model: Model, window: float, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning
+) -> Returns | None:
+    """Return the returns among the states at a window's events of blocks 1 … N and kinds; None if there are too few."""
     stop_count = np.bincount(block[kind == 0].astype(int), minlength=model.blocks + 1)[1:]
     section, mirror_section = _sections(stop_count, tuning)
     stops = states[(block == section) & (kind == 0)]
@@ -89,6 +93,7 @@ def returns_of(model: Model, block: np.ndarray, kind: np.ndarray, states: np.nda
         spacing=spacing_of(second, tuning.near_share),
         drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),
         stop_count=stop_count,
+        window=window,
         block=section,
         mirror_block=mirror_section,
     )

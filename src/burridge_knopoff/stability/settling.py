@@ -66,8 +66,7 @@ class Settling:
     def measured(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
         """Measure a settled motion; where it turns out to be on its way to another one, return that one instead."""
         settings, tuning = self.settings, self.tuning
-        closed = found.closed(self.tolerance)
-        window = settings.window * (1 if closed else tuning.filling)
+        closed, window = found.closed(self.tolerance), self.window_of(found)
         motion = measure(self.model, found.instant(), settings.transient, window, self.motion_settings, tuning)
         if motion is None:
             return None
@@ -89,6 +88,10 @@ class Settling:
         ended = later.closed(self.tolerance) and later.settled(self.tolerance, self.resolution, tuning)
         stays = not ended and (chaotic or stops_alike(later.stop_count, found.stop_count, tuning))
         return (found, motion) if stays or again == tuning.trials else self.measured(later, again + 1)
+
+    def window_of(self, found: Returns) -> float:
+        """Return how long a motion is measured: one that takes long to close for as long as it took."""
+        return found.window if found.closed(self.tolerance) else self.tuning.filling * self.settings.window
 
     def is_symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image, in the window in which it was seen."""

@@ -189,7 +189,7 @@ def measure_once(
     if trajectory.status != "completed":
         return None
     states = np.concatenate([trajectory.event_position - model.sliding_offset, trajectory.event_velocity], axis=1)
-    found = returns_of(model, trajectory.event_block, trajectory.event_kind, states, tuning)
+    found = returns_of(model, window, trajectory.event_block, trajectory.event_kind, states, tuning)
     if found is None:
         return None
     period = section_period(vars(trajectory), settings)
