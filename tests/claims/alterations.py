@@ -8,6 +8,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
+from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change
@@ -207,6 +208,17 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("end_blocks_locked", NOT_TESTABLE, alter("stick_slip", "velocity_frequency", np.nan, a=lambda a: a > 0.03)),
     ("locking_precedes_chaos", FAILS, alter("edges", "motion_before", QUASIPERIODIC)),
     ("locking_precedes_chaos", LOOSELY, alter("edges", "motion_before", QUASIPERIODIC, edge=5)),
+    # An orbit too long to be followed may be that of a tongue between tori: one of four may be, two of four decide.
+    ("locking_precedes_chaos", LOOSELY, alter("edges", "kind", EdgeKind.UNDETERMINED, edge=5)),
+    ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "kind", EdgeKind.UNDETERMINED, edge=[5, 6])),
+    (
+        "locking_precedes_chaos",
+        FAILS,
+        both(
+            alter("edges", "kind", EdgeKind.UNDETERMINED, edge=[5, 6]),
+            alter("edges", "motion_before", QUASIPERIODIC, edge=[6, 7]),
+        ),
+    ),
     # Chaos that was there before, an edge that is passed, and what is not known before are no beginnings of chaos.
     ("locking_precedes_chaos", HOLDS, alter("edges", "motion_before", TRANSIENT, edge=5)),
     ("locking_precedes_chaos", HOLDS, alter("edges", "motion_before", UNDETERMINED, edge=5)),
