@@ -157,11 +157,13 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
 @pytest.mark.parametrize(
     ("rate", "radius", "way"),
     [
-        (0.0, 0.2 / math.e, TUNING.patient_time),
-        (1e-9, 0.2 / math.e, TUNING.patient_time),
-        (-1e-4, 0.2, 0.0),
-        (-1e-4, 0.4, 0.0),
+        # A torus, chaos or a locked torus.
+        (0.0, 0.2 / math.e, 0.5 * TUNING.patient_time - 20.0),
+        (0.99e-4, 0.005, 0.5 * TUNING.patient_time - 20.0),
+        (-1e-4, 0.2, 0.5 * TUNING.patient_time - 20.0),
+        (1.01e-4, 0.2 / math.e, 1.0 / 1.01e-4),
         (5e-4, 0.2 / math.e, 2000.0),
+        (5e-4, 0.4, 0.0),
         # A tiny orbit in the midst of chaos: what begins in its own basin takes long to show it.
         (5e-4, 0.2 * math.exp(-12.0), 24_000.0),
     ],

@@ -142,10 +142,12 @@ def _followed(
 def _capture_time(model: Model, attractor: Attractor, tuning: Tuning) -> float:
     """Return a time within which trajectories that have left chaos are certain to be on an attractor.
 
-    By its weakest exponent they come from afar to its radius, and then so often close to it as they have to.
+    By its second exponent they come from afar to the radius of a closed orbit, and then so often close to it as they
+    have to. Of a torus, of chaos, and of an orbit to which a torus is locked this exponent tells nothing.
     """
-    motion = attractor.motion
-    rate = max(-motion.exponent[1], 1.0 / tuning.patient_time)
+    motion, rate = attractor.motion, -attractor.motion.exponent[1]
+    if rate < 1.0 / tuning.patient_time:
+        return tuning.patient_time
     nearer = math.log(tuning.far * tuning.largest_radius * model.scale / attractor.radius) / rate
     close = attractor.close_returns / motion.stop_rate[motion.block - 1]
     return tuning.lateness * (max(nearer, 0.0) + close)
