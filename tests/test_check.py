@@ -166,6 +166,36 @@ def test_summaries(results):
     assert found(results) == {("stale", "summary/mean_distance.nc")}
 
 
+#: Of each job a file that it makes.
+BEGUN = {
+    "lyapunov": "summary/lyapunov.nc",
+    "attractors": "summary/refined.nc",
+    "attractors/nonlinear": "refined/nonlinear.nc",
+    "claims": "summary/claims.json",
+    "figure_motion_minus": "figures/motion_minus.png",
+    "figure_chains": "figures/chains.pdf",
+    "report": "report.html",
+}
+
+
+@pytest.mark.parametrize(("job", "file"), BEGUN.items())
+def test_what_was_begun_and_not_made_is_missing_and_nothing_else(results, capsys, job, file):
+    log = results / f"logs/{job}.log"
+    log.parent.mkdir(parents=True)
+    log.write_text("")
+    missing = {finding.path: finding for finding in check_study(results).findings}
+    assert missing[results / file].kind == "missing"
+    assert missing[results / file].reason == "not made yet"
+    log.write_text("MemoryError: no more\n")
+    assert main(["check", str(results)]) == 1
+    said = capsys.readouterr().out
+    assert f"missing  {results / file}: its job failed: MemoryError: no more (log {log})\n" in said
+    for path in missing:
+        path.parent.mkdir(exist_ok=True)
+        shutil.copy(results / "summary/mean_distance.nc", path)
+    assert main(["check", str(results)]) == 0
+
+
 def test_a_changed_config_and_points_of_no_grid(results, capsys):
     config = results.parent.parent / "small.yaml"
     config.write_text(CONFIG + "# words\n")
@@ -243,7 +273,7 @@ benchmarks/proof.tsv benchmarks/basins/linearized/a0.0800/pairs.tsv
 
 def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     """They are not checked, since no command makes them again, and not opened."""
-    kept = ("summary/claims.json", "figures/mean_distance.png", "figures/chains.png", "logs/agreement.log")
+    kept = ("summary/claims.json", "figures/mean_distance.png", "figures/chains.png", "benchmarks/agreement.tsv")
     for name in (*OF_STAGES.split(), *kept):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).write_text("")

@@ -1,4 +1,4 @@
-"""Files that not every study has: those of a study, and those that its config had once."""
+"""The files of a study by their names: those that it has, lacks, or had once by its config."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from burridge_knopoff.figures.description import figure_descriptions, study_figures
 from burridge_knopoff.study.paths import POINT
-from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES
+from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 #: What stands in the names of files; of any other name no file is ever held for left over.
@@ -23,6 +23,12 @@ _WILDCARDS = {
 
 #: What the files of a folder end with, if it is not .nc.
 _SUFFIXES = {"figures": "pdf|png", "summary": "nc|txt|json|csv|md"}
+
+#: What a job makes by a name, or in a folder, if it is not one .nc.
+_MADE = {"figures": ("pdf", "png"), "report": ("html",), "summary/claims": ("json", "csv", "md")}
+
+#: The stage whose job makes a file, if it is not that of the file's name.
+_STAGE_OF = {name: stage for stage, names in SUMMARIES.items() for name in names}
 
 #: The forms of a file below the results and of its log, both without suffix, and all wildcards that a study has there:
 #: one without any for a file that it has, none for a file that it has not.
@@ -51,6 +57,20 @@ def leftovers(results: Path, study: Study) -> list[Path]:
     ]
 
 
+def unmade(results: Path, study: Study) -> dict[Path, Path]:
+    """Return {file: log} of what is not there, besides points, although its job has begun, which its log shows.
+
+    What has no log was not asked for yet, or waits for what is missing itself.
+    """
+    made = {}
+    for file, log, named in _other_files(study):
+        suffixes = _MADE.get(file) or _MADE.get(file.partition("/")[0], ("nc",))
+        for wildcards in named:
+            place = results / f"logs/{log}.log".format(**wildcards)
+            made.update({results / f"{file}.{suffix}".format(**wildcards): place for suffix in suffixes})
+    return {path: log for path, log in made.items() if log.exists() and not path.exists()}
+
+
 def run_files(study: Study) -> list[Named]:
     """Return the point files of all runs: the wildcards of each are the arguments of `Study.command`."""
     place = POINT.removesuffix(".nc")
@@ -67,18 +87,21 @@ def _other_files(study: Study) -> Iterator[Named]:
         yield form, form, known
     for folder in ("attractors", "refined", "edges", "phases"):
         laws = study.laws if folder in study.stage_summaries else ()
-        yield f"{folder}/{{law}}", f"{folder}/{{law}}", [{"law": law} for law in laws]
+        yield f"{folder}/{{law}}", f"{_STAGE_OF.get(folder, folder)}/{{law}}", [{"law": law} for law in laws]
     numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
     yield "chains/blocks{blocks}", "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
     absent = study.absent_summaries
-    for name in sorted(OPTIONAL_SUMMARIES):
-        yield f"summary/{name}", name, [{}] if name not in absent else []
+    # Those that every study has are known by the figures of them.
+    shown = {name for figure in figure_descriptions() if not figure.of_runs for name in figure.inputs}
+    for name in sorted(OPTIONAL_SUMMARIES | shown):
+        yield f"summary/{name}", _STAGE_OF.get(name, name), [{}] if name not in absent else []
     yield "summary/claims", "claims", [{}] if "claims" in study.stages else []
     # A picture of a single run is named for its state.
     drawn = {figure.file for figure in study_figures(study, study.chain_summaries)}
     for figure in figure_descriptions():
         states = study.initial if figure.file in drawn else ()
         yield f"figures/{figure.file}", f"figure_{figure.file}", [{"initial": initial} for initial in states]
+    yield "report", "report", [{}]
 
 
 def delete(results: Path, paths: list[Path]) -> None:

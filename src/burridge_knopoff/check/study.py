@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.check.leftovers import leftovers, run_files
+from burridge_knopoff.check.leftovers import leftovers, run_files, unmade
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile
@@ -90,6 +90,7 @@ def root_of(results: Path) -> Path:
 def check_study(results: str | Path) -> Check:
     """Check every point and every other netCDF file of a study against its config and the current sources.
 
+    Of summaries, figures and the report what is not there is missing if its job has begun, see `unmade`.
     Raises ValueError, one line, if the folder holds no study.
     """
     results = Path(results)
@@ -109,11 +110,14 @@ def check_study(results: str | Path) -> Check:
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
     unknown = {path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")}
-    summaries = others - unknown
-    found = [*(_look(path, *run) for path, run in points.items()), *map(_look, summaries)]
+    rest = {**dict.fromkeys(others - unknown, Path()), **unmade(results, study)}
+    found = [
+        *(_look(path, *run) for path, run in points.items()),
+        *(_look(path, log=log) for path, log in rest.items()),
+    ]
     return Check(
         results,
-        f"{counted(len(points), 'point')} and {counted(len(summaries), 'other file')}",
+        f"{counted(len(points), 'point')} and {counted(len(rest), 'other file')}",
         sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
         [
             *(Finding("leftover", path, "not part of this study") for path in left if path.suffix not in LOGS),
@@ -134,7 +138,7 @@ def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
-    """Return what is wrong with the point file of a run, or with a summary if there is no command, or None."""
+    """Return what is wrong with the point file of a run, or with another file if there is no command, or None."""
     try:
         if not command:
             open_summary(path)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, and results
-that are not part of them. Exit code: 0 nothing is wrong, 1 something is missing, corrupt or stale, 3 runs have failed
-but nothing else is wrong."""
+DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, other files
+whose job has begun and that are not there, and results that are not part of them. Exit code: 0 nothing is wrong, 1
+something is missing, corrupt or stale, 3 runs have failed but nothing else is wrong."""
 
 EXAMPLES = """  bk check results/paper
   bk check --paths results/*
