@@ -30,11 +30,8 @@ growth by a power of time, for each law and initial state. What lies below the f
 strips at the top show the kind of motion that follows from the exponents and the section points; white is undetermined.
 """
 
-# Very negative exponents would take the room of those that tell kinds of motion apart.
-LOWEST = -0.13
-
-# The least that the frame reaches up to, so that exponents near 0 are seen as such.
-LEAST_TOP = 0.06
+# The least that the frame reaches down to, so that exponents near 0 are seen as such.
+LEAST_DEPTH = 0.01
 
 # Where the curves end and the strip begins, in units of the panel's height.
 CURVES, STRIP = 0.9, 0.93
@@ -51,8 +48,7 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     panels = list(table.flat)
     a = lyapunov["a"].values
     edges = cells(a)
-    ends = (lyapunov["lyapunov_exponent"] + 3.0 * lyapunov["lyapunov_error"].fillna(0.0)).values
-    top = max([LEAST_TOP, *ends[np.isfinite(ends)]])
+    low, high = _frame(lyapunov)
     titles = []
     for number, panel in enumerate(panels):
         run = lyapunov.sel(law=laws[number // len(states)], initial=states[number % len(states)])
@@ -74,7 +70,7 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
             )
         if run["lyapunov_exponent"].isnull().all():
             say(panel, "no exponents were computed")
-        panel.set_ylim(LOWEST, LOWEST + (top - LOWEST) / CURVES)
+        panel.set_ylim(low, low + (high - low) / CURVES)
         for left, right, kind in zip(edges[:-1], edges[1:], run["kind"].values, strict=True):
             panel.axvspan(left, right, STRIP, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)
         panel.axvspan(edges[0], edges[-1], STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
@@ -87,3 +83,20 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     legend_below(figure, [*legend_entries(panels)[0], *kinds])
     label_panels(panels, titles)
     return figure
+
+
+def _frame(lyapunov: xarray.Dataset) -> tuple[float, float]:
+    """Return what the frame of the curves reaches down and up to.
+
+    It has all ends of bars above 0, and below 0 twice the depth of the largest exponents and of nine tenths of the
+    second ones: these two tell kinds of motion apart, and very negative ones would take their room.
+    """
+    exponent = lyapunov["lyapunov_exponent"].values
+    error = 3.0 * lyapunov["lyapunov_error"].fillna(0.0).values
+    first, second = (exponent - error)[..., 0], exponent[..., :2][..., -1]
+    lowest = [-0.5 * LEAST_DEPTH, *first[np.isfinite(first)].tolist()]
+    if np.isfinite(second).any():
+        lowest.append(float(np.quantile(second[np.isfinite(second)], 0.1)))
+    low, ends = 2.0 * min(lowest), exponent + error
+    high = max([-0.5 * low, *ends[np.isfinite(ends)].tolist()])
+    return min(low, -0.5 * high), high
