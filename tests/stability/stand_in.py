@@ -27,7 +27,8 @@ def stand_in(
         "section_period": 1,
         "exponent": np.array([0.0, -0.1, -0.2]),
     }
-    return Attractor(SteadyMotion(**{**motion, **told}), symmetry, partner, **{"radius": 0.01, **of_attractor})
+    of_attractor = {"radius": 0.01, "close_returns": 8, **of_attractor}
+    return Attractor(SteadyMotion(**{**motion, **told}), symmetry, partner, **of_attractor)
 
 
 def shown(

@@ -38,6 +38,7 @@ def add(monkeypatch):
         mirror_cloud=ONE,
         known=(),
         inner=(),
+        tuning=TUNING,
     ):
         asked, answers = [], {"measure": measured, "visit": [lasting], "captured": radii}
 
@@ -56,7 +57,7 @@ def add(monkeypatch):
         monkeypatch.setattr(
             attractors, "spread", lambda _, motion, *__: replace(motion, returns=ONE, mirror_returns=mirror_cloud)
         )
-        search = Search(model, SETTINGS, attractors=[*known])
+        search = Search(model, SETTINGS, tuning=tuning, attractors=[*known])
         assert search._add(shown(ONE, mirror, spacing, 0.0)) == (len(search.attractors) > len(known))
         names = [name for name, *_ in asked]
         assert (names.count("measure"), names.count("captured")) == (len(measured), len(radii))
@@ -181,6 +182,15 @@ def test_what_attracts_as_a_whole_is_a_slow_set(add):
     assert len(add([replace(drifting, mean_distance=1.01e-2)], None, [0.0, 0.02])[0]) == 1
 
 
+def test_every_attractor_captures_after_the_returns_that_the_tuning_says(add):
+    tuning = replace(TUNING, close_returns=5)
+    drifting = motion(exponent=np.array([0.0, -0.1, -0.2]))
+    for radii, spacing in (([0.02], WIDE), ([0.0, 0.02], CLOSED), ([0.0, 0.02], WIDE)):
+        found, _ = add([drifting], None, radii, spacing=spacing, tuning=tuning)
+        assert [item.close_returns for item in found] == [5] * len(found)
+        assert found
+
+
 @pytest.mark.parametrize(
     ("modulus", "mean", "found"),
     [
@@ -208,14 +218,15 @@ def test_synchrony_that_is_slow_is_told_by_its_multipliers(monkeypatch, modulus,
     monkeypatch.setattr(attractors, "measure", lambda model, start, *_: exact if start.position[0] == 2.0 else None)
     monkeypatch.setattr(settling, "measure", lambda *_: motion(mean))
     monkeypatch.setattr(attractors, "captured", captured)
-    search = Search(MODEL, SETTINGS, attractors=[stand_in(ASYMMETRIC, returns=9.0 * ONE)])
+    known, tuning = [stand_in(ASYMMETRIC, returns=9.0 * ONE)], replace(TUNING, close_returns=5)
+    search = Search(MODEL, SETTINGS, tuning=tuning, attractors=known)
     assert search._add(shown(ONE, OTHER, CLOSED, 0.0)) == bool(found)
     new = search.attractors[1:]
     assert [item.symmetry for item in new] == found
     slow = found == [SYNCHRONIZED]
     assert [item.motion is exact for item in new] == [slow] * len(found)
     assert asked == [(1, TUNING.slow_recovery if slow else TUNING.recovery)] * bool(found)
-    assert not slow or new[0].partner == 1
+    assert not slow or (new[0].partner, new[0].close_returns) == (1, 5)
 
 
 @pytest.fixture

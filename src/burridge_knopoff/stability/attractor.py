@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class Attractor:
     partner: int
     radius: float = np.inf
     slow: bool = False
-    close_returns: int = TUNING.close_returns
+    close_returns: int = field(kw_only=True)
     patience: float = 0.0
 
 

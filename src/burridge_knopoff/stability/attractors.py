@@ -205,11 +205,11 @@ class Search(Settling):
         synchronization_threshold = self.motion_settings.synchronization_threshold
         if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
             return self._add_slow_synchrony()
+        enough = close_returns(found, self.tolerance, tuning)
         if mirror and motion.mean_distance < synchronization_threshold:
-            new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors))]
+            new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
         else:
-            new = self._images(motion, self.is_symmetric(found) or self.changes_sides(found))
-        new = [replace(item, close_returns=close_returns(found, self.tolerance, tuning)) for item in new]
+            new = self._images(motion, self.is_symmetric(found) or self.changes_sides(found), enough)
         if self._accept(new, tuning.smallest_radius):
             return True
         # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole; but where
@@ -220,21 +220,25 @@ class Search(Settling):
         quick = motion.exponent[1] * tuning.slow_time * settings.transient < -1.0
         if not (closed and (quick or self.lies_in_chaos(found))):
             whole = spread(self.model, motion, settings, tuning)
-            slow = [replace(item, slow=True) for item in self._images(whole, self.touches(whole))]
+            images = self._images(whole, self.touches(whole), tuning.close_returns)
+            slow = [replace(item, slow=True) for item in images]
             if self._accept(slow, tuning.smallest_radius):
                 return True
         return closed and self._accept(new, tuning.tiny_radius)
 
-    def _images(self, motion: SteadyMotion, symmetric: bool) -> list[Attractor]:
-        """Return a motion as an attractor to come, with its mirror image if that is another one."""
+    def _images(self, motion: SteadyMotion, symmetric: bool, enough: int) -> list[Attractor]:
+        """Return a motion as an attractor to come, with its mirror image if that is another one.
+
+        enough : successive returns within its radius after which a trajectory counts as captured
+        """
         index = len(self.attractors)
         if not self.model.chain.is_mirror_symmetric:
-            return [Attractor(motion, Symmetry.ASYMMETRIC, index)]
+            return [Attractor(motion, Symmetry.ASYMMETRIC, index, close_returns=enough)]
         if symmetric:
-            return [Attractor(motion.symmetrized(self.tuning), Symmetry.SYMMETRIC, index)]
+            return [Attractor(motion.symmetrized(self.tuning), Symmetry.SYMMETRIC, index, close_returns=enough)]
         return [
-            Attractor(motion, Symmetry.ASYMMETRIC, index + 1),
-            Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index),
+            Attractor(motion, Symmetry.ASYMMETRIC, index + 1, close_returns=enough),
+            Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index, close_returns=enough),
         ]
 
     def _add_slow_synchrony(self) -> bool:
@@ -254,8 +258,9 @@ class Search(Settling):
         )
         if exact is None:
             return False
-        patient = replace(self.tuning, recovery=self.tuning.slow_recovery)
-        return self._accept([Attractor(exact, Symmetry.SYNCHRONIZED, index)], self.tuning.smallest_radius, patient)
+        tuning = self.tuning
+        found = Attractor(exact, Symmetry.SYNCHRONIZED, index, close_returns=tuning.close_returns)
+        return self._accept([found], tuning.smallest_radius, replace(tuning, recovery=tuning.slow_recovery))
 
     def _accept(self, new: Sequence[Attractor], least: float, tuning: Tuning | None = None) -> bool:
         """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
