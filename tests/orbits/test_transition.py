@@ -59,6 +59,29 @@ def test_no_change_is_told(families):
     assert np.isnan(transition.change_point(families["linearized"], lambda orbit: orbit.period))
 
 
+@pytest.mark.parametrize("lost", [(0.0, 0.03), (0.0301, 0.0302), (0.032, 1.0), (0.034, 0.2), (0.0375, 0.0375)])
+def test_a_change_next_to_where_the_orbit_is_lost_is_found(lost):
+    """Below that, above it, and beside a gap between two values that are scanned."""
+
+    def at(a):
+        if lost[0] <= a <= lost[1]:
+            raise OrbitError("lost")
+        return a
+
+    family = SimpleNamespace(model=Model(Chain(3), law_of("linearized", 0.08)), at=at)
+    assert transition.change_point(family, lambda a: a - 0.031) == pytest.approx(0.031, abs=1e-14)
+    # In the gap itself it does not count.
+    assert np.isnan(transition.change_point(family, lambda a: a - 0.5 * sum(lost)))
+
+
+def test_grazing_beside_an_orbit_that_is_not_found():
+    """With stiff coupling it is continued upwards to just beyond the grazing, and not in one step to 0.0375."""
+    family = Family(Model(Chain(3, coupling=30.0), law_of("linearized", 0.05)))
+    a = grazing_a(family)
+    assert 0.025 < a < 0.0375
+    assert family.at(a - 1e-9).center_stick_time == 0.0 < family.at(a + 1e-9).center_stick_time
+
+
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
 def test_finite_differences_agree_with_the_tangent_map(families, law, a):
     orbit = families[law].at(a)

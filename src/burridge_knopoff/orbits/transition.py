@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -25,6 +27,9 @@ SCAN = tuple(round(0.0125 * k, 4) for k in range(1, 25))
 # brentq only bisects, and its usual hundred iterations may not be enough.
 TOLERANCE = 1e-15
 ITERATIONS = 1000
+
+# How near to where the orbit is lost a change of it is looked for, in units of `unit`.
+CLOSEST = 1e-5
 
 # Asymmetry d for finite differences, in units of v: rounding of the quotient and the d⁴ that extrapolation leaves are
 # about 1e-12 both.
@@ -70,24 +75,38 @@ def change_point(family: Family, value: Callable[[Orbit], float]) -> float:
     A change at which the orbit itself is lost does not count: where friction drops at the start of a slip, a stick of
     block 2 does not begin at length 0, and the orbit jumps.
     """
-    last: tuple[float, float] | None = None
-    for a in unit(family.model.chain) * np.array(SCAN):
-        try:
-            here = a, value(family.at(a))
-        except OrbitError:
-            last = None
-            continue
-        if last is not None and (here[1] > 0.0) != (last[1] > 0.0):
-            try:
-                return float(
-                    brentq(
-                        lambda a: value(family.at(a)), last[0], a, xtol=TOLERANCE, rtol=TOLERANCE, maxiter=ITERATIONS
-                    )
-                )
-            except OrbitError:
-                pass
-        last = here
-    return math.nan
+    scanned = (_at(family, value, a) for a in (unit(family.model.chain) * np.array(SCAN)).tolist())
+    found = (_change(family, value, low, high) for low, high in pairwise(scanned))
+    return next((a for a in found if not math.isnan(a)), math.nan)
+
+
+def _at(family: Family, value: Callable[[Orbit], float], a: float) -> tuple[float, float]:
+    """Return a and what a function of the orbit is there; NaN where the orbit is lost."""
+    try:
+        return a, value(family.at(a))
+    except OrbitError:
+        return a, math.nan
+
+
+def _change(
+    family: Family, value: Callable[[Orbit], float], low: tuple[float, float], high: tuple[float, float]
+) -> float:
+    """Return the least a between two that `_at` tells of at which the function changes its sign; NaN if there is none.
+
+    Where the orbit is lost in between, or at one of them, it is looked for on both sides of that.
+    """
+    lost = math.isnan(low[1]) + math.isnan(high[1])
+    if lost == 2 or (lost == 0 and (low[1] > 0.0) == (high[1] > 0.0)):
+        return math.nan
+    if lost == 0:
+        with suppress(OrbitError):
+            precise = {"xtol": TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
+            return float(brentq(lambda a: value(family.at(a)), low[0], high[0], **precise))
+    if high[0] - low[0] < CLOSEST * unit(family.model.chain):
+        return math.nan
+    middle = _at(family, value, 0.5 * (low[0] + high[0]))
+    below = _change(family, value, low, middle)
+    return _change(family, value, middle, high) if math.isnan(below) else below
 
 
 def least_center_speed(orbit: Orbit) -> float:
