@@ -1,0 +1,77 @@
+"""What the pages of docs/ say of other settings than those of the default study, from its attractors.
+
+    python benchmarks/other_settings.py results/paper
+
+For docs/attractors.md the uncertainty exponents from ten times the pairs, and which phases synchronize by how much the
+inner block oscillates; for docs/edges.md where the orbit with 9, 9 and 6 stops is born. It takes some minutes.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import xarray
+from measure import print_table
+
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.edges import locate_edges
+from burridge_knopoff.orbits.following import follow
+from burridge_knopoff.stability.closed_motion import closed_motion
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.returns import instant_of
+from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, PhaseSettings
+from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.study import Study
+from burridge_knopoff.summaries import basins, phases
+
+EXPONENTS_AT, PAIRS = (0.05, 0.08, 0.15), 16_000
+PHASES_AT, AMPLITUDE = (0.005, 0.05, 0.08), 0.03
+PHASES = PhaseSettings((AMPLITUDE, 0.07), (30.0, 180.0), (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0), samples=200, seed=5)
+BIRTH_FROM, BIRTH_RANGE, STOPS = 0.17, (0.15, 0.172), (9, 9, 6)
+
+
+def exponents(study: Study, attractors: xarray.Dataset, a: float) -> list[str]:
+    """Return the uncertainty exponent of the plane of the maps at one a under each law, and the dimension."""
+    plane = BasinSettings(initial=study.state(study.config["basins"]["initial"]), pairs=PAIRS)
+    start = study.config["start"]
+    found = [basins.pairs(attractors, study.model(law, a), plane, SEARCH, MOTION, start) for law in study.laws]
+    values = [(one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()) for one in found]
+    alpha = "; ".join(f"{value:.3f} ± {error:.3f}" for value, error in values)
+    return [f"{a:g}", alpha, "; ".join(f"{2.0 - value:.2f}" for value, _ in values)]
+
+
+def born_at(study: Study, attractors: xarray.Dataset) -> float:
+    """Return the a at which the orbit of these stops begins at a grazing that turns, stable or not (linearized law)."""
+    model = study.model("linearized", BIRTH_FROM)
+    one = attractors.sel(law="linearized", a=BIRTH_FROM)
+    one = one.isel(attractor=(one["kind"] == MotionKind.PERIODIC).values)
+    states = np.concatenate([one["position"].values - model.sliding_offset, one["velocity"].values], axis=1)
+    orbits = [closed_motion(model, instant_of(state)) for state in states]
+    orbit = next(orbit for orbit in orbits if orbit.signature == STOPS)
+    edges = locate_edges(follow(orbit, BIRTH_RANGE, upward=False))
+    return next(edge.a for edge in edges if edge.kind == EdgeKind.GRAZING and edge.turns)
+
+
+def main() -> None:
+    """Print both tables and the a."""
+    results = Path(sys.argv[1])
+    _, study = recorded_study(results)
+    attractors = xarray.load_dataset(results / "summary/attractors.nc")
+    laws = "; ".join(study.laws)
+    print_table(["a", f"α ({laws})", "dimension 2 − α"], [exponents(study, attractors, a) for a in EXPONENTS_AT])
+    model = study.model("linearized", PHASES_AT[0])
+    found = phases.one_law(attractors, model, PHASES_AT, PHASES, SEARCH, MOTION)["synchronized_fraction"]
+    table = 100.0 * found.sel(amplitude=AMPLITUDE).transpose("inner_share", "phase_difference", "a").values
+    header = ["share", *(f"{angle:g}°, a = {a:g}" for angle in PHASES.phase_difference for a in PHASES_AT)]
+    rows = [
+        [f"{share:g}", *(f"{value:g} %" for value in row.ravel())]
+        for share, row in zip(PHASES.inner_share, table, strict=True)
+    ]
+    print_table(header, rows)
+    print(f"stops {STOPS}, linearized: born at a = {born_at(study, attractors):.7f}, a grazing that turns")
+
+
+if __name__ == "__main__":
+    main()
