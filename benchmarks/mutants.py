@@ -115,6 +115,9 @@ def spots(path: Path) -> list[tuple[Path, tuple[int, int]]]:
 #: Wall time that is waited for a second of CPU time: also what sleeps has to end.
 PATIENCE = 30
 
+#: Address space of a process in KB, several times what the tests take: a change may make a list grow for ever.
+MEMORY = 8_000_000
+
 KNOWN: dict[Path, dict[tuple[int, int], list[tuple[str, int]]]] = {}
 
 
@@ -187,7 +190,7 @@ class Copy:
     def run(self, command: list[str], limit: float) -> bool:
         """Return whether a command ends well within so much CPU time: a busy machine turns no verdict."""
         process = subprocess.Popen(
-            ["sh", "-c", 'ulimit -t "$0" && exec "$@"', f"{limit:.0f}", str(PYTHON), *command],
+            ["sh", "-c", f'ulimit -v {MEMORY} && ulimit -t "$0" && exec "$@"', f"{limit:.0f}", str(PYTHON), *command],
             cwd=self.folder,
             env=self.environment,
             stdout=subprocess.DEVNULL,
