@@ -26,6 +26,8 @@ def test_period_of_a_repeating_sequence(period):
     assert repetition(section, 1e-6, 60) == period
     assert repetition(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
     assert repetition(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
+    # As long as it may be, and seen just often enough.
+    assert repetition(section[: 3 * period], 1e-6, period) == period
 
 
 def test_quasiperiodic_and_short_sequences_have_no_period():
