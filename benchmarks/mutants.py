@@ -42,7 +42,7 @@ ROOMS = ("summaries", "stability", "orbits", "claims", "dataset", "model", "laws
 
 #: What else meets a change in a room, quick tests first. Whether builds agree is no question to a changed source.
 TESTS = {
-    "model": ("running", "orbits", "stability"),
+    "model": ("study", "running", "orbits", "stability"),
     "orbits": ("stability", "summaries/test_edges.py"),
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
