@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-import scipy.special
 
 from burridge_knopoff.model.initial import InitialState
 
@@ -49,7 +48,10 @@ def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
     """
     if count == 0:
         return np.nan, np.nan, np.nan
-    # As `scipy.stats` has it too, which takes more than half a second to be imported: by every job that counts.
+    # Imported only here: it would be a fifth of the start of every `snakemake`, which reads claims and counts nothing.
+    # `scipy.stats` has it too, and takes more than half a second.
+    import scipy.special
+
     z = float(scipy.special.ndtri(0.5 + 0.5 * CONFIDENCE))
     centre = (hits + 0.5 * z**2) / (count + z**2)
     half = z / (count + z**2) * math.sqrt(hits * (count - hits) / count + 0.25 * z**2)
