@@ -177,10 +177,10 @@ module.{function} = provoked
 """
 
 
-def out_of_memory(module: str, megabytes: int) -> str:
+def out_of_memory(modules: str, megabytes: int) -> str:
     """Return code that leaves a process, all imports done, so much memory only."""
     return f"""
-import resource, netCDF4, {module}
+import resource, netCDF4, {modules}
 used = int(open("/proc/self/statm").read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
 resource.setrlimit(resource.RLIMIT_AS, (used + {megabytes} * 1000000,) * 2)
 """

@@ -124,7 +124,7 @@ def test_scripts_that_die(finished, copy):
         (results / name).unlink()
     faults = {
         "figure_equilibrium.log": killed_at_the_move("equilibrium.png"),
-        "figure_distance.log": out_of_memory("burridge_knopoff.figures.distance", 1),
+        "figure_distance.log": out_of_memory("snakemake.script, burridge_knopoff.figures.distance", 1),
         "logs/stick_slip.log": crash("burridge_knopoff.summaries.stick_slip", "summarize"),
     }
     process = begin(copy, environment=broken(copy, faults))
