@@ -77,7 +77,7 @@ def run(call):
     for number, name in enumerate([os.devnull, *call["written"]]):
         os.dup2(os.open(name, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666), number)
     sys.exit(snakemake.cli.main(call["command"][1:]))
-calls_here, scripts = others
+calls_here, scripts, scripts_here = others
 if not os.fork():
     sys.path.insert(0, {str(SOURCES)!r})
     from burridge_knopoff.provenance.sources import PACKAGE, source_fingerprint
@@ -85,15 +85,24 @@ if not os.fork():
     source_fingerprint(*PACKAGE.rglob("*.py"))
     snakemake.cli.get_argument_parser()
     sys.path.pop(0)
-    calls = calls_here
+    calls, scripts = calls_here, scripts_here
 serve(calls, run)
 """
 
+#: Likewise: scripts of this checkout find the project imported, those of another one only what it needs.
 SCRIPTS = f"""{SERVE}
-import runpy
+import importlib, pkgutil, runpy
 import matplotlib.backends.backend_agg, matplotlib.backends.backend_pdf, matplotlib.patches, matplotlib.ticker
 import flint, jinja2, netCDF4, numpy, plotly.offline, scipy.optimize, scipy.signal, scipy.spatial, xarray
 import snakemake.script
+(calls_here,) = others
+if not os.fork():
+    sys.path.insert(0, {str(SOURCES)!r})
+    for room in ("claims", "figures", "report", "summaries"):
+        for module in pkgutil.iter_modules([f"{SOURCES}/burridge_knopoff/{{room}}"]):
+            importlib.import_module(f"burridge_knopoff.{{room}}.{{module.name}}")
+    sys.path.pop(0)
+    calls = calls_here
 serve(calls, lambda call: runpy.run_path(sys.argv[0], run_name="__main__"))
 """
 
@@ -106,8 +115,9 @@ def _servers(seed: str) -> tuple[socket.socket, socket.socket]:
     seed : of the order in which sets are walked
     """
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": seed}
-    (elsewhere, one), (here, two), (asked, script) = (socket.socketpair(type=socket.SOCK_SEQPACKET) for _ in range(3))
-    for program, *ends in ((SNAKEMAKE, one, two, asked), (SCRIPTS, script)):
+    pairs = (socket.socketpair(type=socket.SOCK_SEQPACKET) for _ in range(4))
+    (elsewhere, one), (here, two), (asked, script), (asked_here, script_here) = pairs
+    for program, *ends in ((SNAKEMAKE, one, two, asked, asked_here), (SCRIPTS, script, script_here)):
         numbers = [end.fileno() for end in ends]
         command = [sys.executable, "-P", "-c", program, *map(str, numbers)]
         subprocess.Popen(command, pass_fds=numbers, env=environment, stdin=subprocess.DEVNULL)
