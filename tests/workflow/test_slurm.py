@@ -77,7 +77,7 @@ class Run:
         self.makes: dict[str, list[str]] = {}
         self.log = study.folder / "log.txt"
         command = study.command(
-            *("--workflow-profile", str(PROFILE), "--seconds-between-status-checks", "1", "--latency-wait", "5"),
+            *("--workflow-profile", str(PROFILE), "--seconds-between-status-checks", "3", "--latency-wait", "5"),
             *("--group-components", "points=8", "solver_points=6", "summaries=1", "figures=1", *arguments),
             cores=1,
         )
@@ -91,17 +91,19 @@ class Run:
     def _note(self) -> None:
         while self.process.poll() is None:
             for path in self.study.folder.glob(".snakemake/slurm/*/record.json"):
-                # It may be half written, or removed meanwhile.
-                with contextlib.suppress(OSError, ValueError):
-                    self.makes[path.parent.name] = json.loads(path.read_text())["targets"]
-            time.sleep(0.1)
+                if path.parent.name not in self.makes:
+                    # It may be half written, or removed meanwhile.
+                    with contextlib.suppress(OSError, ValueError):
+                        self.makes[path.parent.name] = json.loads(path.read_text())["targets"]
+            time.sleep(0.25)
 
     def until(self, reached: Callable[[], object], seconds: float = 600.0) -> None:
         """Wait until something is true."""
         end = time.monotonic() + seconds
         while not reached():
             assert time.monotonic() < end, self.log.read_text()
-            time.sleep(0.1)
+            # To ask Slurm takes time from its jobs.
+            time.sleep(0.25)
 
     def kill(self) -> None:
         """Kill Snakemake and its children without warning; its jobs are Slurm's children and run on."""
