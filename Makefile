@@ -10,9 +10,10 @@ BIN := .venv/bin
 KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd) \
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
-# pip compiles one file after the other, and the packages' own tests as well.
+# pip compiles one file after the other, and the packages' own tests as well. Where Python may write no bytecode, the
+# project's own would be compiled anew in every job.
 INSTALL := $(PIP) install --no-compile --require-hashes --requirement
-COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib
+COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib src
 
 .PHONY: study announce setup kernel test types style test-oldest durations benchmark faults fuzz mutants size docs site lock clean
 
