@@ -11,6 +11,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import fcntl
+import itertools
 import pickle
 import shutil
 from collections.abc import Callable
@@ -25,14 +26,24 @@ settings.load_profile("study")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the tests that take longest, so that no worker is left alone with one of them."""
-    longest = (
+    """Let one of two workers begin with Slurm, the other with all else that is long, and both end with what is short.
+
+    Each has one half to begin with; whoever is done first takes over from the end of the other's. So no worker is left
+    alone with a long test.
+    """
+    names = (
         "tests/workflow/test_slurm.py",
         "tests/workflow/test_faults.py",
         "tests/test_extending.py",
         "tests/workflow/",
+        "",
     )
-    items.sort(key=lambda item: next((n for n, name in enumerate(longest) if item.nodeid.startswith(name)), 9))
+    groups: dict[str, list[pytest.Item]] = {name: [] for name in names}
+    for item in items:
+        groups[next(name for name in names if item.nodeid.startswith(name))].append(item)
+    slurm, *long, short = groups.values()
+    half = max(0, len(items) // 2 - len(slurm))
+    items[:] = [*slurm, *short[:half], *itertools.chain(*long), *short[half:]]
 
 
 @pytest.fixture(scope="session")
