@@ -18,7 +18,7 @@ try:
 except KernelError as error:
     sys.exit(f"{error}")
 
-from burridge_knopoff.claims.claim import read_claims
+from burridge_knopoff.claims.claim import checked_claims
 from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
@@ -61,8 +61,8 @@ try:
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
     RESULTS = f"results/{STUDY.name}"
     CLAIMS_FILE = ROOT / "config/claims.yaml"
-    read_claims(CLAIMS_FILE, picture_names({*PAPER_STATES, *STUDY.initial}))
     CLAIMS = read_yaml(CLAIMS_FILE)
+    checked_claims(CLAIMS, CLAIMS_FILE, picture_names({*PAPER_STATES, *STUDY.initial}))
     # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)

@@ -111,7 +111,11 @@ def read_claims(path: str | Path, figures: Collection[str]) -> list[Claim]:
     figures : names of all figures that a study can have
     Raises ConfigError, one line: file, key, value, what is allowed.
     """
-    content = read_yaml(path)
+    return checked_claims(read_yaml(path), path, figures)
+
+
+def checked_claims(content: Mapping[str, Any], path: str | Path, figures: Collection[str]) -> list[Claim]:
+    """Return the claims in the content of such a file, once it is read; raises ConfigError as `read_claims` does."""
     try:
         claims = claims_of(content)
         for claim in claims:
