@@ -23,7 +23,7 @@ study: announce setup
 # Snakemake itself begins with the time that its jobs will take.
 announce:
 	@test -e .venv/kernel || echo "make: sets up .venv and compiles the kernel (a minute or two, once)," \
-		"then runs the default study on two cores (half an hour to an hour; results/paper/report.html)"
+		"then runs the default study on two cores (twenty minutes to an hour; results/paper/report.html)"
 
 setup: .venv/kernel
 

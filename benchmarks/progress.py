@@ -44,7 +44,8 @@ def told(record, cores=None):
     for number, job in jobs.items():
         job.begin, job.end = ends[number] - seconds[number], ends[number]
     begin, end = min(job.begin for job in jobs.values()), max(ends.values())
-    run = Run("", jobs, (), Durations(SHIPPED["costs"], record["speed"]), cores or record["cores"])
+    speed = record["calibration"] / SHIPPED["calibration"]
+    run = Run("", jobs, (), Durations(SHIPPED["costs"], speed), cores or record["cores"])
     for moment in (begin + (end - begin) * step / MOMENTS for step in range(MOMENTS)):
         for job in jobs.values():
             job.state = WAITING if job.begin > moment else RUNNING if job.end > moment else DONE

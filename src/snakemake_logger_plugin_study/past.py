@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.provenance.files import write_text
+from snakemake_logger_plugin_study.durations import SHIPPED
 from snakemake_logger_plugin_study.run import DONE, Run
 
 RECORD = "logs/jobs.json"
@@ -18,14 +19,15 @@ RECORD = "logs/jobs.json"
 def read_record(results: str | Path) -> dict[str, Any]:
     """Return the record of a folder of results; an empty one if there is none, or none that can be read.
 
-    cores, speed, begin : of the last run, and when it began
+    cores, begin : of the last run, and when it began; calibration : what was known of the machine then, in seconds that
+        the calibration would take on it (those of the tree may be made anew, see `durations`)
     jobs : its jobs: name, kind, work, threads, priority, needs (their places in this list), begin and end in seconds
         since the run began, size in bytes of the files that it made
     earlier : {name: {kind, work, seconds, size}} of the jobs of runs before
     """
     try:
         record = json.loads(Path(results, RECORD).read_text(encoding="utf-8"))
-        return record if record.keys() == {"cores", "speed", "begin", "jobs", "earlier"} else {}
+        return record if record.keys() == {"cores", "calibration", "begin", "jobs", "earlier"} else {}
     except (OSError, ValueError, AttributeError):
         return {}
 
@@ -57,5 +59,6 @@ def write_past(run: Run, begin: float) -> None:
     if jobs:
         names = {job.name for job in done.values()}
         earlier = {name: job for name, job in read_past(run.results).items() if name not in names}
-        record = {"cores": run.cores, "speed": run.durations.speed, "begin": begin, "jobs": jobs, "earlier": earlier}
+        calibration = run.durations.speed * SHIPPED["calibration"]
+        record = {"cores": run.cores, "calibration": calibration, "begin": begin, "jobs": jobs, "earlier": earlier}
         write_text(Path(run.results, RECORD), json.dumps(record) + "\n")

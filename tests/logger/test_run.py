@@ -108,14 +108,14 @@ def test_a_run_is_recorded_beside_what_is_known(tmp_path):
     (tmp_path / "x.nc").write_bytes(b"12345")
     first = short(state=DONE, begin=10.0, end=12.5, output=[str(tmp_path / "x.nc")])
     second = Job("other", "", "long", 2.0, needs=frozenset({0, 9}), state=DONE, begin=12.0, end=20.0)
-    made = run(first, second, job("long", state=FAILED), short(state=DONE, timed=False))
+    made = run(first, second, job("long", state=FAILED), short(state=DONE, timed=False), speed=2.0)
     made.results, made.cores = tmp_path, 2
     write_past(made, begin=10.0)
     record = read_record(tmp_path)
     assert [(job["begin"], job["end"], job["size"], job["needs"]) for job in record["jobs"]] == [
         *((0.0, 2.5, 5, []), (2.0, 10.0, 0, [0]))
     ]
-    assert (record["cores"], record["speed"], record["begin"]) == (2, 1.0, 10.0)
+    assert (record["cores"], record["calibration"], record["begin"]) == (2, 2.0 * SHIPPED["calibration"], 10.0)
     short_job, long_job = {"kind": "short", "work": 1.0, "size": 5}, {"kind": "long", "work": 2.0, "size": 0}
     assert read_past(tmp_path) == {"short": {**short_job, "seconds": 2.5}, "other": {**long_job, "seconds": 8.0}}
     # What runs again replaces what it took before.
