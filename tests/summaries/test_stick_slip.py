@@ -191,8 +191,11 @@ def test_frequencies_are_those_of_the_motion(law, a, initial):
         expected = leading_frequency(run.velocity[:, block], np.ptp(run.trajectory_time))
         assert leading_frequency(found[:, block], duration) == pytest.approx(expected, abs=1e-4)
     assert correlation(found[:, 0], found[:, -1]) == pytest.approx(correlation(*run.velocity.T[[0, -1]]), abs=0.02)
-    # Samples that last longer than the events are taken as they are.
+    # Samples that last longer than the events are taken as they are, also if only by a little.
     assert long_velocity(vars(run), model, 500.0)[0] is run.velocity
+    for more, taken in ((1e-3, True), (-1e-3, False)):
+        samples = {**kept, "trajectory_time": np.array([0.0, duration + more])}
+        assert (long_velocity(samples, model, 500.0)[0] is kept["velocity"]) == taken
     none = {
         name: np.zeros((0, *kept[name].shape[1:]))
         for name in kept
