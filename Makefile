@@ -106,6 +106,7 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	$(BIN)/python benchmarks/stages.py results/paper
 	$(BIN)/python benchmarks/cores.py results/paper
 	$(BIN)/python benchmarks/tori.py results/paper
+	$(BIN)/python benchmarks/lifetimes.py results/paper
 	$(BIN)/python benchmarks/other_settings.py results/paper
 
 faults: .venv/kernel .venv/test

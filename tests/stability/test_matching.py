@@ -125,7 +125,8 @@ def test_branches_are_numbered_by_their_mean_distance():
     first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
     assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
     # Where it differs by rounding they keep the order in which they were found.
-    alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + 1e-9, 0.1, 0.2))]
-    assert followed([alike], 1.0)[0] == [[1, 2, 3]]
+    for apart, numbers in ((1e-9, [1, 2, 3]), (2e-6, [2, 1, 3])):
+        alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + apart, 0.1, 0.2))]
+        assert followed([alike], 1.0)[0] == [numbers]
     still = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0)]
     assert followed([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]

@@ -1,0 +1,80 @@
+"""How long chaos lasts: that of a study followed for ten times as long as the search follows it, from other states.
+
+    python benchmarks/lifetimes.py results/paper
+
+Printed for each chaotic set of attractors.nc that trajectories leave in that time, one of each mirror pair: its mean
+lifetime with the 95 % interval, in the file and now, and whether it lasts. Of all others how many there are, and the
+lifetime that they exceed.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import xarray
+from measure import print_table
+
+from burridge_knopoff.stability.basins import known_attractors
+from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+from burridge_knopoff.stability.tuning import TUNING
+from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.study import Study
+
+LONGER = replace(TUNING, exposure=10.0 * TUNING.exposure)
+CHAOTIC = (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS)
+
+
+def followed(study: Study, attractors: xarray.Dataset, law: str) -> Iterator[tuple[xarray.Dataset, Lifetime]]:
+    """Yield each chaotic set of a law as it stands in the file, and its lifetime now."""
+    search = SearchSettings(**study.config["attractors"])
+    threshold = study.config["synchronization_threshold"]
+    motion = MotionSettings(**study.config["motion"], synchronization_threshold=threshold)
+    here = attractors.sel(law=law)
+    for a in here["a"].values[np.isin(here["kind"].values, CHAOTIC).any(axis=1)].tolist():
+        one = here.sel(a=a)
+        slots = one.isel(attractor=np.flatnonzero(one["branch"].values >= 0))
+        known = known_attractors(attractors, study.model(law, a), search, motion).attractors
+        # Also what is not known to last is chaos.
+        sets = [
+            replace(item, motion=replace(item.motion, kind=MotionKind.CHAOTIC)) if item.motion.kind in CHAOTIC else item
+            for item in known
+        ]
+        found = lifetimes(study.model(law, a), sets, replace(search, seed=search.seed + 1), LONGER)
+        for slot, lifetime in enumerate(found):
+            if lifetime is not None and slots["side"].values[slot] >= 0:
+                yield slots.isel(attractor=slot), lifetime
+
+
+def words(mean: float, low: float, high: float) -> str:
+    """Return a lifetime with its interval."""
+    return f"{mean:.3g} ({low:.3g} to {high:.3g})"
+
+
+def main() -> None:
+    """Print the table of each study."""
+    for results in map(Path, sys.argv[1:]):
+        _, study = recorded_study(results)
+        attractors = xarray.load_dataset(results / "summary/attractors.nc")
+        least = study.config["attractors"]["lifetime"]
+        rows, bounds = [], []
+        for law in study.laws:
+            for one, lifetime in followed(study, attractors, law):
+                if not lifetime.ends:
+                    bounds.append(lifetime.interval[0])
+                    continue
+                before = words(*(one[f"lifetime{end}"].item() for end in ("", "_low", "_high")))
+                now = words(lifetime.mean, *lifetime.interval)
+                kinds = MotionKind(one["kind"].item()).words, CHAOTIC[not lifetime.lasts(least)].words
+                rows.append([law, f"{one['a'].item():g}", f"{one['mean_distance'].item():.4f}", before, now, *kinds])
+        print_table(["law", "a", "<J>", "lifetime in the file", "in ten times the time", "kind", "then"], rows)
+        print(f"{len(bounds)} other chaotic sets, which none left: longer than {min(bounds, default=0.0):.3g}")
+
+
+if __name__ == "__main__":
+    main()
