@@ -295,3 +295,14 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     assert values["difference"] == pytest.approx(np.array([[means[1] - means[0], 0.0]]), nan_ok=True)
     assert values["difference_error"] == pytest.approx(np.array([[np.hypot(*errors), 0.0]]), nan_ok=True)
     assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
+
+
+def test_laws_part_at_the_least_a_at_which_they_disagree():
+    names = ("mean_distance", "mean_distance_error", "kind")
+    told = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
+    filled = ("difference", "difference_error", "same_kind", "agrees")
+    values = dict(zip(names, told, strict=True)) | {name: np.zeros((1, 3)) for name in filled}
+    values["parting_a"] = np.zeros(1)
+    judgement.compare(values, np.array([0.1, 0.2, 0.3]), 1e-6, AGREEMENT)
+    assert values["agrees"].tolist() == [[1, 0, 0]]
+    assert values["parting_a"].tolist() == [0.2]

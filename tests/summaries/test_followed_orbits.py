@@ -11,6 +11,7 @@ from burridge_knopoff.orbits.family import Family
 from burridge_knopoff.orbits.pseudo_arclength import begin_branch
 from burridge_knopoff.orbits.stretch import Half
 from burridge_knopoff.summaries import followed_orbits
+from burridge_knopoff.summaries.branch_changes import BranchChange, Change
 
 
 @pytest.mark.parametrize("processes", [1, 4, 8])
@@ -53,3 +54,24 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
     placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
     # Their places within an octave are those of the van der Corput sequence.
     assert [k for (k, _), _ in followed_orbits._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ([], [(0, 0), (4, 0)]),
+        ([(1, 2, 0, 0)], [(0, 0), (1, 0), (2, 0), (4, 0)]),
+        # Where a branch begins there is nothing before.
+        ([(1, 2, -1, 0)], [(0, 0), (2, 0), (4, 0)]),
+        # Chaos is no closed orbit, and of a mirror pair one is followed.
+        ([(2, 3, 0, 0), (2, 3, 1, -1)], [(0, 0), (2, 0), (4, 0)]),
+    ],
+)
+def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, expected):
+    kind = np.full((5, 2), MotionKind.PERIODIC)
+    kind[3] = MotionKind.CHAOTIC
+    slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}
+    one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
+    one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
+    told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
+    assert followed_orbits._places(one, told) == expected
