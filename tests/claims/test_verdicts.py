@@ -197,6 +197,13 @@ def test_a_further_law_changes_no_verdict(name: str) -> None:
     assert ("compared with its first one, the stribeck law" in first.reason) == compared
 
 
+@pytest.mark.parametrize("name", ["laws_agree", "two_blocks_agree"])
+def test_laws_are_compared_whichever_comes_first(name: str) -> None:
+    names = ["nonlinear", "linearized"]
+    verdict = judged(name, evidence(_under(names), laws={law: {} for law in names}))
+    assert verdict.verdict == HOLDS, verdict.reason
+
+
 def test_runs_that_did_not_complete_are_no_evidence() -> None:
     world = paper_world()
     for name, value in {"status": 1, "synchronized": 0, "mean_distance": np.nan}.items():

@@ -41,3 +41,11 @@ def test_the_last_step_ends_at_the_end(law):
     run = simulate(law, 0.08, "minus", solver="rk4", step=0.03, transient=0.1, window=0.1, batches=2)
     assert run.end_time == 0.2
     assert run.step_count == 7
+
+
+def test_what_is_due_at_the_start_happens_then(law):
+    """Blocks that begin at rest where friction holds them stop at once, not a step later."""
+    state = InitialState("at rest", (-1.8, 0.5, 1.2), (0.0, 0.0, 0.0))
+    run = simulate(law, 0.08, state, solver="rk4", step=0.1, window=0.5, **OPTIONS)
+    assert run.event_time.tolist() == [0.0, 0.0]
+    assert run.event_block.tolist() == [2, 3]

@@ -94,6 +94,14 @@ def test_branches_at_a_pitchfork():
     assert side == [[0, 0], [-1, 1, 0], [1, -1, 0]]
 
 
+def test_the_side_is_that_of_the_end_block_ahead_in_position():
+    first = pair(0.0, 0.1)[0]
+    faster = np.array([0.0, 0.0, 0.0, 0.3, 0.0, 0.0])
+    own, mirrored = first.motion.returns + faster, first.motion.mirror_returns + faster[[2, 1, 0, 5, 4, 3]]
+    first = replace(first, motion=replace(first.motion, returns=own, mirror_returns=mirrored))
+    assert followed([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
+
+
 def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     there, else_where = at(0.0), at(1.0)
     found = [[there], [else_where], [there], [else_where], [else_where]]

@@ -48,6 +48,10 @@ def compared():
     return two_blocks.summarize(models(2, LAWS), STATES, GRID, SETTINGS, SEARCH, MOTION, AGREEMENT)
 
 
+def test_runs_for_the_order_of_events_sample_nothing_before_their_end():
+    assert SETTINGS.sampling == 1900.0
+
+
 def test_chains_are_ordered_by_their_number_of_blocks(files):
     summary = chains.merge([open_summary(path) for path in files])
     assert summary["blocks"].values.tolist() == [2, 10]

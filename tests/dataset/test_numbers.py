@@ -1,0 +1,45 @@
+"""Numbers in netCDF files keep their meaning: files of years ago are read by them."""
+
+import pytest
+
+from burridge_knopoff import MotionKind, Symmetry
+from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.stability.chains import Outcome
+from burridge_knopoff.stability.uncertainty import ExponentKind
+from burridge_knopoff.summaries.branch_changes import Change
+
+
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [
+        (Answer, {-1: "undetermined", 0: "no", 1: "yes"}),
+        (
+            Status,
+            {-2: "halted", -1: "running", 0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"},
+        ),
+        (
+            MotionKind,
+            {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic"}
+            | {3: "chaotic", 4: "transient_chaos"},
+        ),
+        (Symmetry, {0: "synchronized", 1: "symmetric", 2: "asymmetric"}),
+        (
+            EdgeKind,
+            {-1: "undetermined", 0: "grazing", 1: "fold", 2: "flip"}
+            | {3: "neimark_sacker", 4: "pitchfork", 5: "crisis"},
+        ),
+        (OrbitStatus, {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"}),
+        (Bifurcation, {-1: "undetermined", 1: "pitchfork", 2: "flip"}),
+        (BifurcationSide, {-1: "undetermined", 0: "subcritical", 1: "supercritical"}),
+        (Outcome, {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}),
+        (ExponentKind, {-1: "unknown", 0: "varying", 1: "single"}),
+        (Change, {0: "beginning", 1: "end", 2: "change", 3: "passed"}),
+    ],
+)
+def test_numbers_keep_their_meaning(kind, names):
+    assert {name.lower(): member.value for name, member in kind.__members__.items()} == {
+        name: number for number, name in names.items()
+    }
