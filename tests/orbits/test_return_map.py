@@ -44,15 +44,20 @@ def test_the_derivative_by_a_is_that_of_the_same_events_in_the_same_order(monkey
     ]
     left = iter(told)
 
-    def flow(model, start, time):
+    def ran(events, after):
+        """Return what stands for a runner that has come to an end with these events."""
+        columns = tuple(np.array(events).reshape(-1, 3).T)
+        return SimpleNamespace(events=lambda: columns, after=lambda start, time: after)
+
+    def runner(model, keep_events):
         size, events = next(left)
         assert abs(model.a - 0.1) == pytest.approx(size)
-        return SimpleNamespace(instant=lambda: Instant(np.full(3, -3e-8), np.zeros(3), end.stuck)), events
+        return ran(events, Instant(np.full(3, -3e-8), np.zeros(3), end.stuck))
 
-    monkeypatch.setattr(return_map, "flow", flow)
+    monkeypatch.setattr(return_map, "Runner", runner)
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
     found = mapping.a_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]))
     # The last is below: a smaller by 1e-8.
     assert found == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
-    monkeypatch.setattr(return_map, "flow", lambda model, start, time: (SimpleNamespace(instant=lambda: end), []))
+    monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
     assert mapping.a_derivative(end, 1.0, end, np.zeros((0, 2))).tolist() == [0.0] * 6

@@ -20,9 +20,10 @@ def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mi
     """Of two equally far out the lower one; a motion and its mirror image are seen at stops of mirror blocks."""
     number = np.tile(np.arange(1, 5), 20)
     states = np.random.default_rng(3).uniform(size=(80, 8))
-    chain, kind = Model(Chain(4), law_of("linearized", 0.1)), np.where(np.isin(number, stopping), 0, 1)
-    found = returns_of(chain, 40.0, number, kind, states, TUNING)
-    mirrored = returns_of(chain, 40.0, 5 - number, kind, states[:, [3, 2, 1, 0, 7, 6, 5, 4]], TUNING)
+    chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
+    number, states = number[stops], states[stops]
+    found = returns_of(chain, 40.0, number, states.__getitem__, TUNING)
+    mirrored = returns_of(chain, 40.0, 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__, TUNING)
     if block is None:
         assert found is None
         return
@@ -42,7 +43,7 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
     chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
     block = np.array([1] * first + [3] * last)
     states = np.random.default_rng(3).uniform(size=(len(block), 6))
-    found = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, np.zeros(len(block)), states, TUNING)
+    found = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__, TUNING)
     assert (found is not None) == seen
 
 

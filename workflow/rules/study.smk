@@ -42,6 +42,8 @@ ROOT = Path(f"{workflow.current_basedir}").parents[1]
 IMPORTED = Path(workflow.main_snakefile).resolve() != ROOT / "workflow/Snakefile"
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# What a job frees is given back: glibc would keep it for more, once arrays of a few MB have come and gone.
+os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", "131072")
 
 if len(workflow.configfiles) > 1:
     sys.exit(several_files(workflow.configfiles))

@@ -6,12 +6,10 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 logging.basicConfig(level=logging.INFO, format="%(message)s")
 
-from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.settings import MotionSettings, Refine, SearchSettings
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries import attractors, refined
 
 params, law = snakemake.params, snakemake.wildcards.law
 initial = [InitialState(name, **state) for name, state in params.initial.items()]
@@ -21,5 +19,10 @@ refine = Refine(**params.refine)
 processes = snakemake.resources.cpus_per_task
 share = {"processes": processes, "folder": params.kept}
 found = continue_attractors(models, settings, motion, refine, starts=initial, start=params.start, **share)
+
+# Not before: the processes that the search is shared out among would each hold what writes files, 40 MB.
+from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.summaries import attractors, refined
+
 write_summary(attractors.one_law(found, initial, settings, motion, params.start, processes), snakemake.output[0])
 write_summary(refined.one_law(found, settings, motion, refine, params.start), snakemake.output[1])

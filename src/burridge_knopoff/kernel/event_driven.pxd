@@ -35,7 +35,7 @@ cdef class EventDriven:
     cdef long long step_limit
     cdef double since_event
 
-    cdef void restart(self) noexcept nogil
+    cdef int restart(self) except -1
     cdef int _run(self) noexcept nogil
     cdef void _follow(self, double length, bint due) noexcept nogil
     cdef double _fastest(self) noexcept nogil

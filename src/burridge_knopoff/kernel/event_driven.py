@@ -90,7 +90,7 @@ class EventDriven:
         self.state.begin(position, velocity, stuck)
         self.restart()
 
-    def restart(self) -> None:
+    def restart(self) -> cython.int:
         """Begin again at τ = 0 from what is now the state."""
         self.clock = 0.0
         self.clock_rest = 0.0
@@ -98,6 +98,7 @@ class EventDriven:
         self.since_event = 0.0
         self.since_tangent = 0.0
         self.log.restart()
+        return 0
 
     def run(self) -> int:
         """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended.

@@ -26,6 +26,6 @@ cdef class EventLog:
     cdef readonly bint accumulating
     cdef Tangent tangent
 
-    cdef void restart(self) noexcept nogil
+    cdef int restart(self) except -1
     cdef void change(self, State state, Py_ssize_t block, double clock) noexcept nogil
     cdef void settle(self, State state, double clock) noexcept nogil

@@ -43,12 +43,17 @@ class EventLog:
         """Let perturbations go through every change as well."""
         self.tangent = tangent
 
-    def restart(self) -> None:
-        """Count from 0 again; what is kept stays."""
+    def restart(self) -> cython.int:
+        """Begin again without events; what has been read of those before stays as it is."""
+        if self.earlier_events.count > 0:
+            self.earlier_events = Record(self.earlier_events.width)
+        if self.events.count > 0:
+            self.events = Record(self.events.width)
         self.count = 0
         self.unit_start = 0.0
         self.unit_count = 0
         self.accumulating = False
+        return 0
 
     def change(self, state: State, block: cython.Py_ssize_t, clock: cython.double) -> None:
         """Let a block stop or start now, and keep the event."""

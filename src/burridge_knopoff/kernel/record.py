@@ -36,9 +36,9 @@ class Record:
         return 0
 
     def times(self) -> np.ndarray:
-        """Return the times, shape (count,)."""
-        return np.asarray(self.time)[: self.count].copy()
+        """Return the times so far, shape (count,): not a copy of what may be long."""
+        return np.asarray(self.time)[: self.count]
 
     def values(self) -> np.ndarray:
-        """Return the values, shape (count, width)."""
-        return np.asarray(self.value)[: self.count].copy()
+        """Return the values so far, shape (count, width): not a copy either."""
+        return np.asarray(self.value)[: self.count]

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.orbit import OrbitError, after, flow, model_at, rate
+from burridge_knopoff.orbits.orbit import OrbitError, after, model_at, rate
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
@@ -34,7 +34,6 @@ class ReturnMap:
         self.model = model
         self.symmetry = symmetry
         self._free = np.eye(2 * model.blocks)
-        self._kept = 0
 
     @cached_property
     def _runner(self) -> Runner:
@@ -43,7 +42,6 @@ class ReturnMap:
 
     def end(self, start: Instant, time: float) -> Instant:
         """Return the state that a state comes to; raises OrbitError if the run does not complete."""
-        self._kept = len(self._runner.log.events.times())
         return self._mirrored(after(self._runner, start, time))
 
     def with_tangent(self, start: Instant, time: float) -> tuple[Instant, np.ndarray]:
@@ -57,7 +55,7 @@ class ReturnMap:
 
     def event_rows(self) -> np.ndarray:
         """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, not mirrored."""
-        return np.stack(self._runner.events(), axis=1)[self._kept :]
+        return np.stack(self._runner.events(), axis=1)
 
     def a_derivative(self, start: Instant, time: float, end: Instant, events: np.ndarray) -> np.ndarray:
         """Return how the end of a return changes with a, shape (2 blocks,).
@@ -74,10 +72,10 @@ class ReturnMap:
                     model = model_at(self.model, a)
                 except OrbitError:
                     continue
-                runner, passed = flow(model, start, time)
-                if np.array_equal(np.array([event[1:] for event in passed]).reshape(-1, 2), events):
-                    change = self._mirrored(runner.instant()).vector() - end.vector()
-                    return change / (a - self.model.a)
+                runner = Runner(model, keep_events=True)
+                moved = self._mirrored(after(runner, start, time))
+                if np.array_equal(np.stack(runner.events()[1:], axis=1), events):
+                    return (moved.vector() - end.vector()) / (a - self.model.a)
             step *= 0.1
         raise OrbitError(f"a = {self.model.a!r}: stops and starts change however little a does")
 

@@ -147,17 +147,17 @@ def _hand_on(searches: Sequence[Search], each: Callable[..., list[Any]], new: Se
         for k, (giver, taker) in enumerate(pairwise(before)):
             # What has just come to the giver goes on as well.
             more = _knows_more(searches[-1], giver)
-            searches.append(_handed_on(searches[-1], taker) if more else given.get(k, taker))
+            searches.append((_handed_on(searches[-1], taker) if more else given.get(k)) or taker)
         new = [known or _knows_more(*pair) for known, *pair in zip(new, searches, before, strict=True)]
     return searches
 
 
-def _handed_on(giver: Search, taker: Search) -> Search:
-    """Return a search that has followed what a neighbour knows."""
+def _handed_on(giver: Search, taker: Search) -> Search | None:
+    """Return a search that has followed what a neighbour knows; None if that is nothing new."""
     known, shown = (outlines(search.attractors, taker.tuning) for search in (giver, taker))
     lacking, _ = differing(known, shown, taker.model.scale, taker.tuning)
     if not lacking:
-        return taker
+        return None
     # Whatever states have led to nothing: what attracts next to it is worth looking for.
     taker = replace(taker, attractors=list(taker.attractors), vain=())
     taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)

@@ -30,7 +30,8 @@ def fraction_labels(
     The states are not those from which attractors are looked for; but where one reaches none that is known, it is
     looked for from there as well, and all are labelled once more.
     """
-    searches = each("patience spared", partial(_spared, start=start), searches)
+    spared = each("patience spared", partial(_spared, start=start), searches)
+    searches = [one or search for one, search in zip(spared, searches, strict=True)]
     labels = [np.zeros(0, dtype=np.intc) for _ in searches]
     waiting = list(range(len(searches)))
     while waiting:
@@ -61,8 +62,10 @@ def _drawn(search: Search, start: str, part: slice = slice(None)) -> tuple[np.nd
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 
 
-def _spared(search: Search, start: str) -> Search:
+def _spared(search: Search, start: str) -> Search | None:
     """Lessen the patience with attractors whose inner orbits a sample of states reaches much earlier.
+
+    None where no attractor has inner orbits.
 
     Where chaos is a transient before the orbits, the last of the sample come late and nothing is spared.
     """
@@ -70,7 +73,7 @@ def _spared(search: Search, start: str) -> Search:
     inner = [midst(attractors, index, search.tolerance, tuning) for index in range(len(attractors))]
     sample = _drawn(search, start, slice(search.settings.samples))
     if not any(inner) or not len(sample[0]):
-        return search
+        return None
     labels, times = label_together(search.model, attractors, *sample, search.settings.time_limit)
     for index, orbits in enumerate(inner):
         came = times[np.isin(labels, orbits)]

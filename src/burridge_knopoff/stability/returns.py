@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,27 +69,31 @@ def visit(model: Model, start: Instant, transient: float, window: float, tuning:
     if runner.run(transient + window) != Status.COMPLETED:
         return None
     events = runner.log.events.values()
-    return returns_of(model, window, events[:, 0], events[:, 1], events[:, 2:], tuning)
+    stops = np.flatnonzero(events[:, 1] == 0)
+    return returns_of(model, window, events[stops, 0], lambda chosen: events[stops[chosen], 2:], tuning)
 
 
 def returns_of(
-    model: Model, window: float, block: np.ndarray, kind: np.ndarray, states: np.ndarray, tuning: Tuning
+    model: Model, window: float, block: np.ndarray, states: Callable[[np.ndarray], np.ndarray], tuning: Tuning
 ) -> Returns | None:
-    """Return the returns among the states at a window's events of blocks 1 … N and kinds; None if there are too few."""
-    stop_count = np.bincount(block[kind == 0].astype(int), minlength=model.blocks + 1)[1:]
+    """Return the returns among a window's stops; None if there are too few.
+
+    block : that stops, 1 … N, shape (stops,); states : gives the states at those that a mask of this shape chooses
+    """
+    stop_count = np.bincount(block.astype(int), minlength=model.blocks + 1)[1:]
     section, mirror_section = _sections(stop_count, tuning)
-    stops = states[(block == section) & (kind == 0)]
-    mirror_returns = stops[:0]
-    fewest = len(stops)
+    returns = states(block == section)
+    mirror_returns = returns[:0]
+    fewest = len(returns)
     if model.chain.is_mirror_symmetric:
-        position, velocity = np.split(states[(block == model.blocks + 1 - mirror_section) & (kind == 0)], 2, axis=1)
+        position, velocity = np.split(states(block == model.blocks + 1 - mirror_section), 2, axis=1)
         mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
         fewest = min(fewest, len(mirror_returns))
     if fewest < tuning.fewest_returns:
         return None
-    first, second = np.array_split(stops, 2)
+    first, second = np.array_split(returns, 2)
     return Returns(
-        returns=stops,
+        returns=returns,
         mirror_returns=mirror_returns,
         spacing=spacing_of(second, tuning.near_share),
         drift=max(distance(*pair, tuning.near_share) for pair in ((first, second), (second, first))),

@@ -188,8 +188,15 @@ def measure_once(
     trajectory = run(model, start, _options(transient, window))
     if trajectory.status != "completed":
         return None
-    states = np.concatenate([trajectory.event_position - model.sliding_offset, trajectory.event_velocity], axis=1)
-    found = returns_of(model, window, trajectory.event_block, trajectory.event_kind, states, tuning)
+    stops = np.flatnonzero(trajectory.event_kind == 0)
+    block = trajectory.event_block[stops]
+
+    def states(chosen: np.ndarray) -> np.ndarray:
+        here = stops[chosen]
+        position = trajectory.event_position[here] - model.sliding_offset
+        return np.concatenate([position, trajectory.event_velocity[here]], axis=1)
+
+    found = returns_of(model, window, block, states, tuning)
     if found is None:
         return None
     period = section_period(vars(trajectory), settings)
@@ -199,22 +206,19 @@ def measure_once(
     if kind in OPEN and found.closed(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
-    stops = trajectory.event_kind == 0
     return SteadyMotion(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
         spacing=found.spacing,
         mean_distance=trajectory.mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
-        stop_rate=np.bincount(trajectory.event_block[stops], minlength=model.blocks + 1)[1:] / window,
+        stop_rate=np.bincount(block, minlength=model.blocks + 1)[1:] / window,
         kind=kind,
         section_period=period,
         exponent=exponent,
         block=found.block,
         mirror_block=found.mirror_block,
-        recurrence=recurrence(
-            trajectory.event_time[stops & (trajectory.event_block == found.block)], found.returns, tuning
-        ),
+        recurrence=recurrence(trajectory.event_time[stops][block == found.block], found.returns, tuning),
     )
 
 
