@@ -24,7 +24,8 @@ class Stage:
     """The jobs of one stage, as far as they were measured.
 
     wall, cpu : sums over the jobs, in seconds; cpu_jobs : jobs whose CPU time is known
-    memory : the largest resident set of a job in MB, 0 if none is known
+    memory : of the job that takes most, in MB: what its processes share is counted once, where the system can tell, or
+        for each of them; 0 if nothing is known
     """
 
     name: str
@@ -63,6 +64,6 @@ def _costs(path: Path) -> Iterator[tuple[float, float, float]]:
     with suppress(OSError, ValueError, KeyError, csv.Error), path.open(encoding="utf-8") as file:
         for row in csv.DictReader(file, delimiter="\t", restval=""):
             # A job that ends before the first look at it has NA or -.
-            rest = (row.get(key, "") for key in ("cpu_time", "max_rss"))
-            cpu, memory = (float(text) if text[:1].isdigit() else 0.0 for text in rest)
-            yield float(row["s"]), cpu, MEBIBYTE * memory
+            rest = (row.get(key, "") for key in ("cpu_time", "max_pss", "max_rss"))
+            cpu, shared_once, resident = (float(text) if text[:1].isdigit() else 0.0 for text in rest)
+            yield float(row["s"]), cpu, MEBIBYTE * (shared_once or resident)
