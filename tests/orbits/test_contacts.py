@@ -5,7 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Instant, Model, Symmetry, closed_motion, find_periodic_orbit, law_of
+from burridge_knopoff import (
+    Chain,
+    FormulaLaw,
+    Instant,
+    Model,
+    Symmetry,
+    closed_motion,
+    find_periodic_orbit,
+    law_of,
+    simulate,
+)
 from burridge_knopoff.orbits.contacts import Contacts, _derivatives, _root, contacts, drops
 from burridge_knopoff.orbits.orbit import flow, rate
 from burridge_knopoff.orbits.periodic import orbit_of
@@ -62,6 +72,19 @@ def test_contacts_are_what_dense_samples_show(six):
         assert found.force[block] == pytest.approx((1.0 - force[1:-1][peaks]).min(initial=np.inf), abs=1e-6)
     assert np.isfinite(found.speed).any()
     assert np.isinf(found.deceleration).all()
+
+
+def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
+    """The contacts of the whole of it, as an orbit of no symmetry, whose end blocks take turns to be nearest."""
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    half = closed_motion(model, model.begin(simulate(model, "plus", transient=0, window=10).initial), settling=1000.0)
+    whole = find_periodic_orbit(model, half.reference, half.period, Symmetry.ASYMMETRIC)
+    assert (half.symmetry, whole.symmetry) == (Symmetry.SYMMETRIC, Symmetry.ASYMMETRIC)
+    for name, values in vars(contacts(whole)).items():
+        assert getattr(contacts(half), name) == pytest.approx(values, abs=1e-9), name
+    # In the first half one of the end blocks comes nearer to a grazing than the other.
+    first = contacts(replace(half, symmetry=Symmetry.ASYMMETRIC))
+    assert np.abs(first.speed[0] - first.speed[2]) > 1e-3
 
 
 @pytest.mark.parametrize("share", [0.13, 0.37, 0.62, 0.93])
