@@ -10,8 +10,8 @@ def tell(monkeypatch):
     def told(module, name, answers):
         asked, left = [], iter(answers)
 
-        def answer(*arguments):
-            asked.append(arguments)
+        def answer(*arguments, **named):
+            asked.append((*arguments, *named.values()))
             return next(left)
 
         monkeypatch.setattr(module, name, answer)

@@ -240,7 +240,7 @@ def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
     expected = (stuck & (start == "tested")).tolist()
     assert [at.stuck.tolist() for _, at, *_ in watched] == expected
     assert [at.stuck.tolist() for _, at, *_ in perturbed] == expected[: SAMPLE.symmetric_samples]
-    assert [settings.start for *_, settings in runs] == [start]
+    assert [(settings.start, section_only) for _, _, settings, section_only in runs] == [(start, True)]
 
 
 def test_a_window_of_several_parts_is_their_mean():

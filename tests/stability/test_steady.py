@@ -179,10 +179,34 @@ def test_growth_that_is_too_fast_for_a_torus_is_looked_at_longer(tell, kind, exp
     assert found.kind == (MotionKind.CHAOTIC if chaotic else kind)
     assert found.exponent.tolist() == ([exponent, 0.0, -0.1] if isinstance(told, str) else [told[0], 0.0, -0.2])
     assert found.returns is first.returns
-    for _, start, settings in asked:
+    for _, start, settings, section_only in asked:
+        assert section_only
         assert start.vector().tolist() == ROWS[-1].tolist()
         assert (settings.transient, settings.window) == (50.0, 3000.0)
         assert (settings.lyapunov_alignment, settings.events, settings.batches) == (50.0, "none", 6)
+
+
+@pytest.mark.parametrize(("mean", "known"), [(1.9e-5, None), (2.1e-5, 2.1e-5)])
+def test_far_from_synchrony_no_distance_is_measured_once_more(tell, mean, known):
+    """A twentieth of it, the share of the usual window in the longer one, is above the threshold of synchrony."""
+    first = stand_in(kind=MotionKind.QUASIPERIODIC, mean_distance=mean, exponent=np.array([6e-4])).motion
+    asked = tell(steady, "measure_once", [first, None])
+    tell(steady, "locked_orbit", [None])
+    measure(model(), None, 50.0, 30.0, MOTION)
+    assert [told[6:] for told in asked] == [(), (known,)]
+
+
+@pytest.mark.parametrize("known", [0.3, 1e-9])
+def test_a_distance_that_is_known_is_not_measured(known):
+    """And all else is as it was, to the last bit."""
+    chosen = Model(Chain(3), law_of("linearized", 0.16))
+    start = chosen.begin(InitialState("plus", (0.989, -0.993, -0.991), (0.099, 0.1012, 0.1023)))
+    settings = (50.0, 300.0, MOTION, TUNING)
+    whole, found = (steady.measure_once(chosen, start, *settings, *told) for told in ((), (known,)))
+    assert (found.mean_distance, whole.mean_distance > 0.01) == (known, True)
+    assert np.isnan(found.mean_distance_error)
+    for name in ("returns", "mirror_returns", "stop_rate", "exponent", "section_period", "recurrence"):
+        assert np.array_equal(getattr(found, name), getattr(whole, name)), name
 
 
 def test_weak_chaos_is_no_torus():

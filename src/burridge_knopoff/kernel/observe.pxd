@@ -11,6 +11,7 @@ cdef int DOWNWARD
 cdef double NOTHING
 
 cdef class Observer:
+    cdef readonly bint section_only
     cdef readonly double transient
     cdef readonly double end
     cdef double[::1] edge

@@ -26,7 +26,10 @@ class Observer:
     edge : batch boundaries, shape (batches + 1,); the first is the end of the transient, the last the end of the run
     distance_time : times at which J is sampled, shape (samples,)
     trajectory_time : times at which positions and velocities are sampled, shape (m,)
+    section_only : whether J is not averaged, nor extremes followed
     """
+
+    section_only: cython.bint
 
     transient: cython.double
     end: cython.double
@@ -58,7 +61,9 @@ class Observer:
         edge: Sequence[float] | np.ndarray,
         distance_time: Sequence[float] | np.ndarray,
         trajectory_time: Sequence[float] | np.ndarray,
+        section_only: bool,
     ) -> None:
+        self.section_only = section_only
         self.transient = edge[0]
         self.end = edge[len(edge) - 1]
         self.edge = np.array(edge, dtype=float)
@@ -87,6 +92,11 @@ class Observer:
         """Take everything from the first `length` of a piece that starts at time clock + clock_rest."""
         until_window: cython.double = (self.transient - clock) - clock_rest
         self.loaded = False
+        if self.section_only:
+            if length > until_window:
+                self._cross(state, piece, clock, clock_rest, length)
+            self._sample(piece, clock, clock_rest, length)
+            return
         if length > until_window:
             self._average(piece, clock, clock_rest, length)
             self._cross(state, piece, clock, clock_rest, length)

@@ -81,7 +81,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     # On an orbit that is its own mirror image the second half shows of a block what the first does of its mirror one.
     until = orbit.return_time
     time, spacing = np.linspace(0.0, until, math.ceil(until / longest) + 1, retstep=True)
-    observer = new_observer(model, [0.0, until + longest], trajectory_time=time)
+    observer = new_observer(model, 2 * [until + longest], trajectory_time=time, section_only=True)
     runner = Runner(model, observer=observer)
     runner.begin(orbit.reference)
     runner.run(until + longest)

@@ -137,10 +137,11 @@ def new_observer(
     distance_time: np.ndarray | list[float] = (),  # type: ignore[assignment]
     trajectory_time: np.ndarray | list[float] = (),  # type: ignore[assignment]
     order: int = SERIES_ORDER,
+    section_only: bool = False,
 ) -> Observer:
     """Return what measures a run of a model: J averaged over batches, J and states at given times; see `Observer`."""
     apart = float(model.sliding_offset[-1] - model.sliding_offset[0])
-    return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time)
+    return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time, section_only)
 
 
 def new_friction(model: Model, order: int) -> Friction:

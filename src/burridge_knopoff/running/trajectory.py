@@ -90,7 +90,7 @@ def collect(model: Model, initial: InitialState, settings: Settings, runner: Run
     earlier_events = log.earlier_events.values()
     batch = measured["batch_integral"] * (settings.batches / settings.window)
     completed = status == Status.COMPLETED
-    if not completed:
+    if not completed or runner.observer.section_only:
         batch[:] = math.nan
     lyapunov = _exponents(runner, settings, completed)
     speed = measured["highest_speed"]

@@ -215,7 +215,7 @@ def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: W
     options: dict[str, Any] = {"transient": half, "window": half, "batches": BATCHES, "events": "none"}
     kept: dict[str, Any] = {"sampling": half, "trajectory": 0.0}
     settings = Settings(start=start, lyapunov_exponents=1, **options, **kept)
-    trajectory = run(model, initial, settings)
+    trajectory = run(model, initial, settings, section_only=True)
     return float(trajectory.lyapunov_exponent[0]), float(trajectory.lyapunov_error[0])
 
 

@@ -119,7 +119,10 @@ def measure(
     orbit = locked_orbit(model, found.returns, found.recurrence, tuning)
     seen, longer = tuning.longer_window * window, None
     if orbit is None:
-        longer = measure_once(model, start, transient, seen, settings.scaled(tuning.longer_window**-0.5), tuning)
+        # The usual window is part of the longer one, in which ⟨J⟩ is that share of it at least: far from synchrony.
+        far = found.mean_distance / tuning.longer_window > settings.synchronization_threshold
+        scaled, known = settings.scaled(tuning.longer_window**-0.5), found.mean_distance if far else None
+        longer = measure_once(model, start, transient, seen, scaled, tuning, known)
     if longer is not None:
         # The returns stay those of the usual window: their number decides how attractors are told apart.
         found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
@@ -151,7 +154,7 @@ def _with_weak_chaos(
     model: Model, motion: SteadyMotion, start: Instant, transient: float, window: float, settings: MotionSettings
 ) -> SteadyMotion:
     """Return the motion with its exponents from this state on, as chaos if the largest is certain to be positive."""
-    trajectory = run(model, start, replace(_options(transient, window), events="none"))
+    trajectory = run(model, start, replace(_options(transient, window), events="none"), section_only=True)
     if trajectory.status != "completed":
         return motion
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
@@ -182,10 +185,20 @@ def _differ(one: SteadyMotion, other: SteadyMotion, model: Model, settings: Moti
 
 
 def measure_once(
-    model: Model, start: Instant, transient: float, window: float, settings: MotionSettings, tuning: Tuning
+    model: Model,
+    start: Instant,
+    transient: float,
+    window: float,
+    settings: MotionSettings,
+    tuning: Tuning,
+    mean_distance: float | None = None,
 ) -> SteadyMotion | None:
-    """Do the work of `measure` in one window, by settings that are for the speed of the driver already."""
-    trajectory = run(model, start, _options(transient, window))
+    """Do the work of `measure` in one window, by settings that are for the speed of the driver already.
+
+    mean_distance : what ⟨J⟩ is taken for instead of being measured
+    """
+    trajectory = run(model, start, _options(transient, window), section_only=mean_distance is not None)
+    mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":
         return None
     stops = np.flatnonzero(trajectory.event_kind == 0)
@@ -201,7 +214,7 @@ def measure_once(
         return None
     period = section_period(vars(trajectory), settings)
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-    mean = judged_distance(trajectory.mean_distance, model.chain.is_mirror_symmetric)
+    mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
     kind = motion_kind(mean, period, exponent, error, settings)
     if kind in OPEN and found.closed(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
@@ -210,7 +223,7 @@ def measure_once(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
         spacing=found.spacing,
-        mean_distance=trajectory.mean_distance,
+        mean_distance=mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
         stop_rate=np.bincount(block, minlength=model.blocks + 1)[1:] / window,
         kind=kind,
