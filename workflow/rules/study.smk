@@ -43,8 +43,8 @@ IMPORTED = Path(workflow.main_snakefile).resolve() != ROOT / "workflow/Snakefile
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Of what a job frees, what is large is given back: glibc would keep up to 64 MB for more, once as much has been freed.
-os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(4 * 2**20))
-os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(16 * 2**20))
+os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(2**20))
+os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(4 * 2**20))
 
 if len(workflow.configfiles) > 1:
     sys.exit(several_files(workflow.configfiles))

@@ -16,13 +16,12 @@ initial = [InitialState(name, **state) for name, state in params.initial.items()
 models = [model_of(params.model, law, a, len(initial[0].position)) for a in params.grid]
 settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
 refine = Refine(**params.refine)
-processes = snakemake.resources.cpus_per_task
-share = {"processes": processes, "folder": params.kept}
+share = {"processes": snakemake.resources.cpus_per_task, "folder": params.kept}
 found = continue_attractors(models, settings, motion, refine, starts=initial, start=params.start, **share)
 
 # Not before: the processes that the search is shared out among would each hold what writes files, 40 MB.
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries import attractors, refined
 
-write_summary(attractors.one_law(found, initial, settings, motion, params.start, processes), snakemake.output[0])
+write_summary(attractors.one_law(found, initial, settings, motion, params.start), snakemake.output[0])
 write_summary(refined.one_law(found, settings, motion, refine, params.start), snakemake.output[1])

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,6 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
-from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.labels import UNDETERMINED, label
@@ -67,21 +65,19 @@ def one_law(
     settings: SearchSettings,
     motion: MotionSettings,
     start: str,
-    processes: int = 1,
 ) -> xarray.Dataset:
     """Return the attractors of one law at the values of the grid.
 
     found : by the settings of the search, `settings`, and of the kinds of motion, `motion`
     initial : states whose own attractor is found under each convention
     start : convention for the drawn states
-    processes : that follow the given states at once; no result depends on them
     """
     models = [found.models[k] for k in found.grid]
     values = slot_values(found, found.grid, settings.lifetime, "a")
     values.update(_basins(found, settings.fraction_samples))
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
-    values.update(_reached(found, initial, settings.label_limit, processes))
+    values.update(_reached(found, initial, settings.label_limit))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -140,19 +136,14 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _reached(
-    found: Continuation, states: Sequence[InitialState], label_limit: float, processes: int
-) -> dict[str, np.ndarray]:
+def _reached(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
     values = empty(VARIABLES, shape, "initial")
-    models, attractors = ([one[place] for place in found.grid] for one in (found.models, found.attractors))
-    with shared_out(processes) as each:
-        of_states = partial(_labels_of_states, states=states, label_limit=label_limit)
-        reached = each("initial states", of_states, models, attractors)
     for k, place in enumerate(found.grid):
-        for where in np.argwhere(reached[k] != UNDETERMINED):
-            at, index = (*where, k), reached[k][tuple(where)]
+        reached = _labels_of_states(found.models[place], found.attractors[place], states, label_limit)
+        for where in np.argwhere(reached != UNDETERMINED):
+            at, index = (*where, k), reached[tuple(where)]
             values["initial_branch"][at] = found.branch[place][index]
             values["initial_side"][at] = found.side[place][index]
     return values
