@@ -160,3 +160,17 @@ def test_events_that_were_read_outlive_another_beginning():
     # The log has those of the second run alone.
     assert runner.events()[0].max() <= 10.0
     assert len(runner.events()[0]) == runner.log.count
+
+
+@pytest.mark.parametrize("solver", ["series", "rk4"])
+def test_a_log_of_stops_has_those_of_the_whole_log_and_their_states(solver):
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    asked = Settings(transient=30.0, window=60.0, event_window=60.0, solver=solver)
+    whole, stops = (run(model, PAPER_STATES["plus"], asked, stops_only=only) for only in (False, True))
+    chosen = whole.event_kind == 0
+    assert 0 < chosen.sum() < len(chosen)
+    for name in ("event_time", "event_block", "event_kind", "event_position", "event_velocity"):
+        assert np.array_equal(getattr(stops, name), getattr(whole, name)[chosen]), name
+    assert len(stops.earlier_event_time) == 0 < len(whole.earlier_event_time)
+    # Nothing else depends on what is kept.
+    assert (stops.event_count, stops.mean_distance) == (whole.event_count, whole.mean_distance)

@@ -136,25 +136,26 @@ def test_motions_seen_at_other_blocks_are_others():
 def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
     monkeypatch, tell, told, spacing, mean, threshold, expected
 ):
-    states = np.zeros((4, 3))
+    states = np.zeros((3, 3))
     run = SimpleNamespace(
         status="completed",
         event_position=states,
         event_velocity=states,
-        event_block=np.array([1, 1, 3, 3]),
-        event_kind=np.array([0, 1, 0, 0]),
-        event_time=np.array([0.5, 1.0, 2.0, 3.0]),
+        event_block=np.array([1, 3, 3]),
+        event_time=np.array([0.5, 2.0, 3.0]),
         lyapunov_exponent=np.zeros(3),
         lyapunov_error=np.zeros(3),
         mean_distance=mean,
         mean_distance_error=0.5,
     )
-    tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
+    runs = tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
     tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, spacing, 0.0), block=1, mirror_block=3), None])
     monkeypatch.setattr(steady, "section_period", lambda run, settings: 7)
     asked, looked = tell(steady, "motion_kind", [told]), tell(steady, "recurrence", [21.0])
     found = steady.measure_once(model(threshold), None, 50.0, 30.0, MOTION, TUNING)
-    # The stops of the block at which the motion is seen.
+    # Of all events only stops are kept.
+    assert runs[0][3:] == (False, True)
+    # Those of the block at which the motion is seen.
     assert (looked[0][0].tolist(), found.recurrence) == ([0.5], 21.0)
     assert looked[0][1] is found.returns
     assert (found.kind, found.section_period) == (expected, 7)

@@ -17,6 +17,7 @@ cdef int STEPS_PER_CALL
 cdef class EventLog:
     cdef readonly double states_from
     cdef readonly bint keep
+    cdef readonly bint stops_only
     cdef readonly Record earlier_events
     cdef readonly Record events
     cdef readonly long long count

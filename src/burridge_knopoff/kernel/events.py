@@ -15,12 +15,13 @@ class EventLog:
     """The event sequence of a run.
 
     `earlier_events` has rows (time | block, kind) for events before `states_from`; `events` has rows
-    (time | block, kind, x_1 … x_N, U_1' … U_N') for those from `states_from` on. More than `rate_limit` events in one
-    time unit count as an accumulation.
+    (time | block, kind, x_1 … x_N, U_1' … U_N') for those from `states_from` on. `stops_only` keeps of all these only
+    the stops from `states_from` on. More than `rate_limit` events in one time unit count as an accumulation.
     """
 
     states_from: cython.double
     keep: cython.bint
+    stops_only: cython.bint
     earlier_events: Record
     events: Record
     count: cython.longlong
@@ -30,9 +31,10 @@ class EventLog:
     accumulating: cython.bint
     tangent: Tangent
 
-    def __init__(self, blocks: int, states_from: float, keep: bool, rate_limit: int) -> None:
+    def __init__(self, blocks: int, states_from: float, keep: bool, rate_limit: int, stops_only: bool) -> None:
         self.states_from = states_from
         self.keep = keep
+        self.stops_only = stops_only
         self.earlier_events = Record(2)
         self.events = Record(2 + 2 * blocks)
         self.rate_limit = rate_limit
@@ -70,7 +72,7 @@ class EventLog:
         self.unit_count += 1
         if self.unit_count > self.rate_limit:
             self.accumulating = True
-        if not self.keep:
+        if not self.keep or (self.stops_only and (kind != 0 or clock < self.states_from)):
             return
         if clock < self.states_from:
             row = self.earlier_events.append(clock)

@@ -33,6 +33,7 @@ class Runner:
     step : of rk4
     events_from : time from which the states of events are kept; before it only time, block and kind
     keep_events : whether events are kept; else they are only counted
+    stops_only : whether of these only the stops from `events_from` on are kept
     observer : what measures the run; without one nothing is measured
     exponents : perturbations from which Lyapunov exponents are computed
     perturbations : tangent vectors to carry along as they are, columns of shape (2 blocks, vectors)
@@ -48,6 +49,7 @@ class Runner:
         step: float = 1e-3,
         events_from: float = 0.0,
         keep_events: bool = False,
+        stops_only: bool = False,
         observer: Observer | None = None,
         exponents: Exponents | None = None,
         perturbations: np.ndarray | None = None,
@@ -60,7 +62,7 @@ class Runner:
         self.model = model
         blocks = model.blocks
         order = RK4_ORDER if solver == "rk4" else SERIES_ORDER
-        self.log = EventLog(blocks, events_from, keep_events, EVENTS_PER_BLOCK_AND_UNIT * blocks)
+        self.log = EventLog(blocks, events_from, keep_events, EVENTS_PER_BLOCK_AND_UNIT * blocks, stops_only)
         self.observer = observer if observer is not None else new_observer(model, [NEVER, NEVER], order=order)
         if exponents is None:
             count = 0 if perturbations is None else perturbations.shape[1]

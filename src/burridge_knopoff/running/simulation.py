@@ -15,12 +15,18 @@ from burridge_knopoff.running.trajectory import Trajectory, collect
 
 
 def run(
-    model: Model, initial: InitialState | Instant, settings: Settings | None = None, *, section_only: bool = False
+    model: Model,
+    initial: InitialState | Instant,
+    settings: Settings | None = None,
+    *,
+    section_only: bool = False,
+    stops_only: bool = False,
 ) -> Trajectory:
     """Run one simulation of a model and return its trajectory.
 
     initial : where it begins; an instant is one in the middle of a motion, whatever `start` says
     section_only : whether ⟨J⟩, and what is least in friction and spring force, is left out (NaN): an eighth of the time
+    stops_only : whether only stops in the event window are kept, none of the other events: half of the memory
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
@@ -31,12 +37,12 @@ def run(
         initial = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
     else:
         begun = model.begin(initial, settings.start)
-    runner = _prepare(model, settings, section_only)
+    runner = _prepare(model, settings, section_only, stops_only)
     runner.begin(begun)
     return collect(model, initial, settings, runner, runner.run())
 
 
-def _prepare(model: Model, settings: Settings, section_only: bool) -> Runner:
+def _prepare(model: Model, settings: Settings, section_only: bool, stops_only: bool) -> Runner:
     """Return a solver that measures what the settings ask for."""
     duration = settings.duration
     edge = settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
@@ -54,6 +60,7 @@ def _prepare(model: Model, settings: Settings, section_only: bool) -> Runner:
         step=settings.step,
         events_from=0.0 if settings.events == "all" else duration - min(settings.event_window, settings.window),
         keep_events=settings.events != "none",
+        stops_only=stops_only,
         observer=new_observer(model, edge, np.minimum(distance_time, duration), trajectory_time, order, section_only),
         exponents=exponents,
     )

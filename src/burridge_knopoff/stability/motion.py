@@ -87,8 +87,8 @@ SECTION = (
 def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> int:
     """Return after how many upward section points the state of all blocks repeats; 0 if it does not.
 
-    run : arrays of a run named in SECTION; the second half of its section points is judged, so that a slow approach
-        does not hide a period
+    run : arrays of a run named in SECTION, of its events at least the stops; the second half of its section points is
+        judged, so that a slow approach does not hide a period
 
     W is a sum over all blocks and cannot tell a state from its mirror image: on an orbit that is its own mirror image
     after half its period W' repeats twice in a period. So the states at the first event after each section point have

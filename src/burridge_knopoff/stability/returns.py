@@ -64,13 +64,12 @@ def instant_of(state: np.ndarray) -> Instant:
 
 def visit(model: Model, start: Instant, transient: float, window: float, tuning: Tuning = TUNING) -> Returns | None:
     """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
-    runner = Runner(model, events_from=transient, keep_events=True)
+    runner = Runner(model, events_from=transient, keep_events=True, stops_only=True)
     runner.begin(start)
     if runner.run(transient + window) != Status.COMPLETED:
         return None
-    events = runner.log.events.values()
-    stops = np.flatnonzero(events[:, 1] == 0)
-    return returns_of(model, window, events[stops, 0], lambda chosen: events[stops[chosen], 2:], tuning)
+    stops = runner.log.events.values()
+    return returns_of(model, window, stops[:, 0], lambda chosen: stops[chosen, 2:], tuning)
 
 
 def returns_of(

@@ -197,17 +197,16 @@ def measure_once(
 
     mean_distance : what ⟨J⟩ is taken for instead of being measured
     """
-    trajectory = run(model, start, _options(transient, window), section_only=mean_distance is not None)
+    known = mean_distance is not None
+    trajectory = run(model, start, _options(transient, window), section_only=known, stops_only=True)
     mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":
         return None
-    stops = np.flatnonzero(trajectory.event_kind == 0)
-    block = trajectory.event_block[stops]
+    block = trajectory.event_block
 
     def states(chosen: np.ndarray) -> np.ndarray:
-        here = stops[chosen]
-        position = trajectory.event_position[here] - model.sliding_offset
-        return np.concatenate([position, trajectory.event_velocity[here]], axis=1)
+        position = trajectory.event_position[chosen] - model.sliding_offset
+        return np.concatenate([position, trajectory.event_velocity[chosen]], axis=1)
 
     found = returns_of(model, window, block, states, tuning)
     if found is None:
@@ -231,7 +230,7 @@ def measure_once(
         exponent=exponent,
         block=found.block,
         mirror_block=found.mirror_block,
-        recurrence=recurrence(trajectory.event_time[stops][block == found.block], found.returns, tuning),
+        recurrence=recurrence(trajectory.event_time[block == found.block], found.returns, tuning),
     )
 
 
