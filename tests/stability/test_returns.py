@@ -103,6 +103,21 @@ def test_what_has_settled(spacing, drift, closed, settled):
 
 
 @pytest.mark.parametrize(
+    ("rows", "spacing", "expected"),
+    [
+        (np.tile(ROWS[:5], (8, 1)), 1e-6, True),
+        (np.tile(ROWS[:5], (8, 1)), 1.1e-6, False),
+        (ROWS, 1e-6, False),
+        # Bands of chaos that are visited in turn and are wider than the tolerance.
+        (np.tile(ROWS[:5], (8, 1)) + 5e-6 * ROWS, 1e-6, False),
+        (np.tile(ROWS[:20], (2, 1)), 1e-6, False),  # not seen twice in two thirds of the window
+    ],
+)
+def test_a_closed_orbit_comes_round(rows, spacing, expected):
+    assert shown(rows, rows, spacing, 0.0).repeats(1e-6) == expected
+
+
+@pytest.mark.parametrize(
     ("length", "longest", "expected"), [(1, 60, 1), (3, 60, 3), (7, 7, 7), (9, 8, 8), (13, 60, 60)]
 )
 def test_the_length_of_an_orbit(length, longest, expected):

@@ -27,6 +27,9 @@ from tests.stability.stand_in import nearest, shown, stand_in
 
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 
+#: Some of them again and again.
+ROUND = np.tile(ROWS[:5], (8, 1))
+
 
 def model(threshold=1.0):
     return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08))
@@ -94,20 +97,21 @@ def test_mirror_images_of_a_motion():
 
 
 @pytest.mark.parametrize(
-    ("away", "kind", "spacing", "own_spacing", "expected"),
+    ("found", "kind", "spacing", "own_spacing", "expected"),
     [
-        (0.9e-3, MotionKind.PERIODIC, 0.0, 0.0, True),
-        (1.1e-3, MotionKind.PERIODIC, 0.0, 0.0, False),
-        (0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
-        (0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
-        (0.0, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
-        (0.0, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
-        (0.0, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
+        (ROWS + 0.9e-3, MotionKind.PERIODIC, 0.0, 0.0, True),
+        (ROWS + 1.1e-3, MotionKind.PERIODIC, 0.0, 0.0, False),
+        (ROWS + 0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
+        (ROWS + 0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
+        (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
+        (ROUND, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
+        (ROWS, MotionKind.CHAOTIC, 0.01, 0.0, True),  # chaos seen for so long that it looks like one
+        (ROUND, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
     ],
 )
-def test_what_lies_on_an_attractor(away, kind, spacing, own_spacing, expected):
+def test_what_lies_on_an_attractor(found, kind, spacing, own_spacing, expected):
     attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
-    assert lies_on(shown(ROWS + away, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
+    assert lies_on(shown(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
 
 
 def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
@@ -123,18 +127,19 @@ def test_motions_seen_at_other_blocks_are_others():
 
 
 @pytest.mark.parametrize(
-    ("told", "spacing", "mean", "threshold", "expected"),
+    ("told", "rows", "spacing", "mean", "threshold", "expected"),
     [
-        (MotionKind.QUASIPERIODIC, 0.9e-6, 0.1, 1.0, MotionKind.PERIODIC),
-        (MotionKind.UNDETERMINED, 0.9e-6, 1e-9, 1.0, MotionKind.SYNCHRONIZED),
-        (MotionKind.UNDETERMINED, 0.9e-6, 1e-9, (1.0, 1.0, 0.9), MotionKind.PERIODIC),
-        (MotionKind.QUASIPERIODIC, 1.1e-6, 0.1, 1.0, MotionKind.QUASIPERIODIC),
-        (MotionKind.CHAOTIC, 0.9e-6, 0.1, 1.0, MotionKind.CHAOTIC),
-        (MotionKind.PERIODIC, 0.9e-6, 1e-9, 1.0, MotionKind.PERIODIC),
+        (MotionKind.QUASIPERIODIC, ROUND, 0.9e-6, 0.1, 1.0, MotionKind.PERIODIC),
+        (MotionKind.UNDETERMINED, ROUND, 0.9e-6, 1e-9, 1.0, MotionKind.SYNCHRONIZED),
+        (MotionKind.UNDETERMINED, ROUND, 0.9e-6, 1e-9, (1.0, 1.0, 0.9), MotionKind.PERIODIC),
+        (MotionKind.QUASIPERIODIC, ROUND, 1.1e-6, 0.1, 1.0, MotionKind.QUASIPERIODIC),
+        (MotionKind.UNDETERMINED, ROWS, 0.9e-6, 0.1, 1.0, MotionKind.UNDETERMINED),
+        (MotionKind.CHAOTIC, ROUND, 0.9e-6, 0.1, 1.0, MotionKind.CHAOTIC),
+        (MotionKind.PERIODIC, ROUND, 0.9e-6, 1e-9, 1.0, MotionKind.PERIODIC),
     ],
 )
 def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
-    monkeypatch, tell, told, spacing, mean, threshold, expected
+    monkeypatch, tell, told, rows, spacing, mean, threshold, expected
 ):
     states = np.zeros((3, 3))
     run = SimpleNamespace(
@@ -149,7 +154,7 @@ def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
         mean_distance_error=0.5,
     )
     runs = tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
-    tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, spacing, 0.0), block=1, mirror_block=3), None])
+    tell(steady, "returns_of", [replace(shown(rows, -rows, spacing, 0.0), block=1, mirror_block=3), None])
     monkeypatch.setattr(steady, "section_period", lambda run, settings: 7)
     asked, looked = tell(steady, "motion_kind", [told]), tell(steady, "recurrence", [21.0])
     found = steady.measure_once(model(threshold), None, 50.0, 30.0, MOTION, TUNING)

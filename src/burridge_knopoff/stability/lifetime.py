@@ -99,8 +99,7 @@ def _followed(
     attractor = attractors[index]
     time = tuning.exposure * settings.lifetime / tuning.followed
     returns = attractor.motion.returns
-    # No farther than pushes have come back from.
-    size = min(tuning.parting_push * settings.resolution * model.scale, attractor.radius)
+    size = min(tuning.parting_push * settings.resolution * model.scale, tuning.parting_share * attractor.radius)
     chosen = generator.integers(len(returns), size=count)
     starts = [pushed(instant_of(returns[k]), size, generator) for k in chosen]
     others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]

@@ -41,8 +41,13 @@ class Returns:
     mirror_block: int = 1
 
     def closed(self, tolerance: float) -> bool:
-        """Tell whether the returns repeat: the motion is a closed orbit."""
+        """Tell whether the returns are as near to each other as those of a closed orbit."""
         return self.spacing <= tolerance
+
+    def repeats(self, tolerance: float) -> bool:
+        """Tell whether the returns also come round one after the other, which thin chaos does not."""
+        longest = len(self.returns)
+        return self.closed(tolerance) and orbit_length(self.returns, tolerance, longest) < longest
 
     def settled(self, tolerance: float, resolution: float, tuning: Tuning = TUNING) -> bool:
         """Tell whether both halves of the window show the same set."""
@@ -132,7 +137,8 @@ def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) 
 def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
     """Return after how many returns a closed orbit repeats within the tolerance; `longest` if it takes more."""
     settled = returns[len(returns) // 3 :]
-    for length in range(1, min(longest, len(settled) // 2)):
-        if np.abs(settled[length:] - settled[:-length]).max() <= tolerance:
-            return length
+    before = settled[-min(longest, len(settled) // 2) : -1][::-1]
+    for length in np.flatnonzero(np.abs(before - settled[-1]).max(axis=1) <= tolerance).tolist():
+        if np.abs(settled[length + 1 :] - settled[: -length - 1]).max() <= tolerance:
+            return length + 1
     return longest

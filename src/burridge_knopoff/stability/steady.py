@@ -215,7 +215,7 @@ def measure_once(
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
     kind = motion_kind(mean, period, exponent, error, settings)
-    if kind in OPEN and found.closed(settings.period_tolerance):
+    if kind in OPEN and found.repeats(settings.period_tolerance):
         # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
         kind = closed_kind(mean, settings)
     return SteadyMotion(
@@ -246,7 +246,7 @@ def lies_on(
     tolerance : distance within which the returns of closed orbits repeat
     """
     chaotic = attractor.kind == MotionKind.CHAOTIC and attractor.spacing > tolerance
-    if found.block != attractor.block or (found.closed(tolerance) and chaotic):
+    if found.block != attractor.block or (found.repeats(tolerance) and chaotic):
         return False
     return is_near(
         found.returns, attractor.returns, max(resolution, tuning.spacings * attractor.spacing), tuning.near_share

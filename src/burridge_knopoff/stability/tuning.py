@@ -124,8 +124,10 @@ class Tuning:
     #: Largest radii from which they come, and how few that are left by then make the captures before count instead.
     far: float = 10.0
     fewest_left: int = 8
-    #: Push, in resolutions, that parts trajectories which begin at different times of one and the same.
+    #: Push, in resolutions, that parts trajectories which begin at different times of one and the same; and the share
+    #: of the radius that it has at most. That of thin chaos rests on few pushes: of as large ones a third may leave.
     parting_push: float = 0.1
+    parting_share: float = 0.01
 
     # When a label is certain.
 
