@@ -262,7 +262,7 @@ def _solvers() -> xarray.Dataset:
             "mean_distance": (axes, 0.14),
             "difference": (axes, 1e-7),
             "difference_error": (axes, 1e-5),
-            "step_count": (axes, np.array([10_000, 10_000, 4_000_000])[:, None, None]),
+            "step_count": (axes, np.array([10_000, 20_000_000, 40_000_000])[:, None, None]),
             "end_time": (axes, 10_000.0),
             "status": (axes, np.int8(Status.COMPLETED)),
         },

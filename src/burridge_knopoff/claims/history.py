@@ -11,6 +11,7 @@ from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.endings import Criteria, Endings, percent
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
+    CONVENTION,
     FAILS,
     HOLDS,
     LOOSELY,
@@ -186,7 +187,8 @@ def phases_decide(
     share : of the states that have to end so, by the lower end of a Wilson interval
 
     It holds if that is so at every amplitude, and loosely if it is at all those at which every velocity is positive at
-    the start, whatever the phases: only there the states are oscillations about uniform sliding.
+    the start, whatever the phases: only there the states are oscillations about uniform sliding. The paper says nothing
+    of the inner block: if it holds for one share of those that were computed and fails for another, it depends on that.
     """
     evidence.check_blocks()
     phases = evidence.summary("phases")
@@ -207,6 +209,7 @@ def phases_decide(
         lost = ~judged.inside & (low[:, judged.slips] < share).any(axis=1)
         if lost.any():
             changes.append(f"close phases do not synchronize {at_values(phases['a'].values, lost)} ({law})")
+    readings = {_inner_block(inner_share): judged.verdict}
     for other in phases["inner_share"].values[phases["inner_share"].values != inner_share].tolist():
         where = _inner_block(other)
         try:
@@ -214,6 +217,7 @@ def phases_decide(
         except NotTestableError as error:
             changes.append(f"{where}: {NOT_TESTABLE}, {error}")
             continue
+        readings[where] = endings.verdict
         changes.append(
             f"{where} (A = {endings.amplitudes}): {endings.verdict}, right at {endings.shares} of the values of a: "
             f"{endings.told()}"
@@ -229,7 +233,9 @@ def phases_decide(
         f"(A = {judged.amplitudes}), synchronize from phases within {close:g}° ({together}) and end in antiphase from "
         f"opposite ones ({against}), at {judged.shares} of the values of a with {a}."
     )
-    return Verdict(judged.verdict, reason, measured, "; ".join(changes))
+    fails = [verdict == FAILS for verdict in readings.values()]
+    verdict = CONVENTION if any(fails) and not all(fails) else judged.verdict
+    return Verdict(verdict, reason, measured, "; ".join(changes), readings, judged.verdict)
 
 
 def _inner_block(share: float) -> str:

@@ -44,7 +44,7 @@ def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.nda
     return runs["a"].values, runs["kind"].values
 
 
-def _kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[np.ndarray, np.ndarray]:
+def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[np.ndarray, np.ndarray]:
     """Return where the kind of motion that a state reaches is known, and which it is: chaos that dies is chaos too."""
     known, kind = reached(attractors, initial, law, "kind")
     return known & (kind != MotionKind.UNDETERMINED), np.where(
@@ -88,7 +88,7 @@ def all_of_kind(
         found = {}
         for law in laws:
             for state in initial:
-                known, kind = _kinds_reached(evidence.choose(attractors, a), state, law)
+                known, kind = kinds_reached(evidence.choose(attractors, a), state, law)
                 right = np.isin(kind, allowed)
                 if is_decided(right, known, loose_share):
                     found[f"{law}, {state}"] = float(right[known].mean())
@@ -226,7 +226,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
         for law in laws:
-            known, kind = _kinds_reached(attractors.sel(a=[at]), initial, law)
+            known, kind = kinds_reached(attractors.sel(a=[at]), initial, law)
             if known[0]:
                 found[law] = int(kind[0])
         if not found:

@@ -47,8 +47,9 @@ class Verdict:
 
     changes : ranges of a, conventions, or motions of the inner block, for which the verdict changes or may; empty where
         there is none
-    conventions : verdict under each convention «contact, start», where the claim can be judged under each
-    own : verdict under the study's own convention
+    conventions : verdict under each convention «contact, start», or for each motion of the inner block, where the claim
+        can be judged under each
+    own : verdict under the study's own convention, or for the motion of the inner block that the claim names
     turns : other choices of judgement that would turn it, see `margins`
     """
 
