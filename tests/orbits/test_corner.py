@@ -32,17 +32,34 @@ def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(monkeypatch, values, l
     assert ahead == pytest.approx(expected) or len(way) == 1
 
 
-@pytest.mark.parametrize(("ahead", "joins"), [(0.19, True), (0.21, False), (np.inf, False)])
-def test_a_simpler_orbit_ends_a_branch_only_where_it_joins_it(monkeypatch, ahead, joins):
-    signature = SimpleNamespace(signature=(2, 2))
-    found = BranchOrbit(signature, np.zeros(4))
-    monkeypatch.setattr(corner, "step_along", lambda point, length: found)
-    monkeypatch.setattr(corner, "simpler_orbit", lambda orbit: "simpler")
+@pytest.mark.parametrize(
+    ("signature", "simpler", "ahead", "made"),
+    [
+        ((1, 2), None, np.inf, True),
+        ((2, 1), None, np.inf, False),
+        (None, None, np.inf, False),  # none is found
+        # A simpler orbit ends a branch only where it joins it.
+        ((1, 2), "simpler", 0.19, True),
+        ((1, 2), "simpler", 0.21, False),
+        ((1, 2), "simpler", np.inf, False),
+    ],
+)
+def test_a_step_keeps_the_stops(monkeypatch, signature, simpler, ahead, made):
+    found = BranchOrbit(SimpleNamespace(signature=signature), np.zeros(4))
+
+    def step(point, length):
+        if signature is None:
+            raise OrbitError("none")
+        return found
+
+    monkeypatch.setattr(corner, "step_along", step)
+    monkeypatch.setattr(corner, "simpler_orbit", lambda orbit: simpler)
     monkeypatch.setattr(corner, "_joint_ahead", lambda way: ahead)
-    step = corner.smooth_step([SimpleNamespace(orbit=signature)], 0.1)
-    assert (step is not None) == joins
-    if joins:
-        assert step.joined == "simpler"
+    taken = corner.smooth_step([SimpleNamespace(orbit=SimpleNamespace(signature=(1, 2)))], 0.1)
+    assert (taken is not None) == made
+    if made:
+        assert taken.orbit is found.orbit
+        assert taken.joined == simpler
 
 
 @pytest.mark.parametrize(
@@ -62,29 +79,6 @@ def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
         for told in (before, here)
     ]
     assert corner.corner_ahead(*points) == pytest.approx(expected)
-
-
-@pytest.mark.parametrize(
-    ("beyond", "goes_on"),
-    [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
-)
-def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(monkeypatch, beyond, goes_on):
-    """Nor with the stops that it came with, or with none: there orbits begin that break a symmetry."""
-    here = SimpleNamespace(
-        signature=(2, 2, 3),
-        model=SimpleNamespace(blocks=3),
-        reference=Instant(np.zeros(3), np.full(3, 0.1), np.zeros(3, dtype=bool)),
-        a=0.1,
-        return_time=1.0,
-        symmetry=None,
-    )
-    found = SimpleNamespace(orbit=SimpleNamespace(signature=beyond))
-    for name, value in (("drops", False), ("model_at", None), ("orbit_of", None), ("simpler_orbit", None)):
-        monkeypatch.setattr(corner, name, lambda *_, value=value: value)
-    monkeypatch.setattr(corner, "tangent_of", lambda orbit: np.ones(8))
-    monkeypatch.setattr(corner, "step_along", lambda point, length, tangent: found)
-    turned = corner.turn_corner(SimpleNamespace(orbit=here, tangent=np.ones(8)))
-    assert turned is (found if goes_on else None)
 
 
 @dataclass(frozen=True)
@@ -171,26 +165,11 @@ def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
     assert len(tried) == 2
 
 
-@pytest.mark.parametrize("signature", [(1, 2), (2, 1), None])
-def test_a_step_keeps_the_stops(monkeypatch, signature):
-    found = BranchOrbit(SimpleNamespace(signature=signature), np.zeros(4))
-
-    def step(point, length):
-        if signature is None:
-            raise OrbitError("none")
-        return found
-
-    monkeypatch.setattr(corner, "step_along", step)
-    monkeypatch.setattr(corner, "simpler_orbit", lambda orbit: None)
-    made = corner.smooth_step([SimpleNamespace(orbit=SimpleNamespace(signature=(1, 2)))], 0.1)
-    assert (made and made.orbit) is (found.orbit if signature == (1, 2) else None)
-
-
 @pytest.fixture
 def turn(monkeypatch):
     """Return what is found beyond a corner, where steps along a tangent come to orbits of these stops in turn."""
 
-    def turned(signatures, drops=False, simple=(), lost=()):
+    def turned(signatures, drops=False, simple=(), lost=(), here=(1, 2)):
         tried, tangents, left = [], [], iter(signatures)
 
         def orbit_of(model, state, time, symmetry):
@@ -213,10 +192,8 @@ def turn(monkeypatch):
         monkeypatch.setattr(corner, "step_along", step)
         monkeypatch.setattr(corner, "simpler_orbit", lambda orbit: "one" if orbit.signature in simple else None)
         reference = Instant(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
-        model = SimpleNamespace(blocks=2)
-        orbit = SimpleNamespace(
-            model=model, reference=reference, a=2e-6, return_time=1.0, symmetry=None, signature=(1, 2)
-        )
+        known = {"model": SimpleNamespace(blocks=2), "a": 2e-6, "return_time": 1.0, "symmetry": None}
+        orbit = SimpleNamespace(reference=reference, signature=here, **known)
         point = SimpleNamespace(orbit=orbit, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
         found = corner.turn_corner(point)
         return found and found.orbit.signature, tried, tangents
@@ -234,6 +211,15 @@ def test_beyond_a_corner_other_stops_follow(turn):
     assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
     assert turn([], drops=True) == (None, [], [])
     assert turn([(1, 1)])[0] == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "goes_on"),
+    [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
+)
+def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(turn, beyond, goes_on):
+    """Nor with the stops that it came with, or with none: there orbits begin that break a symmetry."""
+    assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if goes_on else None)
 
 
 def test_a_branch_whose_other_side_is_not_found_ends(turn):

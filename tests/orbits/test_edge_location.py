@@ -34,19 +34,28 @@ def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
     assert edges._kind(point, (EdgeKind.NEIMARK_SACKER, "breaking")) == kind
 
 
+@pytest.fixture
+def branch(monkeypatch):
+    """Return how a branch is made whose critical value and a are told at each length, which returns its points."""
+
+    def made(value, a=lambda length: length, kind=EdgeKind.FLIP):
+        def point(length, slope=1.0):
+            orbit = SimpleNamespace(a=a(length), symmetry=Symmetry.ASYMMETRIC, period=1.0)
+            return SimpleNamespace(orbit=orbit, multipliers=value(length), length=length, tangent=[slope])
+
+        monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {(kind, "keeping"): value})
+        monkeypatch.setattr(edges, "step_along", lambda first, length: point(length))
+        return point
+
+    return made
+
+
 @pytest.mark.parametrize(("slopes", "kind"), [((1.0, -1.0), EdgeKind.FOLD), ((1.0, 1.0), None), ((-1.0, -1.0), None)])
-def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, slopes, kind):
+def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
     """Where it does not, it is a symmetry other than the mirror's that breaks."""
-
-    def point(length, slope=0.0):
-        orbit = SimpleNamespace(a=0.1 + length, symmetry=Symmetry.ASYMMETRIC, period=1.0)
-        return SimpleNamespace(orbit=orbit, multipliers=length - 0.3, length=length, tangent=[slope])
-
-    key = EdgeKind.FOLD, "keeping"
-    monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {key: value})
-    monkeypatch.setattr(edges, "step_along", lambda first, length: point(length))
+    point = branch(lambda length: length - 0.3, kind=EdgeKind.FOLD)
     monkeypatch.setattr(edges, "simplest", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0))
-    found = edges._root(point(0.0, slopes[0]), point(0.5, slopes[1]), key)
+    found = edges._root(point(0.0, slopes[0]), point(0.5, slopes[1]), (EdgeKind.FOLD, "keeping"))
     assert (None if found is None else found[1].kind) == kind
     if found is not None:
         assert found[0] == pytest.approx(0.3)
@@ -65,54 +74,33 @@ def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, slopes, kind):
         (lambda length: 0.0, 0.0, 1e-12),
     ],
 )
-def test_the_place_of_an_edge_is_known_within_where_the_sign_changes(monkeypatch, place, dead, error):
+def test_the_place_of_an_edge_is_known_within_where_the_sign_changes(branch, place, dead, error):
     """At least to the rounding of a."""
-
-    def point(length):
-        orbit = SimpleNamespace(a=place(length), symmetry=Symmetry.ASYMMETRIC)
-        value = np.expm1(3.0 * (length - 0.3)) if abs(length - 0.3) > dead else 0.0
-        return SimpleNamespace(orbit=orbit, multipliers=value, length=length, tangent=[1.0])
-
-    key = EdgeKind.FLIP, "keeping"
-    monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {key: value})
-    monkeypatch.setattr(edges, "step_along", lambda first, length: point(length))
+    point = branch(lambda length: np.expm1(3.0 * (length - 0.3)) if abs(length - 0.3) > dead else 0.0, place)
     (edge,) = edges._roots(point(0.0), point(0.5))
     assert edge.a == pytest.approx(place(0.3))
     assert edge.a_error == pytest.approx(error, rel=1e-3, abs=0.0)
     assert (edge.before.length, edge.after.length) == (0.0, 0.5)
 
 
-def test_noise_of_one_sign_holds_no_edge_from_both_sides(monkeypatch):
+def test_noise_of_one_sign_holds_no_edge_from_both_sides(monkeypatch, branch):
     """Where it hides within 3e-9 on which side an orbit is, the two that hold the edge are 1e-8 from it."""
-
-    def point(length):
-        value = length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15
-        orbit = SimpleNamespace(a=length, symmetry=Symmetry.ASYMMETRIC)
-        return SimpleNamespace(orbit=orbit, multipliers=value, length=length, tangent=[1.0])
-
-    key = EdgeKind.FLIP, "keeping"
-    monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {key: value})
-    monkeypatch.setattr(edges, "step_along", lambda first, length: point(length))
+    point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15)
     monkeypatch.setattr(edges, "brentq", lambda value, low, high, **_: 0.3)
     (edge,) = edges._roots(point(0.0), point(0.5))
     assert edge.a_error == pytest.approx(1e-8, rel=1e-3, abs=0.0)
 
 
-def test_a_value_that_is_0_for_long_is_no_edge(monkeypatch):
+def test_a_value_that_is_0_for_long_is_no_edge(monkeypatch, branch):
     """Beyond 1e-7 on both sides its sign is no sign of a change, nor is that of an orbit which is not found."""
-
-    def point(length):
-        value = length - 0.3 if abs(length - 0.3) > 1.1e-7 else 0.0
-        return SimpleNamespace(orbit=None, multipliers=value, length=length)
 
     def lost(first, length):
         raise OrbitError("none")
 
-    key = EdgeKind.FLIP, "keeping"
-    monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {key: value})
-    for step in (lambda first, length: point(length), lost):
-        monkeypatch.setattr(edges, "step_along", step)
-        assert edges._roots(point(0.0), point(0.5)) == []
+    point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 1.1e-7 else 0.0)
+    assert edges._roots(point(0.0), point(0.5)) == []
+    monkeypatch.setattr(edges, "step_along", lost)
+    assert edges._roots(point(0.0), point(0.5)) == []
 
 
 def test_edges_between_two_orbits_come_in_the_order_of_the_branch(monkeypatch):

@@ -14,24 +14,24 @@ from burridge_knopoff.orbits.following import Following
 
 
 @pytest.mark.parametrize(
-    ("slopes", "values", "simpler", "expected"),
+    ("slopes", "values", "away", "touches"),
     [
-        ((1.0, -1.0), (0.5, 0.5), "simpler", "simpler"),
-        ((-0.1, 0.1), (-0.5, -0.5), "simpler", "simpler"),
+        ((1.0, -1.0), (0.5, 0.5), 0.0, True),
+        ((-0.1, 0.1), (-0.5, -0.5), 0.0, True),
         # It goes on; it turns at a fold; there is no simpler orbit.
-        ((1.0, 1.0), (0.5, 0.5), "simpler", None),
-        ((1.0, -1.0), (0.5, -0.5), "simpler", None),
-        ((1.0, -1.0), (0.5, 0.5), "own", None),
+        ((1.0, 1.0), (0.5, 0.5), 0.0, False),
+        ((1.0, -1.0), (0.5, -0.5), 0.0, False),
+        ((1.0, -1.0), (0.5, 0.5), np.inf, False),
+        # What is near is so within three hundredths, of which the square is the way to it in a.
+        ((1.0, -1.0), (0.5, 0.5), 0.029, True),
+        ((1.0, -1.0), (0.5, 0.5), 0.031, False),
     ],
 )
-def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, simpler, expected):
-    key = EdgeKind.FOLD, "keeping"
-    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {key: value})
-    monkeypatch.setattr(following, "simplest", lambda orbit, _: orbit if simpler == "own" else simpler)
-    points = (
-        SimpleNamespace(orbit="own", tangent=[slope], multipliers=v) for slope, v in zip(slopes, values, strict=True)
-    )
-    assert following._passed(*points) == expected
+def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, away, touches):
+    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(EdgeKind.FOLD, "keeping"): value})
+    monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
+    points = [SimpleNamespace(orbit=x, tangent=[x], multipliers=v) for x, v in zip(slopes, values, strict=True)]
+    assert following._passed(*points) == ("simpler" if touches else None)
 
 
 def test_several_turns_of_another_orbit_are_no_way_around_a_corner():
@@ -73,15 +73,6 @@ def test_no_step_leaps_to_a_simpler_orbit(a):
     assert edge.a == pytest.approx(0.136416049, abs=1e-9)
     assert edge.at.multipliers.keeping == pytest.approx(edge.at.multipliers.keeping.real)
     assert np.abs(edge.at.multipliers.keeping + 1.0).min() < 1e-8
-
-
-@pytest.mark.parametrize(("away", "joins"), [(0.029, True), (0.031, False)])
-def test_a_branch_touches_only_what_is_near(monkeypatch, away, joins):
-    """Three hundredths, of which the square is the way to it in a."""
-    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(EdgeKind.FOLD, "keeping"): 0.5})
-    monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
-    points = [SimpleNamespace(orbit=slope, tangent=[slope], multipliers=None) for slope in (1.0, -1.0)]
-    assert following._passed(*points) == ("simpler" if joins else None)
 
 
 def test_a_branch_is_told_where_it_begins():
