@@ -8,6 +8,8 @@ from burridge_knopoff import Attractor, MotionKind, SteadyMotion, Symmetry
 from burridge_knopoff.stability.returns import Returns
 
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
+#: Returns of no motion in particular.
+ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 
 
 def stand_in(

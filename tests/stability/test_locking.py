@@ -1,5 +1,6 @@
 """Closed orbits to which what looks like a torus is locked."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -106,35 +107,28 @@ def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("away", "expected"),
+    ("v", "away", "expected"),
     [
-        ((0.029, 0.0295, 0.03), True),
-        ((0.031, 0.032, 0.033), False),  # too far off
-        ((0.02, 0.01, 0.03), False),  # farther in the last turn than before
-        ((0.02, 0.02, 0.03), False),
-        ((0.01, 0.02, 0.015), False),
-        ((0.02, 0.03, 0.04, 0.05, 0.01), True),  # four turns tell
-        ((0.02, 0.03, 0.04, 0.03), False),
-        ((0.02,), False),  # a single one does not
+        (0.1, (0.029, 0.0295, 0.03), True),
+        (0.1, (0.031, 0.032, 0.033), False),  # too far off
+        (0.1, (0.058, 0.059, 0.06), False),
+        (0.2, (0.058, 0.059, 0.06), True),  # distances grow with the velocity
+        (0.1, (0.02, 0.01, 0.03), False),  # farther in the last turn than before
+        (0.1, (0.02, 0.02, 0.03), False),
+        (0.1, (0.01, 0.02, 0.015), False),
+        (0.1, (0.02, 0.03, 0.04, 0.05, 0.01), True),  # four turns tell
+        (0.1, (0.02, 0.03, 0.04, 0.03), False),
+        (0.1, (0.02,), False),  # a single one does not
     ],
 )
-def test_each_turn_has_to_be_nearer(tell, away, expected):
+def test_each_turn_has_to_be_nearer(tell, v, away, expected):
     on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
     asked = tell(locking, "visit", [SimpleNamespace(returns=on_orbit)])
-    orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)
+    orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
     # The oldest turn is not whole, and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
     assert locking._approaches(returns, orbit, Tuning()) == expected
-    assert asked[0][:4] == (LOCKED, "reference", 0.0, 100.0)
-
-
-@pytest.mark.parametrize(("v", "approached"), [(0.1, False), (0.2, True)])
-def test_how_near_a_locked_orbit_lies_grows_with_the_velocity(tell, v, approached):
-    on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
-    tell(locking, "visit", [SimpleNamespace(returns=on_orbit)])
-    orbit = SimpleNamespace(model=Model(Chain(3), LOCKED.law, v), reference="reference", period=100.0)
-    returns = np.concatenate([on_orbit + away for away in (0.06, 0.059, 0.058)])
-    assert locking._approaches(returns, orbit, Tuning()) == approached
+    assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
 def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):

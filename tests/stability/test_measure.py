@@ -11,9 +11,7 @@ from burridge_knopoff.stability import steady
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import measure
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import stand_in
-
-ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
+from tests.stability.stand_in import ROWS, stand_in
 
 
 def model(threshold=1.0, v=0.1):
@@ -161,18 +159,29 @@ def locked(threshold=1.0):
 
 
 @pytest.mark.parametrize("by_exponent", [True, False])
-@pytest.mark.parametrize(("difference", "stays"), [(1.03e-3, True), (1.05e-3, False)])
-def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tell, by_exponent, difference, stays):
+@pytest.mark.parametrize(
+    ("v", "difference", "stays"),
+    [
+        (0.1, 1.03e-3, True),
+        (0.1, 1.05e-3, False),
+        # Faster motion has larger distances.
+        (0.2, 2.03e-3, True),
+        (0.2, -2.03e-3, True),
+        (0.2, -2.1e-3, False),
+        (0.2, None, True),  # nothing is measured on the orbit
+    ],
+)
+def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tell, by_exponent, v, difference, stays):
     """Its ⟨J⟩, of an earlier time, would be listed with the exponents of the orbit; errors of 1e-5 each are allowed."""
     told = {"exponent": np.array([6e-4, 0.0, -0.1]), "mean_distance_error": 1e-5}
     first = stand_in(kind=MotionKind.UNDETERMINED, **told).motion
     longer = replace(first, kind=MotionKind.PERIODIC, returns=ROWS, exponent=np.array([0.0, -0.1, -0.2]))
-    after = replace(first, mean_distance=0.1 + difference)
+    after = None if difference is None else replace(first, mean_distance=0.1 + difference)
     orbit = locked()
     tell(steady, "measure_once", [first, longer, after] if by_exponent else [first, after])
     tell(steady, "locked_orbit", [None] if by_exponent else [orbit])
     monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([0.5, 0.1])))
-    found = measure(model(), None, 50.0, 30.0, MOTION)
+    found = measure(model(v=v), None, 50.0, 30.0, MOTION)
     assert found.kind == (MotionKind.PERIODIC if stays else MotionKind.UNDETERMINED)
     if stays:
         assert found.left_for is None
@@ -190,17 +199,3 @@ def test_slower_motion_has_smaller_exponents(tell):
         assert measure(model(v=v), None, 50.0, 30.0, MOTION) is None
         ratios = [getattr(asked[0][4], name) / getattr(MOTION, name) for name in names]
         assert ratios == pytest.approx([share] * 3)
-
-
-@pytest.mark.parametrize(("difference", "stays"), [(None, True), (2.03e-3, True), (-2.03e-3, True), (-2.1e-3, False)])
-def test_faster_motion_has_larger_distances(monkeypatch, tell, difference, stays):
-    """Twice as large at twice the speed; where nothing is measured on the orbit the motion is that of the orbit."""
-    told = {"exponent": np.array([6e-4, 0.0, -0.1]), "mean_distance_error": 1e-5}
-    first = stand_in(kind=MotionKind.UNDETERMINED, **told).motion
-    later = None if difference is None else replace(first, mean_distance=0.1 + difference)
-    tell(steady, "measure_once", [first, later])
-    tell(steady, "locked_orbit", [locked()])
-    monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([0.5, 0.1])))
-    found = measure(model(v=0.2), None, 50.0, 30.0, MOTION)
-    assert (found.left_for is None) == stays
-    assert found.kind == (MotionKind.PERIODIC if stays else MotionKind.UNDETERMINED)

@@ -128,29 +128,21 @@ def test_the_numbers_of_the_kinds():
         (0.1, 0, (0.0079, -0.0009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
+        # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
+        # Each is judged by its own one.
+        (1e-9, 0, (0.0, -9e-4), (1e-4, 1e-3), MotionKind.QUASIPERIODIC),
+        (1e-9, 0, (0.0, -9e-4), (1e-3, 5e-4), MotionKind.UNDETERMINED),
+        (0.1, 0, (2e-3, 0.0), (1e-4, 1e-3), MotionKind.CHAOTIC),
+        (0.1, 0, (2e-3, 0.0), (1e-3, 1e-4), MotionKind.UNDETERMINED),
     ],
 )
 def test_kinds(mean_distance, period, exponents, error, kind):
-    errors = np.full(len(exponents), error)
+    """By one error of all exponents, or one each."""
+    errors = np.broadcast_to(error, len(exponents))
     assert motion_kind(mean_distance, period, np.array(exponents), errors, MOTION) == kind
-
-
-@pytest.mark.parametrize(
-    ("mean_distance", "exponents", "errors", "kind"),
-    [
-        # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
-        (0.1, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.PERIODIC),
-        (0.1, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
-        (0.1, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
-        # Each is judged by its own one.
-        (1e-9, (0.0, -9e-4), (1e-4, 1e-3), MotionKind.QUASIPERIODIC),
-        (1e-9, (0.0, -9e-4), (1e-3, 5e-4), MotionKind.UNDETERMINED),
-        (0.1, (2e-3, 0.0), (1e-4, 1e-3), MotionKind.CHAOTIC),
-        (0.1, (2e-3, 0.0), (1e-3, 1e-4), MotionKind.UNDETERMINED),
-    ],
-)
-def test_kinds_by_errors_that_differ(mean_distance, exponents, errors, kind):
-    assert motion_kind(mean_distance, 0, np.array(exponents), np.array(errors), MOTION) == kind
 
 
 @pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.UNDETERMINED)])

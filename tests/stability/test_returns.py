@@ -7,9 +7,7 @@ from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.stability import returns
 from burridge_knopoff.stability.returns import instant_of, orbit_length, returns_of, stops_alike
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import shown
-
-ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
+from tests.stability.stand_in import ROWS, shown
 
 
 @pytest.mark.parametrize(

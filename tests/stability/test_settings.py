@@ -10,6 +10,7 @@ from burridge_knopoff import MotionSettings, SearchSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.ranges import Interval, Number, Whole
 from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, Sample, Watch
+from tests.refused import refused
 
 #: {class: values that any value of another field goes with}
 CLASSES = {
@@ -48,10 +49,8 @@ def test_a_setting_takes_its_range_and_nothing_else(kind, name):
         taken = getattr(kind(**{**others, name: value}), name)
         assert np.array_equal(taken, value)
     for value in bad:
-        with pytest.raises(ValueError, match="is not allowed") as caught:
+        with refused(match=rf"^{name}: .*is not allowed"):
             kind(**{**others, name: value})
-        assert str(caught.value).startswith(f"{name}: ")
-        assert "\n" not in str(caught.value)
 
 
 def test_a_map_has_a_row_for_each_tile():

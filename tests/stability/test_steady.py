@@ -23,9 +23,7 @@ from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
 from burridge_knopoff.stability.steady import lies_on, measure
 from burridge_knopoff.stability.tuning import TUNING
-from tests.stability.stand_in import nearest, shown, stand_in
-
-ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
+from tests.stability.stand_in import ROWS, nearest, shown, stand_in
 
 #: Some of them again and again.
 ROUND = np.tile(ROWS[:5], (8, 1))
