@@ -1,8 +1,10 @@
 """Configs: defaults, grids, and one line for everything that is wrong."""
 
 import copy
+import math
 import re
 import time
+from functools import reduce
 
 import pytest
 from hypothesis import given
@@ -13,21 +15,12 @@ from burridge_knopoff.provenance.command import difference
 from burridge_knopoff.study.study import all_points, load_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from tests.bad_configs import BAD_FILES
+from tests.fuzzing.test_configs import RANGE_OF
+from tests.refused import refused
 from tests.study.bad_changes import BAD_CHANGES
 
 STATES = {"minus": {}, "plus": {}}
 RANGE = {"from": 0, "to": 0.3, "step": 0.0025}
-
-
-def refused(words, file, read):
-    """Require that what is read is refused in one line that names the file and has these words."""
-    with pytest.raises(ConfigError) as caught:
-        read()
-    message = str(caught.value)
-    assert f"{file}: " in message
-    assert "\n" not in message
-    for word in words:
-        assert word in message
 
 
 def load(**changes):
@@ -37,7 +30,27 @@ def load(**changes):
 
 @pytest.mark.parametrize(("changes", "words"), BAD_CHANGES)
 def test_bad_configs_get_one_line(changes, words):
-    refused(words, "config/test.yaml", lambda: load(**changes))
+    with refused("config/test.yaml: ", *words, error=ConfigError):
+        load(**changes)
+
+
+@pytest.mark.parametrize("key", RANGE_OF)
+def test_what_is_no_number_of_its_range_gets_one_line(key):
+    """It names the value, the kind of number and both ends."""
+    low, high = RANGE_OF[key]
+    whole, least = low.isdigit(), float(low.strip(">"))
+    ends = [f"≥ {low} and ≤ {high:.0f}"] if whole else [f"{'>' if '>' in low else '≥'} {least:g}", f"≤ {high:g}"]
+    if whole:
+        wrong = [int(least) - 1, int(high) + 1, 2.5, 7.0]
+    else:
+        below = [-1] if low == "0.0" else [-1, 0]
+        wrong = [*below, math.nextafter(least, -math.inf), math.nextafter(high, math.inf)]
+    *sections, name = key.split(".")
+    for value in (*wrong, math.nan, math.inf, True, "1e-6", "long"):
+        changes = reduce(lambda inside, section: {section: inside}, reversed(sections), {name: value})
+        words = f"config/test.yaml: {key}: {value!r} is not allowed: a {'whole ' * whole}number ", *ends
+        with refused(*words, error=ConfigError):
+            load(**changes)
 
 
 @pytest.mark.parametrize("case", [name for name in BAD_FILES if name != "template"])
@@ -45,7 +58,8 @@ def test_bad_files_get_one_line(tmp_path, case):
     content, words = BAD_FILES[case]
     path = tmp_path / "study.yaml"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    refused(words, "study.yaml", lambda: load_study(read_config(path), str(path)))
+    with refused("study.yaml: ", *words, error=ConfigError):
+        load_study(read_config(path), str(path))
 
 
 @pytest.mark.parametrize("number", ["1e-6", "1e5", "2E+3", "-3e2", "1.5e3", "+.5e-1", "7.", "0.1"])
