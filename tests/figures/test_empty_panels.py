@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff.figures import agreement, basin_fractions, bifurcation, distance, lyapunov, stick_slip, windows
+from tests.figures.test_windows import refined
 
 GRID = {"law": ["linearized", "nonlinear"], "initial": ["symmetric"], "a": [0.1, 0.2]}
 
@@ -97,20 +98,7 @@ def test_a_distance_of_0_is_said():
 
 
 def test_windows_of_no_attractors_keep_their_axis():
-    names = ("law", "value", "attractor")
-    refined = xr.Dataset(
-        {
-            "a": (names[:2], [[0.3, 0.5]]),
-            "in_grid": (names[:2], [[1, 1]]),
-            "branch": (names, np.full((1, 2, 1), -1)),
-            "kind": (names, np.full((1, 2, 1), -1)),
-            "mean_distance": (names, np.full((1, 2, 1), np.nan)),
-            "branch_number": ("number", np.zeros(0, dtype=int)),
-            "branch_name": ("number", np.zeros(0, dtype=str)),
-        },
-        {"law": ["linearized"]},
-    )
-    figure = windows.draw(refined)
+    figure = windows.draw(refined([0.3, 0.5], [[-1], [-1]], [1, 1]))
     assert words(figure) == [["no attractor"], []]
     assert np.allclose(figure.axes[0].get_xlim(), (0.296, 0.504))
 

@@ -7,24 +7,29 @@ import xarray as xr
 from burridge_knopoff.figures.windows import draw
 
 
+def refined(a, branch, in_grid):
+    """Return the attractors at these values, of a branch or none in each slot; branch 0 is synchrony."""
+    names = ("law", "value", "attractor")
+    slots, numbers = np.array([branch]), np.arange(np.max(branch) + 1)
+    return xr.Dataset(
+        {
+            "a": (names[:2], [a]),
+            "in_grid": (names[:2], [in_grid]),
+            "branch": (names, slots),
+            "kind": (names, np.where(slots < 0, -1, 1)),
+            "mean_distance": (names, np.where(slots < 0, np.nan, 0.1)),
+            "branch_number": ("number", numbers),
+            "branch_name": ("number", np.array([f"alternating ({n})" if n else "synchronized" for n in numbers], str)),
+        },
+        {"law": ["linearized"]},
+    )
+
+
 def test_a_bar_ends_halfway_to_the_next_value_and_goes_on_where_only_others_were_looked_for():
     # Branch 0 ends between 0.15 and 0.16; branch 1 was not looked for there, but goes on; the last value is padding.
     a = [0.0, 0.1, 0.15, 0.16, 0.2, 0.3, np.nan]
     branch = [[0, 1], [0, 1], [0, -1], [-1, -1], [1, -1], [1, -1], [-1, -1]]
-    names = ("law", "value", "attractor")
-    refined = xr.Dataset(
-        {
-            "a": (names[:2], [a]),
-            "in_grid": (names[:2], [[1, 1, 0, 0, 1, 1, 0]]),
-            "branch": (names, [branch]),
-            "kind": (names, np.ones((1, 7, 2), dtype=int)),
-            "mean_distance": (names, np.full((1, 7, 2), 0.1)),
-            "branch_number": ("number", [0, 1]),
-            "branch_name": ("number", ["synchronized", "alternating (1)"]),
-        },
-        {"law": ["linearized"]},
-    )
-    bars = draw(refined).axes[1].patches
+    bars = draw(refined(a, branch, [1, 1, 0, 0, 1, 1, 0])).axes[1].patches
     first, second = ([bar for bar in bars if round(bar.get_y() + 0.4) == row] for row in (0, 1))
     assert [bar.get_x() for bar in first] == pytest.approx([0.0, 0.05, 0.125])
     assert first[-1].get_x() + first[-1].get_width() == pytest.approx(0.155)
@@ -36,18 +41,6 @@ def test_a_bar_ends_halfway_to_the_next_value_and_goes_on_where_only_others_were
 @pytest.mark.parametrize("grid", [[0.0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.2, 0.5]])
 def test_no_bar_goes_on_over_a_value_at_which_the_branch_is_not(grid):
     """Also where a wider step of the grid lies elsewhere."""
-    names = ("law", "value", "attractor")
-    refined = xr.Dataset(
-        {
-            "a": (names[:2], [grid]),
-            "in_grid": (names[:2], np.ones((1, 4), dtype=int)),
-            "branch": (names, np.array([[[0], [-1], [0], [0]]])),
-            "kind": (names, np.ones((1, 4, 1), dtype=int)),
-            "mean_distance": (names, np.full((1, 4, 1), 0.1)),
-            "branch_number": ("number", [0]),
-            "branch_name": ("number", ["synchronized"]),
-        },
-        {"law": ["linearized"]},
-    )
-    bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in draw(refined).axes[1].patches]
+    drawn = draw(refined(grid, [[0], [-1], [0], [0]], [1] * 4)).axes[1].patches
+    bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in drawn]
     assert bars[:2] == [pytest.approx((0.0, 0.05)), pytest.approx((0.15, 0.5 * (0.2 + grid[3])))]

@@ -40,8 +40,11 @@ def compare(runs, tmp_path):
     return compared
 
 
-def summarized(grid, *found):
+def summarized(grid, *found, kind=None):
+    """Return the comparison, of runs of some kind if it is given."""
     kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
+    if kind is not None:
+        kinds["kind"][...] = kind
     return agreement.summarize(grid, kinds, *found, synchronization_threshold=1e-6, agreement=AGREEMENT)
 
 
@@ -167,10 +170,7 @@ def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error
 )
 def test_the_kind_of_a_run_is_that_of_its_attractor_where_it_is_open(runs, compare, own, of_attractor, mean, kind):
     grid, _ = compare({key: {"mean_distance": mean, "mean_distance_error": 0.0} for key in runs})
-    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
-    kinds["kind"][...] = own
-    about = {"synchronization_threshold": 1e-6, "agreement": AGREEMENT}
-    found = agreement.summarize(grid, kinds, attractors_of(grid, **of_attractor), **about)
+    found = summarized(grid, attractors_of(grid, **of_attractor), kind=own)
     assert (found["kind"] == kind).all()
 
 
@@ -179,10 +179,7 @@ def test_the_kind_of_a_run_is_that_of_its_attractor_where_it_is_open(runs, compa
 )
 def test_a_run_of_another_kind_is_not_on_the_attractor(runs, compare, own, of_attractor, settled):
     grid, _ = compare({key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs})
-    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
-    kinds["kind"][...] = own
-    there = attractors_of(grid, kind=of_attractor, branch=4, mean=0.2)
-    found = agreement.summarize(grid, kinds, there, synchronization_threshold=1e-6, agreement=AGREEMENT)
+    found = summarized(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
     assert (found["settled"] == settled).all()
 
 
