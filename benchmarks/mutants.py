@@ -46,7 +46,7 @@ TESTS = {
     "orbits": ("stability", "summaries/test_edges.py"),
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
-    "stability": ("study/test_keys.py",),
+    "stability": ("study/test_keys.py", "dataset/test_numbers.py"),
     "running": ("dataset", "kernel/test_exponents.py", "study/test_keys.py"),
     "kernel": ("stability/test_ensemble.py", "laws", "running", "orbits/test_orbit.py"),
 }

@@ -23,10 +23,6 @@ def counted(fraction, noise=0.01, counts=None):
     return PairCounts(fraction * scatter, np.ones_like(scatter), number, number)
 
 
-def test_kinds_are_numbered_as_in_files():
-    assert {kind.name: kind.value for kind in ExponentKind} == {"UNKNOWN": -1, "VARYING": 0, "SINGLE": 1}
-
-
 @pytest.mark.parametrize(("label", "alpha"), [(half_plane, 1.0), (disc, 1.0), *CANTOR])
 def test_exponents_that_are_known(label, alpha):
     found = exponent_of(label, 4000)
