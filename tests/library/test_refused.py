@@ -29,6 +29,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.kernel.ensemble import Ensemble
 from burridge_knopoff.running.together import new_ensemble
+from tests.refused import refused
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
@@ -62,9 +63,8 @@ def attractors():
 )
 def test_states_that_cannot_be_labelled(attractors, given, message):
     states = {"model": MODEL, "attractors": attractors, "position": POSITION, "velocity": VELOCITY, **given}
-    with pytest.raises(ValueError, match=message) as refused:
+    with refused(match=message):
         label_states(**states)
-    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -99,9 +99,8 @@ def test_states_that_cannot_be_labelled(attractors, given, message):
     ],
 )
 def test_calls_that_have_no_answer(call):
-    with pytest.raises(ValueError, match="not allowed|is not a valid") as refused:
+    with refused(match="not allowed|is not a valid"):
         call()
-    assert "\n" not in str(refused.value)
 
 
 def test_the_kernel_takes_no_arrays_that_do_not_fit():

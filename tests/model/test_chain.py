@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff import Chain, Model, law_of
+from tests.refused import refused
 
 strength = st.floats(0.1, 5.0)
 
@@ -87,14 +88,13 @@ def test_the_chain_of_the_paper():
         ({"pulling": "all"}, "chain.pulling: 'all' is not allowed: neighbours or a number"),
         ({"threshold": 0.0}, "chain.threshold: 0.0 is not allowed"),
         ({"coupling": -1.0}, "chain.coupling: -1.0 is not allowed"),
-        ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling\\[1\\]: nan is not allowed"),
+        ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling[1]: nan is not allowed"),
         ({"coupling": True}, "chain.coupling: True is not allowed"),
     ],
 )
 def test_refused(options, message):
-    with pytest.raises(ValueError, match=message) as caught:
+    with refused(message):
         Chain(**options)
-    assert "\n" not in str(caught.value)
 
 
 def test_what_is_computed_once_is_not_written_to():

@@ -134,12 +134,6 @@ def test_motion_without_bound_ends_the_run(solver):
     assert np.isnan(run.mean_distance)
 
 
-def test_a_section_point_has_the_direction_of_its_velocity():
-    run = simulate("linearized", 0.08, "plus", transient=100.0, window=100.0)
-    assert set(run.crossing_direction.tolist()) == {-1, 1}
-    assert (np.sign(run.crossing_velocity) == run.crossing_direction).all()
-
-
 def test_states_of_events_are_kept_in_the_window_only():
     run = simulate("linearized", 0.08, "plus", transient=40.0, window=20.0, event_window=1e3)
     assert run.earlier_event_time.max() < 40.0 <= run.event_time.min()
