@@ -168,7 +168,7 @@ def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
     assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
 
-def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled(monkeypatch):
+def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
     """However long it is left to settle: exact synchrony stays where it is."""
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
