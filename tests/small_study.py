@@ -10,10 +10,8 @@ from typing import Any
 
 import xarray
 
-from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, PhaseSettings, Refine, SearchSettings
@@ -36,6 +34,7 @@ from burridge_knopoff.summaries import (
     two_blocks,
 )
 from burridge_knopoff.summaries.points import Grid
+from tests.summaries.points import write_points
 
 ROOT = Path(__file__).parents[1]
 
@@ -195,10 +194,7 @@ class SmallStudy:
         for solver in ("series", "map", "rk4"):
             known = [law for law in study.laws if solver in study.other_solvers(law)]
             settings = {law: asdict(study.settings(law, solver)) for law in known}
-            others[solver] = grid.elsewhere(self.folder / "solvers" / solver, settings)
-            for _, (law, initial, a) in grid:
-                if law in known:
-                    _write(others[solver], law, initial, a)
+            others[solver] = write_points(grid.elsewhere(self.folder / "solvers" / solver, settings))
         return solvers.summarize(grid, others, study.config["solvers"]["step"])
 
     def _basins(self, found: xarray.Dataset) -> xarray.Dataset:
@@ -218,11 +214,5 @@ def run_study(folder: Path, config: Mapping[str, Any]) -> SmallStudy:
     """Run the points of a study into a folder."""
     study = load_study(config, f"{config['study']}.yaml")
     small = SmallStudy(study, folder)
-    for _, (law, initial, a) in small.grid:
-        _write(small.grid, law, initial, a)
+    write_points(small.grid)
     return small
-
-
-def _write(grid: Grid, law: str, initial: str, a: str) -> None:
-    trajectory = run(grid.model(law, grid.a[a]), grid.initial[initial], grid.settings[law])
-    write_point(trajectory, grid.path(law, initial, a))
