@@ -20,7 +20,6 @@ from tests.refused import refused
         ({"start": "soon"}, "moving | tested"),
         ({"solver": "euler"}, "series | map | rk4"),
         ({"events": "some"}, "none | window | all"),
-        ({"sampling": 1e-5, "window": 1e9}, "samples"),
         ({"colour": "blue"}, "colour: not a setting"),
         ({"law": "cubic"}, " | ".join(LAWS)),
         ({"a": 2.0, "solver": "map"}, "not too steep"),

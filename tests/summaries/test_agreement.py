@@ -10,7 +10,6 @@ from scipy.stats import wasserstein_distance
 from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import agreement, judgement, lyapunov, mean_distance
 from tests.grids import grid_of
@@ -199,14 +198,6 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert np.isnan(means["mean_distance"].sel(law="linearized")).all()
     assert (means["synchronized"].sel(law="linearized") == 0).all()
     assert (means["status"].sel(law="linearized") == 1).all()
-
-
-def test_a_missing_point_is_named(compare):
-    grid, _ = compare()
-    grid.path("nonlinear", "minus", "0.0800").unlink()
-    reason = r"nonlinear/minus/a0\.0800\.nc: is missing; remake it: snakemake -c2 -R .*/a0\.0800\.nc$"
-    with pytest.raises(BadFile, match=reason):
-        mean_distance.summarize(grid, 1e-6)
 
 
 def of_laws(folder, laws):
