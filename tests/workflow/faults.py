@@ -140,6 +140,13 @@ def differences(study: Study, other: Study, *folders: str) -> list[str]:
     return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))
 
 
+def check_end(study: Study, other: Study, *targets: str, folders: Collection[str] = ()) -> None:
+    """Require that a run goes on without a flag, ends with the files of another study, and leaves no others."""
+    assert go_on(study, *targets) == []
+    assert differences(study, other, *folders) == []
+    assert temporaries(study) == []
+
+
 def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
     """Return the environment in which each Python process first runs the code of a key that stands in its command.
 

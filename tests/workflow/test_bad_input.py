@@ -44,11 +44,6 @@ def test_a_bad_config(tmp_path, case):
     check(study.run(), tmp_path, ["study.yaml"], ["study.yaml: ", *words])
 
 
-def test_the_good_config_is_good(tmp_path):
-    """What the bad ones are made from has nothing wrong of its own."""
-    assert "simulate" in Study(tmp_path, GOOD).ok("-n")
-
-
 POINTS = "results/tiny/points/linearized"
 TARGETS = {
     "nothing.nc": ["nothing.nc: neither a rule nor a file of this study"],
@@ -149,6 +144,7 @@ def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
 
 
 def test_a_config_with_any_name_is_read(tmp_path):
+    """And what the bad ones are made from has nothing wrong of its own."""
     for name in ("my study.yaml", "Größe.yaml", "study.json", "study"):
         study = Study(tmp_path, GOOD)
         study.config = study.config.rename(tmp_path / name)

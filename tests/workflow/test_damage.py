@@ -19,7 +19,7 @@ from burridge_knopoff.study.study import load_study
 from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
 from tests.workflow.conftest import TINY, copied
-from tests.workflow.faults import differences, failures, go_on, temporaries
+from tests.workflow.faults import check_end, failures
 from tests.workflow.snakemake import run_snakemake
 
 #: A point that every stage reads which reads points.
@@ -139,13 +139,6 @@ def test_no_stage_takes_in_a_bad_point(finished, grids, tmp_path, damage):
         assert "\n" not in message, stage
 
 
-def test_the_readers_read_what_is_whole(finished, grids):
-    """Without damage every one of them goes through, so that the test above could fail."""
-    results = finished.folder / "results" / "tiny"
-    for read in readers(results).values():
-        assert read(grids(results)) is not None
-
-
 def remade(study, reasons, *targets):
     """Run exactly the commands that the reasons name, for these targets or, without any, as they are."""
     commands = {re.search(r"; remake it: (.*)$", reason)[1] for reason in reasons}
@@ -187,9 +180,7 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     assert named == spoiled.keys()
     assert not (results / "summary" / "mean_distance.nc").exists()
     assert len(remade(study, reasons.values(), *targets)) == len(spoiled)
-    assert go_on(study, *targets) == []
-    assert differences(study, limited) == []
-    assert temporaries(study) == []
+    check_end(study, limited, *targets)
 
 
 @pytest.mark.parametrize(
@@ -225,5 +216,4 @@ def test_a_bad_summary_is_remade(finished, copy):
     run = copy.run("-R", "figure_stick_slip", "--until", "figure_stick_slip")
     (command,) = remade(copy, failures(run.stderr).values())
     assert command.endswith("-R results/tiny/summary/stick_slip.nc")
-    assert go_on(copy) == []
-    assert differences(copy, finished) == []
+    check_end(copy, finished)

@@ -17,6 +17,7 @@ from tests.workflow.faults import (
     begin,
     begin_fork,
     broken,
+    check_end,
     crash,
     differences,
     failures,
@@ -57,9 +58,7 @@ def test_killed_in_every_stage(limited, tmp_path):
         assert whole.items() <= limited.files(*COMPARED).items()
         flag = flag or flag_named(study.run().stderr)
         study.ok(flag)
-    assert go_on(study) == []
-    assert differences(study, limited) == []
-    assert temporaries(study) == []
+    check_end(study, limited)
 
 
 def test_interrupted_and_terminated(finished, study):
@@ -112,9 +111,7 @@ def test_points_that_die(finished, study):
     assert len([name for name in study.files("points") if "/." not in name]) == 13
     # The killed one left its file; so may the one without memory, if the C library ended it.
     assert len(temporaries(study)) in (1, 2)
-    assert go_on(study, "points") == []
-    assert differences(study, finished, "points") == []
-    assert temporaries(study) == []
+    check_end(study, finished, "points", folders=["points"])
 
 
 def test_scripts_that_die(finished, copy):
@@ -138,9 +135,7 @@ def test_scripts_that_die(finished, copy):
     assert "Traceback" in (results / "logs" / "stick_slip.log").read_text()
     assert "Traceback" not in screen
     assert not (results / "figures" / "equilibrium.pdf").exists()
-    assert go_on(copy) == []
-    assert differences(copy, finished) == []
-    assert temporaries(copy) == []
+    check_end(copy, finished)
 
 
 @needs_mounts
@@ -179,9 +174,7 @@ def test_results_that_become_read_only(finished, study):
     with read_only(study.folder / "results"):
         assert process.wait() == 1
         assert "Read-only file system" in (study.folder / "screen").read_text()
-    assert go_on(study, "points") == []
-    assert differences(study, finished, "points") == []
-    assert temporaries(study) == []
+    check_end(study, finished, "points", folders=["points"])
 
 
 SNAKEMAKE_SAYS = ("Using ", "Assuming ", "Building ", "Singularity ", "Failed to setup log file: ")

@@ -1,5 +1,6 @@
 """Studies with laws and springs of their own through the real Snakefile: their points are what Python simulates."""
 
+import json
 import shlex
 
 import netCDF4
@@ -18,22 +19,18 @@ batches: 2
 solvers: {a: [0.2], step: 0.02}
 """
 
-FOUR_LAWS = f"""
-study: laws
-a: [0.2, 2.5]
-initial: {{minus: {{}}, plus: {{}}}}
-laws:
-  stribeck: {{sigma: 0.1}}
-  linearized: {{}}
-  nonlinear: {{}}
-  drop: {{formula: "(1 - sigma)/(1 + a*u/(1 - sigma))", sigma: 0.01}}
-{SHORT}"""
 DESCRIPTIONS = {
     "stribeck": {"sigma": 0.1},
     "linearized": {},
     "nonlinear": {},
     "drop": {"formula": "(1 - sigma)/(1 + a*u/(1 - sigma))", "sigma": 0.01},
 }
+FOUR_LAWS = f"""
+study: laws
+a: [0.2, 2.5]
+initial: {{minus: {{}}, plus: {{}}}}
+laws: {json.dumps(DESCRIPTIONS)}
+{SHORT}"""
 
 RING = f"""
 study: ring
@@ -88,7 +85,7 @@ def test_a_summary_has_the_laws_in_the_order_of_the_config(laws):
 
 
 def test_another_number_of_one_law_remakes_its_points_only(laws):
-    study = Study(laws.parent.parent, FOUR_LAWS.replace("sigma: 0.01", "sigma: 0.02"))
+    study = Study(laws.parent.parent, FOUR_LAWS.replace('"sigma": 0.01', '"sigma": 0.02'))
     planned = study.ok("-n", "points")
     assert planned.count("simulate drop law") == 4
     assert "simulate stribeck law" not in planned

@@ -28,6 +28,7 @@ def results(finished):
 
 
 def test_every_point_is_there(results):
+    """And no other: what a config leaves out is not taken from config/paper.yaml."""
     found = sorted(str(path.relative_to(results / "points")) for path in (results / "points").rglob("*.nc"))
     assert found == sorted(
         f"{law}/{initial}/a{a}.nc"

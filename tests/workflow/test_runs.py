@@ -15,10 +15,6 @@ def jobs(output):
     return {rule: int(count) for rule, count in (line.split() for line in table[1].splitlines())} if table else {}
 
 
-def test_nothing_to_do(finished):
-    assert "Nothing to be done" in finished.ok("-n")
-
-
 def test_nothing_to_do_with_the_snakefile_by_another_path(finished):
     """As the commands of messages name it: relative to the current folder."""
     snakefile = str(finished.repository / "workflow/Snakefile")
@@ -154,8 +150,3 @@ def test_a_wider_grid_is_searched_where_it_is_new(copy):
     assert before < after
     assert len(after) == values + 1
     assert len(list(folder.iterdir())) == 1
-
-
-def test_the_default_config_is_not_merged_into_another(study):
-    """Only the given file counts: no value of config/paper.yaml may leak into a study that leaves a key out."""
-    assert jobs(study.ok("-n"))["simulate"] == 16

@@ -118,8 +118,7 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
 )
 def test_code_remakes_what_depends_on_it(studied, name, roots):
     """The roots run again; nothing does that does not need them."""
-    path = studied.repository / PACKAGE / name
-    with Edit(path, "\n/* more */\n" if path.suffix in (".css", ".jinja") else CODE):
+    with Edit(studied.repository / PACKAGE / name, CODE):
         found = jobs(studied.ok("-n"))
     assert set(roots) <= set(found)
     assert found == planned(studied, *roots)
