@@ -168,6 +168,7 @@ def test_summaries(results):
 #: Of each job a file that it makes.
 BEGUN = {
     "lyapunov": "summary/lyapunov.nc",
+    "agreement": "summary/agreement.txt",
     "attractors": "summary/refined.nc",
     "attractors/nonlinear": "refined/nonlinear.nc",
     "claims": "summary/claims.json",

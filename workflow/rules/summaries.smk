@@ -1,4 +1,5 @@
 # Summaries of points, and of models alone: a netCDF file a question, by the module of its name in burridge_knopoff.summaries.
+from burridge_knopoff.study.stages import TEXTS
 
 # What a summary is of; what else it reads; keys of the config that it uses; texts beside it, {suffix: result}.
 SUMMARIES = {
@@ -39,11 +40,10 @@ SUMMARY_PARAMS = {
 rule summary:
     input:
         expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
-        multiext(f"{SUMMARY}/agreement", ".csv", ".txt"),
         [
-            f"{SUMMARY}/{stage}.txt"
-            for stage in ("attractors", "basins", "edges", "proof")
-            if stage in STUDY.stages
+            f"{SUMMARY}/{name}.{suffix}"
+            for name in MADE
+            for suffix in TEXTS.get(name, ())
         ],
         CLAIMS_MADE,
 

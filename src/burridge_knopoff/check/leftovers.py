@@ -8,7 +8,7 @@ from pathlib import Path
 
 from burridge_knopoff.figures.description import figure_descriptions, study_figures
 from burridge_knopoff.study.paths import POINT
-from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES
+from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES, TEXTS
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 #: What stands in the names of files; of any other name no file is ever held for left over.
@@ -21,28 +21,21 @@ _WILDCARDS = {
     "blocks": r"[1-9]\d*",
 }
 
-#: What the files of a folder end with, if it is not .nc.
-_SUFFIXES = {"figures": "pdf|png", "summary": "nc|txt|json|csv|md"}
-
-#: What a job makes by a name, or in a folder, if it is not one .nc.
-_MADE = {"figures": ("pdf", "png"), "report": ("html",), "summary/claims": ("json", "csv", "md")}
-
 #: The stage whose job makes a file, if it is not that of the file's name.
 _STAGE_OF = {name: stage for stage, names in SUMMARIES.items() for name in names}
 
-#: The forms of a file below the results and of its log, both without suffix, and all wildcards that a study has there:
-#: one without any for a file that it has, none for a file that it has not.
-Named = tuple[str, str, list[dict[str, str]]]
+#: The forms of the files below the results that a job makes and, without suffix, of its log; and all wildcards that a
+#: study has there: one without any for files that it has, none for files that it has not.
+Named = tuple[list[str], str, list[dict[str, str]]]
 
 
 def leftovers(results: Path, study: Study) -> list[Path]:
     """Return the results, logs and benchmarks of points, stages and figures that a study does not have."""
     patterns: list[str] = []
     known: set[str] = set()
-    for file, log, named in (*run_files(study), *_other_files(study)):
-        suffix = _SUFFIXES.get(file.partition("/")[0], "nc")
-        for form, ends in ((file, suffix), (f"logs/{log}", "log"), (f"benchmarks/{log}", "tsv")):
-            patterns.append(rf"{form.format(**_WILDCARDS)}\.(?:{ends})")
+    for files, log, named in (*run_files(study), *_other_files(study)):
+        for form in (*files, f"logs/{log}.log", f"benchmarks/{log}.tsv"):
+            patterns.append(form.replace(".", r"\.").format(**_WILDCARDS))
             known.update(form.format(**wildcards) for wildcards in named)
     pattern, whole = re.compile("|".join(patterns)), results.resolve()
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
@@ -50,7 +43,7 @@ def leftovers(results: Path, study: Study) -> list[Path]:
         path
         for path, name in names.items()
         if pattern.fullmatch(name)
-        and name.rpartition(".")[0] not in known
+        and name not in known
         # What a link leads to is not the study's own.
         and path.resolve() == whole / name
         and path.is_file()
@@ -62,21 +55,21 @@ def unmade(results: Path, study: Study) -> dict[Path, Path]:
 
     What has no log was not asked for yet, or waits for what is missing itself.
     """
-    made = {}
-    for file, log, named in _other_files(study):
-        suffixes = _MADE.get(file) or _MADE.get(file.partition("/")[0], ("nc",))
-        for wildcards in named:
-            place = results / f"logs/{log}.log".format(**wildcards)
-            made.update({results / f"{file}.{suffix}".format(**wildcards): place for suffix in suffixes})
+    made = {
+        results / file.format(**wildcards): results / f"logs/{log}.log".format(**wildcards)
+        for files, log, named in _other_files(study)
+        for wildcards in named
+        for file in files
+    }
     return {path: log for path, log in made.items() if log.exists() and not path.exists()}
 
 
 def run_files(study: Study) -> list[Named]:
     """Return the point files of all runs: the wildcards of each are the arguments of `Study.command`."""
-    place = POINT.removesuffix(".nc")
+    log = POINT.removesuffix(".nc")
     return [
-        (f"points/{place}", f"simulate/{place}", all_points(study)),
-        (f"solvers/{{solver}}/{place}", f"simulate_solver/{{solver}}/{place}", solver_points(study)),
+        ([f"points/{POINT}"], f"simulate/{log}", all_points(study)),
+        ([f"solvers/{{solver}}/{POINT}"], f"simulate_solver/{{solver}}/{log}", solver_points(study)),
     ]
 
 
@@ -84,24 +77,27 @@ def _other_files(study: Study) -> Iterator[Named]:
     maps = [{"law": law, "a": a} for law, a in study.basin_maps]
     tiles = [{**one, "tile": str(tile)} for one in maps for tile in range(study.config["basins"]["tiles"])]
     for form, known in (("basins/{law}/a{a}/pairs", maps), ("basins/{law}/a{a}/tile{tile}", tiles)):
-        yield form, form, known
+        yield [f"{form}.nc"], form, known
     for folder in ("attractors", "refined", "edges", "phases"):
         laws = study.laws if folder in study.stage_summaries else ()
-        yield f"{folder}/{{law}}", f"{_STAGE_OF.get(folder, folder)}/{{law}}", [{"law": law} for law in laws]
+        yield [f"{folder}/{{law}}.nc"], f"{_STAGE_OF.get(folder, folder)}/{{law}}", [{"law": law} for law in laws]
     numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
-    yield "chains/blocks{blocks}", "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
+    yield ["chains/blocks{blocks}.nc"], "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
     absent = study.absent_summaries
     # Those that every study has are known by the figures of them.
     shown = {name for figure in figure_descriptions() if not figure.of_runs for name in figure.inputs}
     for name in sorted(OPTIONAL_SUMMARIES | shown):
-        yield f"summary/{name}", _STAGE_OF.get(name, name), [{}] if name not in absent else []
-    yield "summary/claims", "claims", [{}] if "claims" in study.stages else []
+        files = [f"summary/{name}.{suffix}" for suffix in ("nc", *TEXTS.get(name, ()))]
+        yield files, _STAGE_OF.get(name, name), [{}] if name not in absent else []
+    files = [f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")]
+    yield files, "claims", [{}] if "claims" in study.stages else []
     # A picture of a single run is named for its state.
     drawn = {figure.file for figure in study_figures(study, study.chain_summaries)}
     for figure in figure_descriptions():
         states = study.initial if figure.file in drawn else ()
-        yield f"figures/{figure.file}", f"figure_{figure.file}", [{"initial": initial} for initial in states]
-    yield "report", "report", [{}]
+        files = [f"figures/{figure.file}.{suffix}" for suffix in ("pdf", "png")]
+        yield files, f"figure_{figure.file}", [{"initial": initial} for initial in states]
+    yield ["report.html"], "report", [{}]
 
 
 def delete(results: Path, paths: list[Path]) -> None:

@@ -131,8 +131,8 @@ def check_study(results: str | Path) -> Check:
 def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
     """Return {point file: (command, log)} of all runs of a study."""
     return {
-        results / f"{file}.nc".format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
-        for file, log, runs in run_files(study)
+        results / file.format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
+        for (file,), log, runs in run_files(study)
         for run in runs
     }
 

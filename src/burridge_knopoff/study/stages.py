@@ -18,5 +18,8 @@ SUMMARIES = {"attractors": ("attractors", "refined"), "claims": ()}
 #: Summaries of longer chains, which have a target of their own.
 CHAIN_SUMMARIES = ("chains", "two_blocks")
 
+#: What a summary has beside its netCDF file, by suffix.
+TEXTS = {"agreement": ("csv", "txt"), **dict.fromkeys(("attractors", "basins", "edges", "proof"), ("txt",))}
+
 #: All summaries that not every study has.
 OPTIONAL_SUMMARIES = {name for stage in OPTIONAL for name in SUMMARIES.get(stage, (stage,))} | {*CHAIN_SUMMARIES}
