@@ -8,7 +8,7 @@ import pytest
 import xarray
 
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.report.page import NEEDED, render, write_report
+from burridge_knopoff.report.page import render
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 
@@ -116,11 +116,3 @@ def test_the_html_is_sound(page):
 
 def test_the_same_inputs_give_the_same_page(poor, html):
     assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"]) == html
-
-
-def test_a_missing_summary_stops_before_anything_is_written(poor, tmp_path):
-    for name in NEEDED:
-        summaries = {key: path for key, path in poor.sources.summaries.items() if key != name}
-        with pytest.raises(ValueError, match=f"{name}.nc: not among the summaries"):
-            write_report(poor.study, replace(poor.sources, summaries=summaries), (), tmp_path / "report.html")
-    assert list(tmp_path.iterdir()) == []

@@ -12,7 +12,7 @@ from burridge_knopoff.claims.ledger import ledger
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.files import write_text
 
-summaries = {Path(path).stem: open_summary(path).load() for path in snakemake.input}
+summaries = {Path(path).stem: open_summary(path) for path in snakemake.input}
 params = snakemake.params
 evidence = Evidence(summaries, params.config)
 content = ledger(params.study, claims_of(params.claims), evidence, params.figures)

@@ -34,9 +34,6 @@ SCRIPTS = ("data", "theme", "charts", "runs", "curves", "orbits", "maps", "agree
 #: Figures that stand in a section of their own; all others come together.
 PLACED = ("mean_distance", "bifurcation", "lyapunov", "orbits", "basins", "basin_fractions", "agreement", "chains")
 
-#: Summaries without which there is no report; all others may be missing.
-NEEDED = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits")
-
 #: The result of an optional stage, which may be older than the study.
 OPTIONAL = "chains"
 
@@ -60,16 +57,13 @@ def write_report(study: Study, sources: Sources, arguments: Sequence[str], path:
     """Write the report of a study as one HTML file.
 
     arguments : that name the study to `snakemake` in the commands of the report, none for the default one
-    Raises ValueError, one line that names the file, if a source is missing or cannot be read.
+    Raises ValueError, one line that names the file, if a source cannot be read.
     """
     write_text(path, render(study, sources, arguments))
 
 
 def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:
     """Return the report as HTML; see `write_report`."""
-    for name in NEEDED:
-        if name not in sources.summaries:
-            raise ValueError(f"{name}.nc: not among the summaries of the report; it needs {', '.join(NEEDED)}")
     verdicts = read_verdicts(sources.claims)
     summaries, left_out = {}, ""
     for name, path in sources.summaries.items():

@@ -38,7 +38,6 @@ def write_picture(result: Result, path: str | Path) -> str:
 
     Raises ValueError, one line, where no figure shows such a file, or one of those that it takes besides is not there.
     """
-    check_format(path)
     if result.is_point:
         write_figure(draw_point(result.data), path)
         return f"{path}: J, section points and velocities"
