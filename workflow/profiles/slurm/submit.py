@@ -68,9 +68,8 @@ def main():
 
 
 def read_options(script):
-    """Return {option: values} of the Snakemake that a job script calls; what is no option stands under ""."""
-    values = []
-    options = {"": values}
+    """Return {option: values} of the Snakemake that a job script calls."""
+    options, values = {}, []
     for word in shlex.split(script, comments=True):
         if word.startswith("--"):
             options[word] = values = []
