@@ -106,9 +106,9 @@ def test_windows_of_no_attractors_keep_their_axis():
 def test_runs_without_exponents_say_so():
     names = tuple(GRID)
     exponents = (*names, "exponent"), np.full((2, 1, 2, 3), np.nan)
-    kinds = names, np.full((2, 1, 2), -1)
-    run = xr.Dataset({"lyapunov_exponent": exponents, "lyapunov_error": exponents, "kind": kinds}, GRID)
-    assert words(lyapunov.draw(run)) == [["no exponents were computed"]] * 2
+    run = xr.Dataset({"lyapunov_exponent": exponents, "lyapunov_error": exponents}, GRID)
+    kinds = xr.Dataset({"kind": (names, np.full((2, 1, 2), -1))}, GRID)
+    assert words(lyapunov.draw(run, kinds)) == [["no exponents were computed"]] * 2
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.colors import to_hex
 
+from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.lyapunov import STRIP, draw
+from burridge_knopoff.stability.motion import MotionKind
 
 
 def frame(exponent, error=0.005):
@@ -17,11 +20,11 @@ def frame(exponent, error=0.005):
         {
             "lyapunov_exponent": ((*labels, "exponent"), exponent[np.newaxis, np.newaxis]),
             "lyapunov_error": ((*labels, "exponent"), np.full((1, 1, *exponent.shape), error)),
-            "kind": (tuple(labels), np.ones((1, 1, len(exponent)), dtype=int)),
         },
         labels,
     )
-    (panel,) = draw(summary).axes
+    kinds = xr.Dataset({"kind": (tuple(labels), np.ones((1, 1, len(exponent)), dtype=int))}, labels)
+    (panel,) = draw(summary, kinds).axes
     low, high = panel.get_ylim()
     return low, low + STRIP * (high - low)
 
@@ -48,3 +51,15 @@ def test_exponents_of_noise_are_seen_as_next_to_zero(exponents):
     assert low == -0.01
     assert strip > 0.005
     assert frame(np.full((5, exponents), np.nan))[0] == -0.01
+
+
+def test_the_strip_shows_the_kinds_that_verdicts_are_on():
+    """Where a run leaves its kind open they are those of its attractor."""
+    labels = {"law": ["linearized"], "initial": ["plus"], "a": [0.1, 0.2]}
+    exponents = (*labels, "exponent"), np.zeros((1, 1, 2, 3))
+    kind = tuple(labels), np.full((1, 1, 2), MotionKind.QUASIPERIODIC)
+    runs = xr.Dataset({"lyapunov_exponent": exponents, "lyapunov_error": exponents, "kind": kind}, labels)
+    told = np.array([[[MotionKind.PERIODIC, MotionKind.CHAOTIC]]])
+    (panel,) = draw(runs, xr.Dataset({"kind": (tuple(labels), told)}, labels)).axes
+    strip = [to_hex(patch.get_facecolor()) for patch in panel.patches[:2]]
+    assert strip == [to_hex(KIND_COLORS[kind]) for kind in told.ravel().tolist()]

@@ -23,11 +23,12 @@ from burridge_knopoff.stability.motion import MotionKind
 
 TITLE = "Lyapunov exponents"
 CATEGORY = "Synchronization"
-INPUTS = ("lyapunov",)
+INPUTS = ("lyapunov", "agreement")
 CAPTION = """\
 The largest Lyapunov exponents against a, with bars of three times their error, which is that of the batches and of
 growth by a power of time, for each law and initial state. What lies below the frame, among it −∞, is not shown. The
-strips at the top show the kind of motion that follows from the exponents and the section points; white is undetermined.
+strips at the top show the kind of motion: by the exponents and the section points, or, where these leave it open, that
+of the attractor that the run has come to; white is undetermined.
 """
 
 # The least that the frame reaches down to, so that exponents near 0 are seen as such.
@@ -38,7 +39,7 @@ CURVES, STRIP = 0.9, 0.93
 
 
 @styled
-def draw(lyapunov: xarray.Dataset) -> Figure:
+def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
     """Draw the largest exponents against a with three times their error, the kind of motion as a strip above them.
 
     A panel for each law and initial state.
@@ -71,16 +72,17 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
         if run["lyapunov_exponent"].isnull().all():
             say(panel, "no exponents were computed")
         panel.set_ylim(low, low + (high - low) / CURVES)
-        for left, right, kind in zip(edges[:-1], edges[1:], run["kind"].values, strict=True):
+        kinds = agreement["kind"].sel(law=run["law"], initial=run["initial"]).values
+        for left, right, kind in zip(edges[:-1], edges[1:], kinds, strict=True):
             panel.axvspan(left, right, STRIP, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)
         panel.axvspan(edges[0], edges[-1], STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
         panel.xaxis.set_minor_locator(NullLocator())
         show_all(panel, a)
-    kinds = [
+    patches = [
         Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words)
-        for kind in np.unique(lyapunov["kind"].values).tolist()
+        for kind in np.unique(agreement["kind"].values).tolist()
     ]
-    legend_below(figure, [*legend_entries(panels)[0], *kinds])
+    legend_below(figure, [*legend_entries(panels)[0], *patches])
     label_panels(panels, titles)
     return figure
 

@@ -50,7 +50,8 @@ def embedded_runs(
 ) -> dict[str, Any]:
     """Return what the page knows of every run, values exact, arrays over (law, initial, a).
 
-    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a).
+    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a); its `kind` is that of a run
+    or, where this leaves it open, of the attractor that the run has come to.
 
     `first` are the indices of the run that is shown at first, the one of the figures of single runs.
     `simulate` holds for each law and initial state the command in two parts, with `--a` and its value between them.
@@ -68,7 +69,7 @@ def embedded_runs(
         "mean_distance": _nested(mean_distance["mean_distance"].values),
         "mean_distance_error": _nested(mean_distance["mean_distance_error"].values),
         "status": mean_distance["status"].values.tolist(),
-        "kind": lyapunov["kind"].values.tolist(),
+        "kind": agreement["kind"].values.tolist(),
         "period": lyapunov["section_period"].values.tolist(),
         "exponents": _nested(exponent),
         "exponent_errors": _nested(error),
@@ -93,14 +94,14 @@ def _halves(commands: Commands, law: str, initial: str) -> list[str]:
     return [before, after]
 
 
-def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, lyapunov: xarray.Dataset) -> list[dict[str, str]]:
+def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: xarray.Dataset) -> list[dict[str, str]]:
     """Return the runs that did not complete, then those whose kind of motion is undetermined."""
     failed, undetermined = [], []
     for i, law in enumerate(commands.study.laws):
         for j, initial in enumerate(commands.study.initial):
             for k, a in enumerate(commands.study.grid):
                 status = int(mean_distance["status"].values[i, j, k])
-                if status == Status.COMPLETED and int(lyapunov["kind"].values[i, j, k]) != MotionKind.UNDETERMINED:
+                if status == Status.COMPLETED and int(agreement["kind"].values[i, j, k]) != MotionKind.UNDETERMINED:
                     continue
                 run = {
                     "law": law,
