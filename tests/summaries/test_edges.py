@@ -20,8 +20,8 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
-from burridge_knopoff.summaries.edges import VARIABLES, _rounded, digest, merge, one_law
-from burridge_knopoff.summaries.followed_orbits import _closed
+from burridge_knopoff.summaries.edges import VARIABLES, _branches_of_stretches, _rounded, digest, merge, one_law
+from burridge_knopoff.summaries.followed_orbits import FollowedOrbits, _closed
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -273,3 +273,10 @@ def test_edges_in_words(found):
         "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; chaos lasts for 1240 to inf in the mean",
         "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4, to another periodic motion",
     ]
+
+
+def test_a_stretch_has_the_branch_of_most_attractors_on_it():
+    """Not of the one that it was followed from, here the first."""
+    places = {(0, 0): 0, (1, 0): 0, (2, 1): 0, (3, 0): 1}
+    orbits = FollowedOrbits([None, None], [(0, 0), (3, 0)], places)
+    assert _branches_of_stretches(orbits, np.array([[10, -1], [3, -1], [4, 3], [7, -1]])) == [3, 7]

@@ -23,7 +23,8 @@ CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
 ⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state. Shaded where one law disagrees
-with the first one for one of the states, in ⟨J⟩ or in the kind of motion.
+with the first one for one of the states, in ⟨J⟩ or in the kind of motion; where the symbols coincide there, that state
+leads to another one of the same motions.
 """
 
 

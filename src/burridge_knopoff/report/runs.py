@@ -50,8 +50,8 @@ def embedded_runs(
 ) -> dict[str, Any]:
     """Return what the page knows of every run, values exact, arrays over (law, initial, a).
 
-    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a); its `kind` is that of a run
-    or, where this leaves it open, of the attractor that the run has come to.
+    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a). Its `kind` is that of a
+    run or, where this leaves it open, of the attractor that the run has come to.
 
     `first` are the indices of the run that is shown at first, the one of the figures of single runs.
     `simulate` holds for each law and initial state the command in two parts, with `--a` and its value between them.

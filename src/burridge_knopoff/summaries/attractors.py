@@ -42,7 +42,12 @@ VARIABLES = {
     "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a of the grid", NOTHING),
     "downward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next smaller a of the grid", NOTHING),
     "basin_count": _V(_SLOT, "i4", "sampled initial states that reach the attractor"),
-    "basin_fraction": _V(_SLOT, "f8", "fraction of the sampled initial states that reach the attractor"),
+    "basin_fraction": _V(
+        _SLOT,
+        "f8",
+        "fraction of the sampled initial states that reach the attractor",
+        {"comment": "where chaos dies, that of what it dies to grows with the time for which states are followed"},
+    ),
     "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
     "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
     "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit"),

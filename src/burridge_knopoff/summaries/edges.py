@@ -6,6 +6,7 @@ An attractor that is a closed orbit is followed in a to where it loses its stabi
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from burridge_knopoff.orbits.stretch import Stretch
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
 from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries
-from burridge_knopoff.summaries.followed_orbits import followed
+from burridge_knopoff.summaries.followed_orbits import FollowedOrbits, followed
 
 PARTS = ("real", "imaginary")
 _EDGE, _ORBIT = ("edge",), ("orbit",)
@@ -50,7 +51,7 @@ VARIABLES = {
     "lifetime_high": _V(_EDGE, "f8", "upper end of that interval; of the shorter life where both are chaotic"),
     "orbit_law": _V(_ORBIT, "i1", "friction law, by its number in the attribute laws"),
     "orbit_stretch": _V(_ORBIT, "i4", "number of the stretch of orbits that were followed together, in this order"),
-    "orbit_branch": _V(_ORBIT, "i2", "branch of the attractors that they began from"),
+    "orbit_branch": _V(_ORBIT, "i2", "branch of most of the attractors that lie on them"),
     "orbit_a": _V(_ORBIT, "f8", "friction parameter a of the periodic orbit"),
     "orbit_stable": _V(
         _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", ANSWER
@@ -84,8 +85,9 @@ def one_law(
     orbits = followed(model, one, changes, processes, folder)
     for entry in sorted(entries(one, changes, orbits), key=lambda entry: (entry.a, entry.change)):
         _append_edge(values, entry, blocks)
-    for index, (place, stretch_) in enumerate(zip(orbits.places, orbits.stretches, strict=True)):
-        _append_orbits(values, index, int(one["branch"].values[place]), stretch_)
+    branches = _branches_of_stretches(orbits, one["branch"].values)
+    for index, (branch, stretch_) in enumerate(zip(branches, orbits.stretches, strict=True)):
+        _append_orbits(values, index, branch, stretch_)
     rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
@@ -191,6 +193,17 @@ def _append_edge(values: dict[str, list[Any]], entry: Entry, blocks: int) -> Non
     for name, point in (("multiplier", edge.at if edge else None), ("multiplier_beyond", after)):
         largest = complex(point.multipliers.whole[0]) if point else complex(np.nan, np.nan)
         values[name] += [largest.real, abs(largest.imag)]
+
+
+def _branches_of_stretches(orbits: FollowedOrbits, branch: np.ndarray) -> list[int]:
+    """Return the branch of most of the attractors on each stretch: that of the one it began from may be another.
+
+    branch : of the attractors, shape (value, attractor)
+    """
+    numbers: list[Counter[int]] = [Counter() for _ in orbits.stretches]
+    for place, number in orbits.of_place.items():
+        numbers[number][int(branch[place])] += 1
+    return [counted.most_common(1)[0][0] for counted in numbers]
 
 
 def _append_orbits(values: dict[str, list[Any]], number: int, branch: int, one: Stretch) -> None:
