@@ -72,6 +72,7 @@ def _fail(found) -> None:
         ("lyapunov", "law", {**lost, "lyapunov_exponent": np.nan, "lyapunov_error": np.nan, "kind": -1}),
         ("agreement", "other_law", dict.fromkeys(("difference", "difference_error", "section_distance"), np.nan)),
         ("agreement", "other_law", {"agrees": -1}),
+        ("agreement", "law", {"kind": -1}),
     ):
         for name, value in values.items():
             found[summary][name][{law: 0, "initial": 0, "a": 1}] = value
