@@ -46,9 +46,14 @@ def under_conventions(
                 others.append(f"{name}: {found} ({numbers})")
     if unknown:
         others.append(f"not judged under {' and '.join(unknown)}")
+    changes = "; ".join([*exceptions, *others])
+    return Verdict(by_readings(verdicts, own), reason, measured, changes, dict(sorted(verdicts.items())), own)
+
+
+def by_readings(verdicts: Mapping[str, str], own: str) -> str:
+    """Return the verdict of a claim: its own, but where it holds under one reading and fails under another."""
     fails = [verdict == FAILS for verdict in verdicts.values()]
-    verdict = CONVENTION if any(fails) and not all(fails) else own
-    return Verdict(verdict, reason, measured, "; ".join([*exceptions, *others]), dict(sorted(verdicts.items())), own)
+    return CONVENTION if any(fails) and not all(fails) else own
 
 
 def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:

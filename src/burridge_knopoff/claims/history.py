@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, judge_shares, under_conventions
 from burridge_knopoff.claims.endings import Criteria, Endings, percent
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
-    CONVENTION,
     FAILS,
     HOLDS,
     LOOSELY,
@@ -233,9 +232,8 @@ def phases_decide(
         f"(A = {judged.amplitudes}), synchronize from phases within {close:g}° ({together}) and end in antiphase from "
         f"opposite ones ({against}), at {judged.shares} of the values of a with {a}."
     )
-    fails = [verdict == FAILS for verdict in readings.values()]
-    verdict = CONVENTION if any(fails) and not all(fails) else judged.verdict
-    return Verdict(verdict, reason, measured, "; ".join(changes), readings, judged.verdict)
+    own = judged.verdict
+    return Verdict(by_readings(readings, own), reason, measured, "; ".join(changes), readings, own)
 
 
 def _inner_block(share: float) -> str:
