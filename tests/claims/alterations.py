@@ -306,6 +306,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("half_frequency", FAILS, everywhere("stick_slip", "stop_rate", 0.34)),
     ("half_frequency", LOOSELY, alter("stick_slip", "velocity_frequency", 0.22, block=1)),
     ("half_frequency", CONVENTION, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("half_frequency", HOLDS, alter("stick_slip", "velocity_frequency_error", 0.02, block=2)),
     ("half_frequency", NOT_TESTABLE, alter("stick_slip", "velocity_frequency", np.nan, block=1)),
     ("half_frequency", NOT_TESTABLE, alter("stick_slip", "velocity_frequency", 0.0, block=2)),
     ("plus_under_one_convention", FAILS, everywhere("mean_distance", "mean_distance", 0.2)),
