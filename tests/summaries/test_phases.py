@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import Chain, Instant, Model, law_of
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability.basins import KnownAttractors
 from burridge_knopoff.stability.phases import common_phases, inner_phases, oscillating_states
@@ -128,3 +129,16 @@ def test_inner_blocks_that_oscillate_break_the_rule_of_close_phases(share, least
         end = runner.after(Instant(x, speed, np.zeros(3, dtype=bool)), 3000.0)
         together += abs(end.position[0] - end.position[2]) < 1e-3
     assert least <= together / count <= most
+
+
+def test_the_correlation_is_that_of_the_velocities_from_the_state_on():
+    """Against NumPy, of a state that has yet to settle, twenty looks in a unit of time."""
+    model = MODELS[0]
+    start = model.begin(PAPER_STATES["plus"])
+    runner, velocity = Runner(model), [start.velocity]
+    runner.begin(start)
+    for look in range(1, 20_001):
+        runner.run(0.05 * look)
+        velocity.append(runner.instant().velocity)
+    one, _, other = np.transpose(velocity)
+    assert phases.velocity_correlation(model, start) == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)
