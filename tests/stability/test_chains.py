@@ -345,3 +345,12 @@ def test_a_ring_synchronizes_by_its_transverse_exponent():
     fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial(4)[:4]]
     found = [one.transverse_exponent for one in fates if one.outcome == Outcome.SYNCHRONIZED]
     assert found == pytest.approx([exponent] * 2, abs=3.0 * error)
+
+
+def test_a_perturbation_is_renewed_after_ten_time_units_at_most(monkeypatch):
+    """And so that all batches have as many pieces of one length: 173 time units have five times four."""
+    times, after = [], Runner.after
+    monkeypatch.setattr(Runner, "after", lambda runner, at, time: times.append(time) or after(runner, at, time))
+    chain = model(4, 0.05)
+    transverse_exponent(chain, chain.begin(SAMPLE.initial(4)[0]), 95.0, 173.0)
+    assert times == [9.5] * 10 + [173.0 / 20] * 20
