@@ -178,6 +178,15 @@ CASES: list[tuple[str, str, Alteration]] = [
         alter("phases", "velocity_correlation", 1.0, phase_difference=180.0, inner_share=0.3),
     ),
     ("phases_decide", HOLDS, alter("phases", "slipping_amplitude", 0.001, inner_share=1.0)),
+    # A motion that cannot be judged does not hide the next one.
+    (
+        "phases_decide",
+        CONVENTION,
+        both(
+            alter("phases", "slipping_amplitude", 0.001, inner_share=0.3),
+            alter("phases", "branch", 2, phase_difference=30.0, inner_share=1.0),
+        ),
+    ),
     ("phases_decide", CONVENTION, alter("phases", "branch", 2, phase_difference=30.0, inner_share=0.0)),
     ("phases_decide", NOT_TESTABLE, lambda world: world.update(phases=world["phases"].sel(inner_share=[0.3, 1.0]))),
     ("phases_decide", NOT_TESTABLE, alter("phases", "slipping_amplitude", 0.001)),

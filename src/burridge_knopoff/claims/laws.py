@@ -208,7 +208,7 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         Measured("steps of the map in a unit of time, most", float(own.max())),
         Measured("times fewer than the paper's steps", ratio),
     ]
-    # What else solves the linearized equations, to an error that is far below those of the paper.
+    # What else solves the linearized equations: by steps as long as each is accurate with, not the paper's.
     taken = {
         name: float(np.nanmax(rate.sel(solver=name)))
         for name in ("series", "rk4")
