@@ -9,6 +9,9 @@ import numpy as np
 
 _T = TypeVar("_T")
 
+#: Numbers that a run or a job keeps of one kind at most: 800 MB.
+MOST_NUMBERS = 1e8
+
 
 def scalar(value: Any) -> Any:
     """Return an array without dimensions, of any kind, as what is in it, anything else as it is."""

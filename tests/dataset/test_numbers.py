@@ -18,7 +18,7 @@ from burridge_knopoff.summaries.branch_changes import Change
         (Answer, {-1: "undetermined", 0: "no", 1: "yes"}),
         (
             Status,
-            {-2: "halted", -1: "running", 0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"},
+            {-2: "halted", -1: "full", 0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"},
         ),
         (
             MotionKind,

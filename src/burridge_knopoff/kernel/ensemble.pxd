@@ -31,7 +31,7 @@ cdef class Ensemble:
     cdef long long[::1] event_count
 
     cdef void _refill(self) noexcept nogil
-    cdef void _run(self) noexcept nogil
+    cdef int _run(self) except -1 nogil
     cdef void _move(self) noexcept nogil
     cdef void _finish(self, mask where, int status) noexcept nogil
     cdef void _visit(self, Py_ssize_t cloud, mask where) noexcept nogil

@@ -9,7 +9,14 @@ from collections.abc import Sequence
 import cython
 import numpy as np
 from cython.cimports.burridge_knopoff.kernel.clouds import Clouds
-from cython.cimports.burridge_knopoff.kernel.events import ABSURD_SPEED, ACCUMULATING_EVENTS, COMPLETED, DIVERGED
+from cython.cimports.burridge_knopoff.kernel.events import (
+    ABSURD_SPEED,
+    ACCUMULATING_EVENTS,
+    COMPLETED,
+    DIVERGED,
+    WORK_UNTIL_CHECK,
+    check_signals,
+)
 from cython.cimports.burridge_knopoff.kernel.friction_series import FrictionSeries
 from cython.cimports.burridge_knopoff.kernel.lane_events import LaneEvents
 from cython.cimports.burridge_knopoff.kernel.lane_series import LaneSeries
@@ -184,17 +191,23 @@ class Ensemble:
         with cython.nogil:
             self._run()
 
-    def _run(self) -> None:
+    def _run(self) -> cython.int:
         """Go on until every trajectory has ended."""
+        work: cython.longlong = 0
         self._refill()
         while bits(self.active):
             self.rounds += 1
+            work += self.blocks * LANES
+            if work >= WORK_UNTIL_CHECK:
+                check_signals()
+                work = 0
             if bits(self.fresh):
                 self.lanes.settle(self.fresh)
             self._finish(self.active & self.lanes.accumulating, ACCUMULATING_EVENTS)
             self.series.expand(self.lanes)
             self._move()
             self._refill()
+        return 0
 
     def _move(self) -> None:
         """Move every lane to its next event, or as far as its series goes, and look at the returns among the events."""
@@ -228,13 +241,14 @@ class Ensemble:
         self.lanes.clock_rest.at[0] = (left - total) + (self.lanes.clock_rest.at[0] + length)
         self.lanes.clock.at[0] = total
         event = self.active & at_most(zero, self.events.block.at[0])
+        if not bits(event):
+            return
+        self.events.begin_events(self.lanes, self.series)
         for i in range(self.blocks):
-            ended = event & equal(self.events.block.at[0], splat(cython.cast(cython.double, i)))
+            ended = self.events.due(self.lanes, self.series, i, event)
             if bits(ended):
                 self.lanes.change(i, ended)
         self.lanes.settle(event)
-        if not bits(event):
-            return
         for cloud in range(self.section.shape[0]):
             i = self.section[cloud]
             self._visit(

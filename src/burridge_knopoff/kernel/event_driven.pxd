@@ -36,7 +36,7 @@ cdef class EventDriven:
     cdef double since_event
 
     cdef int restart(self) except -1
-    cdef int _run(self) noexcept nogil
-    cdef void _follow(self, double length, bint due) noexcept nogil
+    cdef int _run(self) except? -9 nogil
+    cdef int _follow(self, double length, bint due) except -1 nogil
     cdef double _fastest(self) noexcept nogil
     cdef void _advance(self, double t) noexcept nogil

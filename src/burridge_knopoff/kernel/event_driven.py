@@ -12,11 +12,12 @@ from cython.cimports.burridge_knopoff.kernel.events import (
     ACCUMULATING_EVENTS,
     COMPLETED,
     DIVERGED,
+    FULL,
     HALTED,
-    RUNNING,
     STEP_LIMIT,
-    STEPS_PER_CALL,
+    WORK_UNTIL_CHECK,
     EventLog,
+    check_signals,
 )
 from cython.cimports.burridge_knopoff.kernel.exponents import Exponents
 from cython.cimports.burridge_knopoff.kernel.modes import Modes
@@ -101,7 +102,7 @@ class EventDriven:
         return 0
 
     def run(self) -> int:
-        """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended.
+        """Run on, to the end of the observer's window at most; return COMPLETED or why the run has ended.
 
         HALTED means that the block to halt at has just stopped; the next call goes on from there.
         """
@@ -111,6 +112,7 @@ class EventDriven:
         return status
 
     def _run(self) -> cython.int:
+        i: cython.Py_ssize_t
         block: cython.Py_ssize_t
         halting: cython.bint
         due: cython.bint
@@ -118,15 +120,20 @@ class EventDriven:
         reach: cython.double
         remaining: cython.double
         total: cython.double
-        budget: cython.int = STEPS_PER_CALL
+        work: cython.longlong = 0
         if self.steps == 0:
             self.log.settle(self.state, self.clock)
             if self.closed_form:
                 self.modes.start(self.state)
-        while budget > 0:
-            budget -= 1
+        while True:
+            work += self.state.blocks * (1 + self.tangent.vectors)
+            if work >= WORK_UNTIL_CHECK:
+                check_signals()
+                work = 0
             if self.log.accumulating:
                 return ACCUMULATING_EVENTS
+            if self.log.full() or self.observer.crossings.full:
+                return FULL
             if self.steps >= self.step_limit:
                 return STEP_LIMIT
             remaining = (self.end - self.clock) - self.clock_rest
@@ -160,6 +167,10 @@ class EventDriven:
             if block >= 0:
                 halting = self.halting_block >= 0 and self.state.slip[self.halting_block] != 0
                 self.log.change(self.state, block, self.clock)
+                # The first of those that coincide is the one that was found.
+                for i in range(block + 1, self.state.blocks):
+                    if self.search.coincide(self.state, block, i):
+                        self.log.change(self.state, i, self.clock)
                 self.log.settle(self.state, self.clock)
                 self.since_event = 0.0
                 if self.closed_form:
@@ -171,9 +182,8 @@ class EventDriven:
                 return COMPLETED
             if halting and self.state.slip[self.halting_block] == 0:
                 return HALTED
-        return RUNNING
 
-    def _follow(self, length: cython.double, due: cython.bint) -> None:
+    def _follow(self, length: cython.double, due: cython.bint) -> cython.int:
         """Carry the perturbations along a piece, in strides after which they can be kept apart.
 
         The closed form spans several pieces: there they wait for an event or LONGEST_FOLLOW.
@@ -184,7 +194,7 @@ class EventDriven:
         self.tangent.forget_stops()
         if self.exponents.stuck(self.state) == self.state.blocks:
             # However long a slow driver takes, nothing changes.
-            return
+            return 0
         if not self.closed_form:
             parts = self.tangent_series.load(self.state, self.piece, length)
             t = length / parts
@@ -193,7 +203,7 @@ class EventDriven:
                 if k < parts:
                     self.tangent_series.move_on()
                     self.exponents.follow(self.state, self.clock + k * t, False)
-            return
+            return 0
         self.since_tangent += length
         while self.since_tangent >= LONGEST_FOLLOW or (due and self.since_tangent > 0.0):
             t = min(self.since_tangent, LONGEST_FOLLOW)
@@ -201,6 +211,7 @@ class EventDriven:
             self.since_tangent -= t
             if self.since_tangent > 0.0:
                 self.exponents.follow(self.state, self.clock + (length - self.since_tangent), False)
+        return 0
 
     def _fastest(self) -> cython.double:
         """Return the largest speed of a block."""

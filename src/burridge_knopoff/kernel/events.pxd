@@ -5,14 +5,16 @@ from burridge_knopoff.kernel.tangent cimport Tangent
 # The same as `running.status`.
 cpdef enum Status:
     HALTED = -2
-    RUNNING = -1
+    FULL = -1
     COMPLETED = 0
     STEP_LIMIT = 1
     ACCUMULATING_EVENTS = 2
     DIVERGED = 3
 
 cdef double ABSURD_SPEED
-cdef int STEPS_PER_CALL
+cdef int WORK_UNTIL_CHECK
+
+cdef int check_signals() except -1 nogil
 
 cdef class EventLog:
     cdef readonly double states_from
@@ -25,8 +27,10 @@ cdef class EventLog:
     cdef long long unit_count
     cdef readonly long long rate_limit
     cdef readonly bint accumulating
+    cdef int[::1] due
     cdef Tangent tangent
 
     cdef int restart(self) except -1
+    cdef bint full(self) noexcept nogil
     cdef void change(self, State state, Py_ssize_t block, double clock) noexcept nogil
     cdef void settle(self, State state, double clock) noexcept nogil

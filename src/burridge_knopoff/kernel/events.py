@@ -1,14 +1,24 @@
 """Stops and starts: how they are carried out and kept, and when there are so many that they accumulate."""
 
 import cython
+import numpy as np
 from cython.cimports.burridge_knopoff.kernel.record import Record
 from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
+from cython.cimports.cpython.exc import PyErr_CheckSignals
 
-STEPS_PER_CALL = 1_000_000
+# Work between two looks at signals such as Ctrl-C, in blocks that a step moves, or perturbations of them: about 0.05 s.
+WORK_UNTIL_CHECK = 200_000
 
 # A speed that no real motion reaches. The linearized law drives blocks that may slip backward without bound.
 ABSURD_SPEED = 1e9
+
+
+def check_signals() -> cython.int:
+    """Let Python handle the signals that have come; raises KeyboardInterrupt after Ctrl-C."""
+    with cython.gil:
+        PyErr_CheckSignals()
+    return 0
 
 
 class EventLog:
@@ -29,6 +39,7 @@ class EventLog:
     unit_count: cython.longlong
     rate_limit: cython.longlong
     accumulating: cython.bint
+    due: cython.int[::1]
     tangent: Tangent
 
     def __init__(self, blocks: int, states_from: float, keep: bool, rate_limit: int, stops_only: bool) -> None:
@@ -38,6 +49,7 @@ class EventLog:
         self.earlier_events = Record(2)
         self.events = Record(2 + 2 * blocks)
         self.rate_limit = rate_limit
+        self.due = np.zeros(blocks, dtype=np.intc)
         self.tangent = Tangent(blocks, 0)
         self.restart()
 
@@ -56,6 +68,10 @@ class EventLog:
         self.unit_count = 0
         self.accumulating = False
         return 0
+
+    def full(self) -> cython.bint:
+        """Tell whether more events were to be kept than there is room for."""
+        return self.earlier_events.full or self.events.full
 
     def change(self, state: State, block: cython.Py_ssize_t, clock: cython.double) -> None:
         """Let a block stop or start now, and keep the event."""
@@ -89,10 +105,15 @@ class EventLog:
     def settle(self, state: State, clock: cython.double) -> None:
         """Carry out every change that is due at this instant, to the last one, before time moves on."""
         i: cython.Py_ssize_t
-        due: cython.int = 1
-        while due and not self.accumulating:
-            due = 0
+        changing: cython.int = 1
+        while changing and not self.accumulating:
+            # Who changes is decided before anyone does: then no order of the blocks is preferred.
+            changing = 0
             for i in range(state.blocks):
-                if state.pending(i):
+                self.due[i] = state.pending(i)
+                changing |= self.due[i]
+            if not changing:
+                return
+            for i in range(state.blocks):
+                if self.due[i]:
                     self.change(state, i, clock)
-                    due = 1

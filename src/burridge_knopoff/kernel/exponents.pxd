@@ -21,11 +21,11 @@ cdef class Exponents:
     cdef double[:, ::1] growth
     cdef double[::1] duration
 
-    cdef void begin_within(self, State state, double clock, double length) noexcept nogil
-    cdef void follow(self, State state, double clock, bint completed) noexcept nogil
+    cdef int begin_within(self, State state, double clock, double length) except -1 nogil
+    cdef int follow(self, State state, double clock, bint completed) except -1 nogil
     cdef Py_ssize_t stuck(self, State state) noexcept nogil
-    cdef void _seed(self, State state, Py_ssize_t first) noexcept nogil
+    cdef int _seed(self, State state, Py_ssize_t first) except -1 nogil
     cdef double _square(self, Py_ssize_t c) noexcept nogil
-    cdef void _orthonormalise(self, bint kept, bint counted) noexcept nogil
+    cdef int _orthonormalise(self, bint kept, bint counted) except -1 nogil
     cdef void _collect(self, Py_ssize_t c) noexcept nogil
-    cdef void _renew(self, State state, double clock, bint completed) noexcept nogil
+    cdef int _renew(self, State state, double clock, bint completed) except -1 nogil

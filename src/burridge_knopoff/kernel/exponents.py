@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import cython
 import numpy as np
+from cython.cimports.burridge_knopoff.kernel.events import WORK_UNTIL_CHECK, check_signals
 from cython.cimports.burridge_knopoff.kernel.state import State
 from cython.cimports.burridge_knopoff.kernel.tangent import Tangent
 from cython.cimports.libc.math import cos, log, sqrt
@@ -72,18 +73,19 @@ class Exponents:
         self.due = NEVER
         self.most_stuck = self.tangent.blocks
 
-    def begin_within(self, state: State, clock: cython.double, length: cython.double) -> None:
+    def begin_within(self, state: State, clock: cython.double, length: cython.double) -> cython.int:
         """Start the perturbations now if their time comes within a piece of this length."""
         if self.running or clock + length <= self.start_time:
-            return
+            return 0
         self.running = True
         self._seed(state, 0)
         self.due = clock + INTERVAL
         if clock >= self.edge[0]:
             self.batch = 0
             self.batch_start = clock
+        return 0
 
-    def follow(self, state: State, clock: cython.double, completed: cython.bint) -> None:
+    def follow(self, state: State, clock: cython.double, completed: cython.bint) -> cython.int:
         """Orthonormalise the perturbations if it is time to, after all changes of this instant."""
         stuck: cython.Py_ssize_t = self.stuck(state)
         if stuck > self.most_stuck:
@@ -93,6 +95,7 @@ class Exponents:
                 self._orthonormalise(True, self.batch >= 0 and self.batch < self.batches)
         if clock >= self.due or (completed and self.alive > 0):
             self._renew(state, clock, completed)
+        return 0
 
     def stuck(self, state: State) -> cython.Py_ssize_t:
         """Return the number of stuck blocks."""
@@ -102,7 +105,7 @@ class Exponents:
             count += state.slip[i] == 0
         return count
 
-    def _seed(self, state: State, first: cython.Py_ssize_t) -> None:
+    def _seed(self, state: State, first: cython.Py_ssize_t) -> cython.int:
         """Give the vectors from `first` on directions of no special symmetry, as many as the stuck blocks allow."""
         i: cython.Py_ssize_t
         c: cython.Py_ssize_t
@@ -113,6 +116,7 @@ class Exponents:
                 self.tangent.position[c, i] = cos(1.0 + 2.3 * i + 3.7 * c + 1.9 * i * c)
                 self.tangent.velocity[c, i] = cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip[i] != 0)
         self._orthonormalise(False, False)
+        return 0
 
     def _square(self, c: cython.Py_ssize_t) -> cython.double:
         """Return the square of the length of vector c."""
@@ -124,7 +128,7 @@ class Exponents:
             sped += self.tangent.velocity[c, i] * self.tangent.velocity[c, i]
         return moved + sped
 
-    def _orthonormalise(self, kept: cython.bint, counted: cython.bint) -> None:
+    def _orthonormalise(self, kept: cython.bint, counted: cython.bint) -> cython.int:
         """Make the vectors orthonormal (modified Gram-Schmidt).
 
         kept : vectors that were orthonormal before are dropped from the first one on that is lost; else they are seeds
@@ -138,9 +142,14 @@ class Exponents:
         moved: cython.double
         sped: cython.double
         n: cython.Py_ssize_t = self.tangent.blocks
+        work: cython.longlong = 0
         for c in range(self.alive):
             self.whole[c] = self._square(c)
         for c in range(self.tangent.vectors):
+            work += n * max(self.alive - c, 0)
+            if work >= WORK_UNTIL_CHECK:
+                check_signals()
+                work = 0
             factor = 0.0
             if c < self.alive:
                 length = self.whole[0] if c == 0 else self._square(c)
@@ -164,13 +173,14 @@ class Exponents:
                 for i in range(n):
                     self.tangent.position[d, i] -= (moved + sped) * self.tangent.position[c, i]
                     self.tangent.velocity[d, i] -= (moved + sped) * self.tangent.velocity[c, i]
+        return 0
 
     def _collect(self, c: cython.Py_ssize_t) -> None:
         """Add the growth of vector c since the last call to its batch."""
         self.growth[self.batch, c] += log(self.product[c])
         self.product[c] = 1.0
 
-    def _renew(self, state: State, clock: cython.double, completed: cython.bint) -> None:
+    def _renew(self, state: State, clock: cython.double, completed: cython.bint) -> cython.int:
         """Orthonormalise, and go on to the batch in which the time now lies."""
         c: cython.Py_ssize_t
         self._orthonormalise(True, self.batch >= 0 and self.batch < self.batches)
@@ -187,6 +197,7 @@ class Exponents:
                 self._seed(state, self.alive)
             self.batch += 1
             self.batch_start = clock
+        return 0
 
     def results(self) -> dict:
         """Return `growth` (batches, vectors), −∞ for dropped vectors, `duration` (batches,) and how many are `lost`.

@@ -20,6 +20,8 @@ cdef class LaneEvents:
     cdef SearchedPolynomial polynomial
 
     cdef void find(self, Lanes lanes, LaneSeries series, mask where) noexcept nogil
+    cdef void begin_events(self, Lanes lanes, LaneSeries series) noexcept nogil
+    cdef mask due(self, Lanes lanes, LaneSeries series, Py_ssize_t i, mask event) noexcept nogil
     cdef void _deflate(self, Lanes lanes, LaneSeries series, mask where) noexcept nogil
     cdef void _guess(self, LaneSeries series) noexcept nogil
     cdef void _improve(self, vec reach) noexcept nogil

@@ -83,6 +83,36 @@ class LaneEvents:
                     self._search(lanes, series, lane)
             series.raise_powers(self.time.at[0])
 
+    def begin_events(self, lanes: Lanes, series: LaneSeries) -> None:
+        """Make ready for `due`, when the events have been found."""
+        lane: cython.int
+        k: cython.Py_ssize_t
+        for lane in range(LANES):
+            k = cython.cast(cython.Py_ssize_t, lane_of(self.block.at[0], lane))
+            self.offset[lane] = k + 1 if k >= 0 else 1
+        self.candidate.at[0] = gather(series.gap.at, cython.address(self.offset[0]))
+
+    def due(self, lanes: Lanes, series: LaneSeries, i: cython.Py_ssize_t, event: mask) -> mask:
+        """Return the lanes whose event is that of block i, or of one whose gap is the same to the bit, as of its image.
+
+        Then their events are one, whatever rounding leaves of both gaps at its time.
+        """
+        k: cython.Py_ssize_t
+        lane: cython.int
+        own: mask = event & equal(self.block.at[0], splat(cython.cast(cython.double, i)))
+        alike: mask = event & ~own & equal(series.gap.at[i + 1], self.candidate.at[0])
+        for k in range(1, self.order + 1):
+            if not bits(alike):
+                return own
+            alike = alike & equal(
+                series.gap.at[k * series.width + i + 1],
+                gather(series.gap.at + k * series.width, cython.address(self.offset[0])),
+            )
+        for lane in range(LANES):
+            if lanes.threshold[i] != lanes.threshold[self.offset[lane] - 1]:
+                alike = alike & ~from_bits(1 << lane)
+        return own | alike
+
     def _deflate(self, lanes: Lanes, series: LaneSeries, where: mask) -> None:
         """Divide known roots at t = 0 out of the gaps: a block that has just started has U' = U'' = 0."""
         i: cython.Py_ssize_t
@@ -120,6 +150,7 @@ class LaneEvents:
         third_t: vec = splat(0.75) * time
         fourth_t: vec = time
         zero: vec = splat(0.0)
+        lowest: vec = zero
         t: vec
         before: vec
         after: vec
@@ -153,8 +184,10 @@ class LaneEvents:
             after = select(falls, first, after)
             # A line between the two samples.
             t = t - first_t * (after / (after - before))
-            falls = less(after, zero) & less(t, time)
+            # Where guesses are the same the lower sample decides, not the order of the blocks.
+            falls = less(after, zero) & (less(t, time) | (equal(t, time) & less(after, lowest)))
             time = select(falls, t, time)
+            lowest = select(falls, after, lowest)
             block = select(falls, splat(cython.cast(cython.double, i)), block)
         self.time.at[0] = time
         self.block.at[0] = block

@@ -28,8 +28,10 @@ from cython.cimports.burridge_knopoff.kernel.vector import (
     vec,
 )
 
-# Gaps that are so small at an event, and fall, are divided by 1 − u; a smaller one has its event before.
+# Gaps that are so small at an event, and fall, are divided by 1 − u.
 CLOSE = 1e-3
+
+# A gap that is below minus this share of its highest Bernstein coefficient has its event before: rounding leaves less.
 SIMULTANEOUS = 1e-14
 
 
@@ -70,6 +72,7 @@ class LaneProof:
         rest: vec
         end: vec
         smallest: vec
+        highest: vec
         failing: mask
         close: mask
         event: mask = at_most(zero, block)
@@ -101,7 +104,10 @@ class LaneProof:
             end = b[LOW]
             for k in range(LOW + 1, self.order + 1):
                 end = end + c[k * width] * series.power.at[k]
-            close = failing & less(splat(-SIMULTANEOUS), end) & less(end, splat(CLOSE))
+            highest = b[0]
+            for k in range(1, LOW + 1):
+                highest = largest(b[k], highest)
+            close = failing & less(-SIMULTANEOUS * highest, end) & less(end, splat(CLOSE))
             if bits(close):
                 failing = failing & ~(close & self._falls(c, width, series))
                 if not bits(failing):

@@ -30,6 +30,7 @@ cdef class Lanes:
     cdef double rate_limit
     cdef mask accumulating
     cdef Py_ssize_t[::1] member
+    cdef int[::1] due
     cdef Py_ssize_t kept
     cdef double[:, ::1] event_time
     cdef int[:, ::1] event_block

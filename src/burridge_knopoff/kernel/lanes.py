@@ -68,6 +68,7 @@ class Lanes:
     rate_limit: cython.double
     accumulating: mask
     member: cython.Py_ssize_t[::1]
+    due: cython.int[::1]
     kept: cython.Py_ssize_t
     event_time: cython.double[:, ::1]
     event_block: cython.int[:, ::1]
@@ -113,6 +114,7 @@ class Lanes:
         self.rate_limit = rate_limit
         self.accumulating = from_bits(0)
         self.member = np.full(LANES, -1, dtype=np.intp)
+        self.due = np.zeros(n, dtype=np.intc)
         self.kept = 0
         self.event_time = np.zeros((1, 1))
         self.event_block = np.zeros((1, 1), dtype=np.intc)
@@ -247,14 +249,17 @@ class Lanes:
     def settle(self, where: mask) -> None:
         """Carry out every change that is due at this instant, to the last one, before time moves on."""
         i: cython.Py_ssize_t
-        changing: mask
-        changed: mask
+        changing: cython.int
         where = where & ~self.accumulating
         while bits(where):
-            changed = from_bits(0)
+            # Who changes is decided before anyone does: then no order of the blocks is preferred.
+            changing = 0
             for i in range(self.blocks):
-                changing = where & self.pending(i)
-                if bits(changing):
-                    self.change(i, changing)
-                    changed = changed | changing
-            where = changed & ~self.accumulating
+                self.due[i] = bits(where & self.pending(i))
+                changing |= self.due[i]
+            if not changing:
+                return
+            for i in range(self.blocks):
+                if self.due[i]:
+                    self.change(i, from_bits(self.due[i]))
+            where = from_bits(changing) & ~self.accumulating

@@ -1,6 +1,8 @@
 cdef class Record:
     cdef readonly Py_ssize_t width
     cdef readonly Py_ssize_t count
+    cdef Py_ssize_t most
+    cdef readonly bint full
     cdef double[::1] time
     cdef double[:, ::1] value
 

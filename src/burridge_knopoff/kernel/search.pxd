@@ -26,6 +26,7 @@ cdef class EventSearch:
     cdef int[::1] blocks_in
 
     cdef Py_ssize_t first(self, State state, Piece piece, double reach, int side) noexcept nogil
+    cdef bint coincide(self, State state, Py_ssize_t block, Py_ssize_t other) noexcept nogil
     cdef double crossing(self, double length) noexcept nogil
     cdef void _load(self, State state, Piece piece, int side) noexcept nogil
     cdef void _divide(self, Py_ssize_t column) noexcept nogil

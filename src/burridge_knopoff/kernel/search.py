@@ -39,7 +39,7 @@ ITERATIONS = 6
 # A root has converged when the next step would be smaller than this share of the piece.
 CONVERGED = 1e-17
 
-# Values down to minus this at the event count as events of the same instant; see `state.COINCIDENCE`.
+# Values down to minus this share of the highest one count as 0 at the event: no less is left of them by rounding.
 COMMON = 1e-14
 
 # W at the end of one piece and at the start of the next differ by rounding, less than this.
@@ -106,6 +106,17 @@ class EventSearch:
         if block >= 0 and self._proved(piece, self.time):
             return block
         return self._exhaustive(state, piece, reach)
+
+    def coincide(self, state: State, block: cython.Py_ssize_t, other: cython.Py_ssize_t) -> cython.bint:
+        """Tell whether what decides about the next event is the same of two blocks, to the bit, as of mirror images.
+
+        Then their events are one, whatever rounding leaves of both at its time.
+        """
+        k: cython.Py_ssize_t
+        for k in range(ORDER + 1):
+            if self.gap_table[k, block] != self.gap_table[k, other]:
+                return False
+        return state.springs.threshold[block] == state.springs.threshold[other]
 
     def crossing(self, length: cython.double) -> cython.double:
         """Return when W changes its sign in the first `length` of the reach, −1.0 if it does not; else UNCERTAIN."""
@@ -292,7 +303,7 @@ class EventSearch:
                 total = total + term
             # A block that has come near to its own event is proved by q, the others as they are.
             near = at_most(total, splat(NEAR)) & less(total, self.bounds.scaled.at[0])
-            if bits(near & less(total, splat(-COMMON))) & self.blocks_in[c]:
+            if bits(near & less(total, -COMMON * self.bounds.highest.at[c])) & self.blocks_in[c]:
                 return False
             self.bounds.bound(c, near)
             if ~bits(less(zero, self.bounds.lowest.at[c])) & self.blocks_in[c]:

@@ -18,8 +18,8 @@ from cython.cimports.burridge_knopoff.kernel.friction import Friction
 from cython.cimports.burridge_knopoff.kernel.springs import Springs
 from cython.cimports.burridge_knopoff.kernel.vector import Vectors
 
-# Times closer than this are one instant: velocities and spring forces carry rounding of about this size, so that the
-# order of two such events is not known.
+# Times closer than this are one instant, whatever the springs: the clock does not resolve them. Blocks whose motion is
+# the same to the bit change together, however far from their threshold rounding leaves them: see `search.coincide`.
 COINCIDENCE = 1e-14
 
 # A block that has slipped for less than this keeps the acceleration that was carried along since its start, which
@@ -101,10 +101,10 @@ class State:
 
     def force_rate(self, i: cython.Py_ssize_t) -> cython.double:
         """Return ds_i/dτ."""
-        rate: cython.double = self.springs.diagonal[i] * (self.velocity[i] - self.v)
-        rate -= self.springs.before[i] * (self.velocity[self.springs.previous[i]] - self.v)
-        rate -= self.springs.after[i] * (self.velocity[self.springs.next[i]] - self.v)
-        return -rate
+        pull: cython.double = self.springs.before[i] * (self.velocity[self.springs.previous[i]] - self.v)
+        # The neighbours are added first, as in `Springs.pull`.
+        pull += self.springs.after[i] * (self.velocity[self.springs.next[i]] - self.v)
+        return pull - self.springs.diagonal[i] * (self.velocity[i] - self.v)
 
     def start_acceleration(self, i: cython.Py_ssize_t) -> cython.double:
         """Return |U_i''| of a block that starts at its threshold: 0, exactly, unless friction drops at the start."""

@@ -18,7 +18,7 @@ cdef class TimeStepping:
     cdef double[::1] position
     cdef double[::1] velocity
 
-    cdef int _run(self) noexcept nogil
+    cdef int _run(self) except? -9 nogil
     cdef void _slope(self, Py_ssize_t stage) noexcept nogil
     cdef void _stage(self, Py_ssize_t stage, double step) noexcept nogil
     cdef void _interpolate(self, double step) noexcept nogil

@@ -7,9 +7,10 @@ from cython.cimports.burridge_knopoff.kernel.events import (
     ACCUMULATING_EVENTS,
     COMPLETED,
     DIVERGED,
-    RUNNING,
-    STEPS_PER_CALL,
+    FULL,
+    WORK_UNTIL_CHECK,
     EventLog,
+    check_signals,
 )
 from cython.cimports.burridge_knopoff.kernel.observe import Observer
 from cython.cimports.burridge_knopoff.kernel.piece import Piece
@@ -55,7 +56,7 @@ class TimeStepping:
         self.log.restart()
 
     def run(self) -> int:
-        """Run on, to the end of the observer's window at most; return RUNNING, COMPLETED or why the run has ended."""
+        """Run on, to the end of the observer's window at most; return COMPLETED or why the run has ended."""
         status: cython.int
         with cython.nogil:
             status = self._run()
@@ -67,13 +68,14 @@ class TimeStepping:
         after: cython.double
         step: cython.double
         rate: cython.double
-        budget: cython.int = STEPS_PER_CALL
+        work: cython.longlong = 0
         if self.steps == 0:
             self.log.settle(self.state, 0.0)
         while self.clock < self.observer.end:
-            if budget == 0:
-                return RUNNING
-            budget -= 1
+            work += n
+            if work >= WORK_UNTIL_CHECK:
+                check_signals()
+                work = 0
             after = (self.steps + 1) * self.step
             if after > self.observer.end:
                 after = self.observer.end
@@ -109,6 +111,8 @@ class TimeStepping:
             self.log.settle(self.state, self.clock)
             if self.log.accumulating:
                 return ACCUMULATING_EVENTS
+            if self.log.full() or self.observer.crossings.full:
+                return FULL
         return COMPLETED
 
     def _slope(self, stage: cython.Py_ssize_t) -> None:

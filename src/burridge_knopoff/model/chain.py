@@ -121,6 +121,14 @@ class Chain:
         )
 
     @property
+    def _period(self) -> int:
+        """The least number of blocks after which springs and thresholds of a ring repeat."""
+        values = np.array([self.before, self.driving, self.thresholds])
+        return next(
+            shift for shift in range(1, self.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1))
+        )
+
+    @property
     def is_uniform(self) -> bool:
         """Whether one number gives each of coupling, pulling and threshold, and the ends are open."""
         return (
@@ -160,6 +168,8 @@ class Chain:
             other = self._solve(corner)
             strength = self.before[0]
             load += strength * other * (load[0] + load[-1]) / (1.0 - strength * (other[0] + other[-1]))
+            # Periodic to the bit, as the ring is: then a state that repeats along it stays so.
+            load = np.tile(load[: self._period], self.blocks // self._period)
         if self.is_mirror_symmetric:
             # Mirror-symmetric to the bit, as the chain is.
             load = 0.5 * (load + load[::-1])

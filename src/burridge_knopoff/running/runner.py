@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from burridge_knopoff import values
 from burridge_knopoff.kernel.event_driven import EventDriven
 from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.kernel.exponents import Exponents
@@ -95,17 +96,24 @@ class Runner:
 
         halting_block : a block at each of whose stops the run halts; it goes on from there with the next call
 
-        Raises ValueError for either with `rk4`, which knows the observer's window only.
+        Raises ValueError for either with `rk4`, which knows the observer's window only, and if it would keep more than
+        MOST_NUMBERS of its events.
         """
         if isinstance(self.kernel, EventDriven):
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
         elif until is not None or halting_block >= 0:
             raise ValueError("solver: 'rk4' is not allowed for a run to a time or a stop: series | map")
-        # Each call makes a limited number of steps, so that a long run can be interrupted from the keyboard.
-        while (status := self.kernel.run()) == Status.RUNNING:
-            pass
-        return Status(status)
+        status = Status(self.kernel.run())
+        for key, table, remedy in (
+            ("events", self.log.earlier_events, "none, or a shorter transient or window"),
+            ("events", self.log.events, "none, or a shorter event_window or window"),
+            ("window", self.observer.crossings, "a shorter one"),
+        ):
+            if table.full:
+                most = f"{values.MOST_NUMBERS:.0e} numbers to keep by τ = {self.clock:.6g}"
+                raise ValueError(f"{key}: got more than {most}, expected {remedy}")
+        return status
 
     def after(self, at: Instant, time: float) -> Instant | None:
         """Return the state that an instant comes to after a time, None if the run fails."""

@@ -9,7 +9,7 @@ from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.model.fields import check_fields
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
-from burridge_knopoff.values import refusal
+from burridge_knopoff.values import MOST_NUMBERS, refusal
 
 SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")
@@ -18,12 +18,6 @@ EVENTS = ("none", "window", "all")
 LONGEST = 1e9
 DURATION = Number(0.0, LONGEST)
 INTERVAL = Number(1e-6, LONGEST)
-
-#: Numbers that a run keeps of one kind at most: 800 MB.
-MOST_NUMBERS = 1e8
-
-#: Stops and starts of a block in a unit of time, as usual; runs with more take more memory than is reckoned here.
-USUAL_EVENTS = 0.5
 
 #: Steps of rk4 times blocks, at most: an hour of work.
 MOST_STEPS = 1e10
@@ -96,23 +90,11 @@ class Settings:
             raise refusal("step", self.step, f"at most {longest:.3g} in this chain, or events come out wrong")
         if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
             raise refusal("step", self.step, f"transient and window in at most {MOST_STEPS / blocks:.3g} steps")
-        for key, numbers in self._kept(blocks).items():
-            if numbers > MOST_NUMBERS:
-                allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
-                raise refusal(key, getattr(self, key), allowed)
-
-    def _kept(self, blocks: int) -> dict[str, float]:
-        """Return how many numbers the run keeps, by the setting that decides it; those of events are an estimate."""
-        rate = 0.0 if self.events == "none" else USUAL_EVENTS * blocks
-        events = rate * self.duration
-        with_states = events if self.events == "all" else rate * min(self.event_window, self.window)
-        return {
-            "trajectory_sampling": (2.0 * blocks + 1.0)
-            * min(self.trajectory, self.duration)
-            / self.trajectory_sampling,
-            "events" if self.events == "all" else "event_window": (2.0 * blocks + 3.0) * with_states,
-            "window" if self.window > self.transient else "transient": 3.0 * events,
-        }
+        # How many events there will be is not known: their tables have the same limit, and end a run that passes it.
+        numbers = (2.0 * blocks + 1.0) * min(self.trajectory, self.duration) / self.trajectory_sampling
+        if numbers > MOST_NUMBERS:
+            allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
+            raise refusal("trajectory_sampling", self.trajectory_sampling, allowed)
 
     @property
     def duration(self) -> float:

@@ -4,10 +4,10 @@ from enum import IntEnum
 
 
 class Status(IntEnum):
-    """HALTED at a stop of the block to halt at, RUNNING if it goes on with the next call; the others are final."""
+    """HALTED at a stop of the block to halt at, FULL if it would keep too much; the others are in files."""
 
     HALTED = -2
-    RUNNING = -1
+    FULL = -1
     COMPLETED = 0
     STEP_LIMIT = 1
     ACCUMULATING_EVENTS = 2

@@ -1,0 +1,140 @@
+"""Symmetry to the bit: what a chain and a state have of it, stays, in every engine and at any stiffness.
+
+Mirror images have their events at the same instant because they have the same bits, not because their events are near:
+how far rounding leaves a spring force from its threshold grows with the stiffness.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.running.together import new_ensemble
+
+ENGINES = ("series", "map", "ensemble")
+TIMES = 20
+
+
+def states_of(engine, model, position, velocity, duration, start="moving"):
+    """Return positions and velocities at TIMES instants, shape (TIMES, blocks), and how many events there were."""
+    if engine == "ensemble":
+        at = model.begin(InitialState("drawn", tuple(position), tuple(velocity)), start)
+        times = np.linspace(0.0, duration, TIMES + 1)[1:]
+        found = new_ensemble(model).run(at.position[None], at.velocity[None], at.stuck[None], times)
+        return found["position"][0] + model.sliding_offset, found["velocity"][0], found["event_count"][0]
+    whole = {"transient": 0.0, "window": duration, "sampling": duration, "trajectory": duration}
+    run = simulate(
+        model,
+        (position, velocity),
+        **whole,
+        solver=engine,
+        trajectory_sampling=duration / TIMES,
+        events="none",
+        lyapunov_exponents=0,
+        start=start,
+    )
+    return run.position[-TIMES:], run.velocity[-TIMES:], run.event_count
+
+
+@st.composite
+def chains(draw, ends=("open", "ring")):
+    """A chain of up to 25 blocks, its model, a state, and a time in which blocks stick and slip."""
+    generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    end = draw(st.sampled_from(ends))
+    blocks = draw(st.integers(2 if end == "open" else 3, 25))
+    coupling = 10.0 ** draw(st.floats(-3.0, 6.0))
+    pulling = draw(st.sampled_from([0.1, 1.0, 40.0]))
+    threshold = draw(st.sampled_from([1e-3, 1.0, 50.0]))
+    v = threshold * draw(st.sampled_from([0.01, 0.1, 1.0]))
+    law = law_of(draw(st.sampled_from(["linearized", "nonlinear"])), generator.uniform(0.0, 0.4) / max(1.0, threshold))
+    chain = Chain(blocks, coupling, pulling, threshold, end)
+    model = Model(chain, law, v, draw(st.sampled_from(["one_sided", "symmetric"])))
+    size = threshold / (coupling + pulling) * draw(st.sampled_from([1e-3, 0.1, 1.0]))
+    position = size * generator.normal(size=blocks)
+    velocity = v * draw(st.sampled_from([0.0, 1.0, 3.0])) * abs(generator.normal(size=blocks))
+    return model, position, velocity, min(100.0, 100.0 / chain.highest_frequency + 5.0 / pulling**0.5)
+
+
+def own_image(values):
+    """Return values that are their own mirror image, half of them as given."""
+    return np.where(np.arange(len(values)) < len(values) // 2, values[::-1], values)
+
+
+def engines_of(model):
+    return [engine for engine in ENGINES if engine != "map" or model.has_closed_form]
+
+
+@settings(max_examples=60)
+@given(chains(), st.sampled_from(["moving", "tested"]))
+def test_a_state_that_is_its_own_mirror_image_stays_so(drawn, start):
+    model, position, velocity, duration = drawn
+    for engine in engines_of(model):
+        x, u, _ = states_of(engine, model, own_image(position), own_image(velocity), duration, start)
+        assert (np.array([x, u]) == np.array([x, u])[..., ::-1]).all()
+
+
+@settings(max_examples=40)
+@given(chains())
+def test_mirror_images_move_as_mirror_images(drawn):
+    model, position, velocity, duration = drawn
+    for engine in engines_of(model):
+        x, u, count = states_of(engine, model, position, velocity, duration)
+        other_x, other_u, other_count = states_of(engine, model, position[::-1], velocity[::-1], duration)
+        assert (np.array([x, u]) == np.array([other_x, other_u])[..., ::-1]).all()
+        assert count == other_count
+
+
+@settings(max_examples=40)
+@given(chains(("ring",)), st.integers(1, 24), st.integers(1, 5))
+def test_a_ring_knows_no_first_block(drawn, turn, period):
+    """A turned state moves as the turned state; one that repeats along the ring goes on to do so."""
+    model, position, velocity, duration = drawn
+    blocks = model.blocks // period * period
+    repeated = Model(Chain(max(blocks, 3), model.chain.coupling, model.chain.pulling, ends="ring"), model.law, model.v)
+    for engine in ("series", "ensemble"):
+        x, u, _ = states_of(engine, model, position, velocity, duration)
+        other_x, other_u, _ = states_of(engine, model, np.roll(position, turn), np.roll(velocity, turn), duration)
+        assert (np.roll([x, u], turn, axis=2) == np.array([other_x, other_u])).all()
+        if blocks < 3:
+            continue
+        tiled = [np.tile(values[:period], blocks // period) for values in (position, velocity)]
+        x, u, _ = states_of(engine, repeated, *tiled, duration)
+        assert (np.roll([x, u], period, axis=2) == np.array([x, u])).all()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_stiff_springs_of_three_blocks(engine):
+    """A state beside which asymmetric ones grow by exp(0.039 τ): told 3.5e-4 as ⟨J⟩ once."""
+    model = Model(Chain(3, coupling=250.0, pulling=1.0), law_of("linearized", 0.3))
+    x, u, count = states_of(engine, model, (-1.0, -0.95, -1.0), (0.1, 0.12, 0.1), 2000.0)
+    assert count > 1000
+    assert (np.array([x, u]) == np.array([x, u])[..., ::-1]).all()
+
+
+@pytest.mark.parametrize("engine", ["series", "ensemble"])
+def test_stiff_springs_of_five_blocks(engine):
+    """From rest, as textbooks give springs; told 0.138 as ⟨J⟩ once. Its starts have one time each."""
+    model = Model(Chain(5, coupling=250.0, pulling=40.0, threshold=50.0), law_of("nonlinear", 1.0), v=0.01)
+    position = 1e-4 * np.array([4.0, -3.0, 2.0, -3.0, 4.0])
+    x, u, count = states_of(engine, model, position, np.zeros(5), 2000.0, "tested")
+    assert count > 100
+    assert (np.array([x, u]) == np.array([x, u])[..., ::-1]).all()
+
+
+@pytest.mark.parametrize("coupling", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("apart", [1e-9, 1e-12])
+def test_starts_that_are_apart_keep_their_order(coupling, apart):
+    """Stuck blocks start where pulling · v τ makes up what is missing, here 0.5 and as little as `apart` more."""
+    v, force = 0.1, np.array([0.5, 0.5 - 0.1 * apart, 0.5])
+    chain = Chain(3, coupling, pulling=1.0)
+    position = -np.linalg.solve(chain.stiffness, force)
+    model = Model(chain, law_of("linearized", 0.1), v)
+    whole = {"transient": 0.0, "window": 5.5, "events": "all", "lyapunov_exponents": 0}
+    run = simulate(model, (position, (0.0, 0.0, 0.0)), **whole, start="tested")
+    rounding = 1e-15 * (1.0 + coupling * abs(position).max()) / v
+    first = [run.event_time[run.event_block == block][0] for block in (1, 2, 3)]
+    assert first == pytest.approx([5.0, 5.0 + apart, 5.0], abs=4 * rounding)
+    if apart > 8 * rounding:
+        assert first[0] < first[1] > first[2]

@@ -1,0 +1,71 @@
+"""What bounds a run while it goes on: Ctrl-C, and how much it keeps."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from burridge_knopoff import simulate, values
+
+SINGLE = """
+from burridge_knopoff import Chain, simulate
+print("begun", flush=True)
+simulate("nonlinear", 5.0, (range(256), [0.1] * 256), chain=Chain(256, coupling=100.0), lyapunov_exponents={exponents},
+    transient=0.0, window=1e6, events="none", sampling=1e3)
+"""
+MANY = """
+import numpy as np
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.running.together import new_ensemble
+ensemble = new_ensemble(Model(Chain(256, coupling=100.0), law_of("nonlinear", 5.0), 0.1))
+start = np.random.default_rng(1).uniform(0.0, 0.1, (2, 16, 256))
+print("begun", flush=True)
+ensemble.run(*start, np.zeros((16, 256), dtype=bool), [1e6])
+"""
+PROGRAMS = {
+    "run": SINGLE.format(exponents=0),
+    "exponents": SINGLE.format(exponents=512),
+    "rk4": SINGLE.format(exponents=0).replace("events=", 'solver="rk4", step=0.01, events='),
+    "ensemble": MANY,
+}
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_ctrl_c_ends_a_long_chain_at_once(program):
+    """It took 151 s when a call of the kernel was bounded by a number of steps."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", PROGRAMS[program]], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "begun\n"
+    with pytest.raises(subprocess.TimeoutExpired):
+        process.wait(timeout=2)
+    begin = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert said.splitlines()[-1] == "KeyboardInterrupt"
+    assert time.monotonic() - begin < 10
+
+
+@pytest.mark.parametrize(
+    ("key", "numbers", "options"),
+    [
+        ("events", 9, {"events": "all"}),
+        ("events", 9, {"events": "window"}),
+        ("events", 3, {"events": "window", "event_window": 1.0}),
+        ("window", 3, {"events": "none"}),
+    ],
+)
+def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, monkeypatch):
+    """Of nine numbers an event with states of three blocks, of three an event without them and a section crossing."""
+    options = {"transient": 0.0, "window": 100.0, "event_window": 100.0, "lyapunov_exponents": 0, **options}
+    run = simulate("linearized", 0.08, "plus", **options)
+    kept = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
+    assert kept > 5
+    monkeypatch.setattr(values, "MOST_NUMBERS", numbers * kept)
+    assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
+    monkeypatch.setattr(values, "MOST_NUMBERS", numbers * (kept - 1))
+    told = rf"^{key}: got more than \S+ numbers to keep by τ = [\d.]+, expected [\w, ]+$"
+    with pytest.raises(ValueError, match=told):
+        simulate("linearized", 0.08, "plus", **options)
