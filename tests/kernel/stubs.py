@@ -78,7 +78,7 @@ def _type(annotation: ast.expr) -> str:
 
 def _imports(tree: ast.Module, text: str) -> list[str]:
     """Return the imports of a module that its stub needs."""
-    used = set(re.findall(r"\w+", text))
+    used = set(re.findall(r"(?<!def )\b\w+", text))
     lines = []
     for node in tree.body:
         if isinstance(node, ast.ImportFrom) and node.module != "__future__":

@@ -1,8 +1,6 @@
 # Made by `python -m tests.kernel.stubs`.
 import numpy as np
 
-from burridge_knopoff import values
-
 class Record:
     @property
     def width(self) -> int: ...
