@@ -27,7 +27,6 @@ ensemble.run(*start, np.zeros((16, 256), dtype=bool), [1e6])
 PROGRAMS = {
     "run": SINGLE.format(exponents=0),
     "exponents": SINGLE.format(exponents=512),
-    "rk4": SINGLE.format(exponents=0).replace("1e6, events=", '3e5, solver="rk4", step=0.01, events='),
     "ensemble": MANY,
 }
 
