@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import Status
@@ -23,9 +23,13 @@ if TYPE_CHECKING:
 class Trajectory:
     """What a run left: model, initial state, settings, status, and observables; arrays have the names of point files.
 
+    `final` is the state at its end, from which `simulate(model, run.final)` continues: times count on, and both runs
+    together have the events and crossings of one long run, bit for bit. `initially_slipping` tells which blocks slip
+    at the beginning, before the first event: the slips of a block are these and its starts.
+
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
-    Times are in units of 1/ω. Shapes: `time`, `distance` (samples,); `event_time`, `event_block`, `event_kind`
+    Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`, `event_block`, `event_kind`
     (events,), `event_position`, `event_velocity` (events, blocks), and likewise `earlier_event_…` for events without
     states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`, `velocity` (times, blocks);
     `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches in front. docs/data.md has a
@@ -43,7 +47,10 @@ class Trajectory:
     initial: InitialState
     settings: Settings
     status: str
+    begin_time: float
     end_time: float
+    initially_slipping: np.ndarray = field(repr=False)
+    final: Instant = field(repr=False)
     event_count: int
     step_count: int
     mean_distance: float
@@ -80,8 +87,10 @@ class Trajectory:
         return import_module("burridge_knopoff.dataset.point").to_dataset(self)
 
 
-def collect(model: Model, initial: InitialState, settings: Settings, runner: Runner, status: Status) -> Trajectory:
-    """Return what a run has left."""
+def collect(
+    model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: Instant, status: Status
+) -> Trajectory:
+    """Return what a run has left that began at an instant."""
     measured = runner.observer.results()
     n = model.blocks
     offset = model.sliding_offset
@@ -102,7 +111,10 @@ def collect(model: Model, initial: InitialState, settings: Settings, runner: Run
         initial=initial,
         settings=settings,
         status=status.name.lower(),
+        begin_time=begun.time,
         end_time=runner.clock,
+        initially_slipping=~begun.stuck,
+        final=runner.final() if completed else runner.instant(),
         event_count=log.count,
         step_count=runner.kernel.steps,
         mean_distance=float(batch.mean()),
