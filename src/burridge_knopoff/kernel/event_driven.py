@@ -98,7 +98,7 @@ class EventDriven:
         self.restart(time)
 
     def mark(self) -> tuple:
-        """Return where the last piece of a completed run begins, for `resume`: a run that goes on repeats that piece."""
+        """Return the state at the start of the last piece of a completed run: one that continues repeats it."""
         origin = np.array([self.modes.origin, self.modes.origin_velocity])
         return np.array(self.mark_state), np.array(self.mark_slip), np.array(self.mark_clock), origin
 

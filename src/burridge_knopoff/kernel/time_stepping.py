@@ -52,7 +52,7 @@ class TimeStepping:
         self.acceleration = np.zeros((4, n))
 
     def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray, time: float = 0.0) -> None:
-        """Begin again at a time from these positions x_i, velocities U_i' and stuck blocks; steps end at multiples of h."""
+        """Begin again at a time from these x_i, U_i' and stuck blocks; steps end at multiples of h."""
         self.state.begin(position, velocity, stuck)
         self.clock = time
         self.earlier_steps = int(time / self.step)

@@ -12,7 +12,6 @@ from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.values import instance_of
 
 
 @overload
@@ -94,8 +93,6 @@ def simulate(
         if initial is not None and settings is not None:
             raise ValueError("settings: not allowed twice")
         a, initial, settings = None, a, settings if initial is None else initial
-    if settings is not None:
-        instance_of(settings, Settings, "settings")
     state = initial if isinstance(initial, Instant) else given_state("minus" if initial is None else initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
     return run(model, state, settings_of(Settings, settings, by_name))

@@ -11,7 +11,7 @@ import numpy as np
 from burridge_knopoff.laws import Law
 from burridge_knopoff.laws.law import FASTEST
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.ranges import Number, OneOf, Text
 from burridge_knopoff.values import instance_of, read_only
@@ -24,6 +24,7 @@ STARTS = ("moving", "tested")
 START = "moving: every block slips at tau = 0 | tested: those with spring force at most threshold stick there"
 
 
+@settings
 @dataclass(frozen=True)
 class Model:
     """A chain under a friction law, drawn at a velocity.
@@ -150,6 +151,9 @@ class Instant:
     time: float = 0.0
     # The solver of the run and the start of its last step. It belongs to this state alone: `replace` does not copy it.
     last_step: Any = field(default=None, init=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<Instant at tau = {self.time:g}: {np.size(self.position)} blocks, {np.sum(self.stuck)} of them stuck>"
 
     def mirrored(self) -> Instant:
         """Return the state seen from the other end of the chain."""

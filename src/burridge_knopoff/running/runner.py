@@ -18,7 +18,7 @@ from burridge_knopoff.kernel.time_stepping import TimeStepping
 from burridge_knopoff.kernel.vector import WIDTH
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import refusal
+from burridge_knopoff.values import instance_of, refusal
 
 NEVER = 1e300
 
@@ -57,6 +57,7 @@ class Runner:
         exponents: Exponents | None = None,
         perturbations: np.ndarray | None = None,
     ) -> None:
+        instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
                 "solver: 'map' is not allowed: it needs a closed form, that of a law which is a straight line, not too "
@@ -87,10 +88,9 @@ class Runner:
     def begin(self, at: Instant) -> None:
         """Begin from an instant, at its time; raises ValueError if it is none of the model's blocks."""
         blocks = self.model.blocks
-        arrays = [at.position, at.velocity, at.stuck] if isinstance(at, Instant) else []
-        if not arrays or any(np.shape(values) != (blocks,) for values in arrays):
+        if not isinstance(at, Instant) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
             raise refusal("state", at, f"an Instant of {blocks} blocks")
-        self.kernel.begin(*arrays, at.time)
+        self.kernel.begin(at.position, at.velocity, at.stuck, at.time)
         if at.last_step is not None and at.last_step[0] == self.solver:
             self.kernel.resume(at.last_step[1], at.time)
 

@@ -11,12 +11,14 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.plot import plot_run
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import Status
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,11 +31,11 @@ class Trajectory:
 
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
-    Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`, `event_block`, `event_kind`
-    (events,), `event_position`, `event_velocity` (events, blocks), and likewise `earlier_event_…` for events without
-    states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`, `velocity` (times, blocks);
-    `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches in front. docs/data.md has a
-    line on each. Averages are NaN unless `status` is completed.
+    Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`,
+    `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
+    `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
+    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches in
+    front. docs/data.md has a line on each. Averages are NaN unless `status` is completed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
@@ -80,6 +82,17 @@ class Trajectory:
     lyapunov_error: np.ndarray = field(repr=False)
     batch_lyapunov_exponent: np.ndarray = field(repr=False)
     lyapunov_infinite_count: int
+
+    def __repr__(self) -> str:
+        return (
+            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, "
+            f"a = {self.model.a:g}: {self.status} at tau = {self.end_time:g}, {self.event_count} events, "
+            f"<J> = {self.mean_distance:.6g} +- {self.mean_distance_error:.1g}>"
+        )
+
+    def plot(self) -> Figure:
+        """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run, as a notebook shows it."""
+        return plot_run(self)
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""
