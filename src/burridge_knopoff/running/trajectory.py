@@ -34,8 +34,8 @@ class Trajectory:
     Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`,
     `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
     `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
-    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches in
-    front. docs/data.md has a line on each. Averages are NaN unless `status` is completed.
+    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches
+    in front. docs/data.md has a line on each. Averages are NaN unless `status` is completed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
