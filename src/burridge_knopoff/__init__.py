@@ -68,6 +68,7 @@ __all__ = [
 if TYPE_CHECKING:
     from burridge_knopoff.laws import FormulaLaw, Law, law_of
     from burridge_knopoff.library.basin_map import basin_map
+    from burridge_knopoff.library.find_attractors import find_attractors
     from burridge_knopoff.library.open_study import open_study
     from burridge_knopoff.library.simulate import simulate
     from burridge_knopoff.library.sweep import sweep
@@ -86,7 +87,6 @@ if TYPE_CHECKING:
     from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.trajectory import Trajectory
     from burridge_knopoff.stability.attractor import Attractor
-    from burridge_knopoff.stability.attractors import find_attractors
     from burridge_knopoff.stability.chains import transverse_exponent
     from burridge_knopoff.stability.closed_motion import closed_motion
     from burridge_knopoff.stability.labels import label_states
@@ -119,7 +119,7 @@ _HOME = {
     "Trajectory": "running.trajectory",
     "basin_map": "library.basin_map",
     "closed_motion": "stability.closed_motion",
-    "find_attractors": "stability.attractors",
+    "find_attractors": "library.find_attractors",
     "find_periodic_orbit": "orbits.periodic",
     "follow": "orbits.following",
     "label_states": "stability.labels",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
@@ -53,6 +54,13 @@ def instance_of(value: Any, kind: type[_T], key: str) -> _T:
     if not isinstance(value, kind):
         raise refusal(key, value, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
     return value
+
+
+def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
+    """Return values that are all of a class as a list; raises ValueError, one line, for any others."""
+    if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+        raise refusal(key, values, f"a list, each {kind.__name__}")
+    return [instance_of(value, kind, f"{key}[{number}]") for number, value in enumerate(values)]
 
 
 def refusal(key: str, value: Any, allowed: object) -> ValueError:

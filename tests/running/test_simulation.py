@@ -1,6 +1,7 @@
 """What must hold for whole runs: symmetries, synchronization, energy, and how a run ends."""
 
 import statistics
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -153,3 +154,54 @@ def test_perturbations_align_no_longer_than_the_transient_lasts():
     )
     assert one.lyapunov_exponent.tolist() == other.lyapunov_exponent.tolist()
     assert one.lyapunov_error.tolist() == other.lyapunov_error.tolist()
+
+
+@pytest.mark.parametrize(("law", "solver"), [("linearized", "series"), ("linearized", "map"), ("nonlinear", "series")])
+@pytest.mark.parametrize("time", [37.0, 50.0, 61.3])
+def test_a_run_that_continues_is_the_whole_run(law, solver, time):
+    """Split between events, in the midst of a piece, every event and crossing is that of the whole, to the bit."""
+    settings = {"solver": solver, "transient": 0, "events": "all", "batches": 2}
+    whole = simulate(law, 0.08, "plus", window=120.0, **settings)
+    first = simulate(law, 0.08, "plus", window=time, **settings)
+    rest = simulate(first.model, first.final, window=120.0 - time, **settings)
+    assert (first.final.time, rest.begin_time, rest.end_time) == (time, time, 120.0)
+    for name in ("event_time", "event_block", "event_kind", "event_position", "event_velocity", "crossing_time"):
+        assert np.array_equal(np.concatenate([getattr(first, name), getattr(rest, name)]), getattr(whole, name)), name
+    for name in ("crossing_velocity", "crossing_direction"):
+        assert np.array_equal(np.concatenate([getattr(first, name), getattr(rest, name)]), getattr(whole, name)), name
+    assert np.array_equal(rest.final.vector(), whole.final.vector())
+
+
+def test_a_run_continues_step_by_step_with_a_fixed_step():
+    settings = {"solver": "rk4", "step": 2.0**-8, "transient": 0, "events": "all", "batches": 2}
+    whole = simulate("nonlinear", 0.08, "plus", window=40.0, **settings)
+    first = simulate("nonlinear", 0.08, "plus", window=15.0, **settings)
+    rest = simulate(first.model, first.final, window=25.0, **settings)
+    assert first.event_count + rest.event_count == whole.event_count > 0
+    assert np.array_equal(rest.final.vector(), whole.final.vector())
+
+
+def test_a_run_under_another_law_begins_at_the_state_itself():
+    """The step in which the first run ended is repeated under its own model only."""
+    first = simulate("linearized", 0.08, "plus", transient=0, window=37.0)
+    other = first.model.at(0.2)
+    bare = replace(first.final)
+    one, two = (simulate(other, at, transient=0, window=20.0) for at in (first.final, bare))
+    assert np.array_equal(one.final.vector(), two.final.vector())
+    assert one.begin_time == 37.0
+
+
+@pytest.mark.parametrize("start", ["moving", "tested"])
+def test_slips_are_those_that_have_begun_at_first_and_those_that_start(start):
+    """Each stop ends a slip: those at the beginning are told apart from sticks."""
+    state = {"position": [-0.9, -1.1, 0.5], "velocity": [0.1, 0.1, 0.1]}
+    run = simulate("nonlinear", 0.1, state, start=start, transient=0, window=50.0, events="all")
+    force = run.model.chain.force(np.array(state["position"]))
+    assert run.initially_slipping.tolist() == ((force > 1.0) | (start == "moving")).tolist()
+    for block in (1, 2, 3):
+        kinds = run.event_kind[run.event_block == block]
+        slips = run.initially_slipping[block - 1] + (kinds == 1).sum()
+        assert slips - (kinds == 0).sum() in (0, 1)
+        # Stops and starts take turns, and the first is a stop exactly if the block slips at the beginning.
+        assert not len(kinds) or kinds[0] == 1 - run.initially_slipping[block - 1]
+        assert (kinds[1:] != kinds[:-1]).all()

@@ -4,8 +4,9 @@ import re
 from dataclasses import fields
 from pathlib import Path
 
-from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+from burridge_knopoff import Chain, Model, SearchSettings, law_of
 from burridge_knopoff.stability import attractor, attractors, continuation, labels, radius, settling, steady
+from burridge_knopoff.stability.attractors import find_attractors
 from burridge_knopoff.stability.tuning import Tuning
 
 PAGE = Path(__file__).parents[2] / "docs" / "attractors.md"

@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.dataset.variables import CONVENTIONS, DIRECTION, KIND, TIMES, Variable, described, fill, flag
+from burridge_knopoff.dataset.variables import (
+    CONVENTIONS,
+    DIRECTION,
+    KIND,
+    TIMES,
+    YES_OR_NO,
+    Variable,
+    described,
+    fill,
+    flag,
+)
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.provenance.seal import identity, write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
@@ -31,6 +41,12 @@ POINT_VARIABLES: dict[str, Variable] = {
     "block": _V(("block",), "i2", "block number, 1 to N along the chain", coordinate=True),
     "initial_position": _V(("block",), "f8", "initial position U(0)"),
     "initial_velocity": _V(("block",), "f8", "initial velocity U'(0)"),
+    "initially_slipping": _V(
+        ("block",),
+        "i1",
+        "whether the block slips at the beginning of the run, before its first event",
+        {**YES_OR_NO, "comment": "the slips of a block are this one and those that its starts begin"},
+    ),
     "status": _V((), "i1", "how the run ended", STATUS_FLAG),
     "end_time": _V((), "f8", "time tau at which the run ended"),
     "event_count": _V((), "i8", "number of stops and starts in the whole run"),
@@ -96,7 +112,7 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
         "initial_position": np.array(trajectory.initial.position),
         "initial_velocity": np.array(trajectory.initial.velocity),
         "status": Status[trajectory.status.upper()],
-        "batch": settings.transient + width * (np.arange(settings.batches) + 0.5),
+        "batch": trajectory.begin_time + settings.transient + width * (np.arange(settings.batches) + 0.5),
     }
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
 

@@ -34,8 +34,13 @@ cdef class EventDriven:
     cdef readonly long long steps
     cdef long long step_limit
     cdef double since_event
+    cdef bint settled
+    cdef double[:, ::1] mark_state
+    cdef int[:, ::1] mark_slip
+    cdef double[::1] mark_clock
 
-    cdef int restart(self) except -1
+    cdef int restart(self, double time) except -1
+    cdef void _mark(self) noexcept nogil
     cdef int _run(self) except? -9 nogil
     cdef int _follow(self, double length, bint due) except -1 nogil
     cdef double _fastest(self) noexcept nogil

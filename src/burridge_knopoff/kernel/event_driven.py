@@ -62,6 +62,10 @@ class EventDriven:
     steps: cython.longlong
     step_limit: cython.longlong
     since_event: cython.double
+    settled: cython.bint
+    mark_state: cython.double[:, ::1]
+    mark_slip: cython.int[:, ::1]
+    mark_clock: cython.double[::1]
 
     def __init__(
         self, state: State, log: EventLog, observer: Observer, exponents: Exponents, closed_form: bool, step_limit: int
@@ -84,17 +88,46 @@ class EventDriven:
         self.modes = Modes(state.blocks)
         self.closed_form = closed_form
         self.step_limit = step_limit
-        self.restart()
+        self.mark_state = np.zeros((4, state.blocks))
+        self.mark_slip = np.zeros((2, state.blocks), dtype=np.intc)
+        self.mark_clock = np.zeros(4)
+        self.restart(0.0)
 
-    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
-        """Begin again at τ = 0 from these positions x_i, velocities U_i' and stuck blocks."""
+    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray, time: float = 0.0) -> None:
+        """Begin again at a time from these positions x_i, velocities U_i' and stuck blocks."""
         self.state.begin(position, velocity, stuck)
-        self.restart()
+        self.restart(time)
 
-    def restart(self) -> cython.int:
-        """Begin again at τ = 0 from what is now the state."""
-        self.clock = 0.0
+    def mark(self) -> tuple:
+        """Return the state at the start of the last piece of a completed run: one that continues repeats it."""
+        origin = np.array([self.modes.origin, self.modes.origin_velocity])
+        return np.array(self.mark_state), np.array(self.mark_slip), np.array(self.mark_clock), origin
+
+    def resume(self, mark: tuple, time: float) -> None:
+        """Go on at a time from the mark of a run that ended then, with the same pieces as if it had not ended."""
+        state, slip, clock, origin = mark
+        n = self.state.blocks
+        position, velocity = np.asarray(self.state.position), np.asarray(self.state.velocity)
+        self.state.begin(origin[0], origin[1], slip[0] == 0)
+        np.asarray(self.state.slip)[:] = slip[0]
+        if self.closed_form:
+            self.modes.start(self.state)
+        self.restart(time)
+        position[:n], velocity[:n] = state[0], state[1]
+        np.asarray(self.state.acceleration)[:], np.asarray(self.state.age)[:] = state[2], state[3]
+        np.asarray(self.state.touching)[:] = slip[1]
+        self.clock, self.clock_rest, self.since_event = clock[0], clock[1], clock[2]
+        # A section that is observed from now on is crossed from the side that the run was on.
+        if self.observer.transient <= time:
+            self.observer.side = int(clock[3])
+        self.settled = True
+
+    def restart(self, time: cython.double) -> cython.int:
+        """Begin again at a time from what is now the state."""
+        self.clock = time
         self.clock_rest = 0.0
+        self.observer.begin = time
+        self.settled = False
         self.steps = 0
         self.since_event = 0.0
         self.since_tangent = 0.0
@@ -121,7 +154,8 @@ class EventDriven:
         remaining: cython.double
         total: cython.double
         work: cython.longlong = 0
-        if self.steps == 0:
+        if not self.settled:
+            self.settled = True
             self.log.settle(self.state, self.clock)
             if self.closed_form:
                 self.modes.start(self.state)
@@ -149,6 +183,8 @@ class EventDriven:
                 block = -1
                 length = remaining
             due = block >= 0 or length >= remaining
+            if length >= remaining:
+                self._mark()
             if self.observing:
                 self.piece.crossing = self.search.crossing(length)
                 self.observer.observe(self.state, self.piece, self.clock, self.clock_rest, length)
@@ -175,6 +211,8 @@ class EventDriven:
                 self.since_event = 0.0
                 if self.closed_form:
                     self.modes.start(self.state)
+                if length >= remaining:
+                    self._mark()
             # At events, so that all solvers look after them at the same times.
             if self.exponents.running and (due or self.since_event >= LONGEST_FOLLOW):
                 self.exponents.follow(self.state, self.clock, length >= remaining)
@@ -212,6 +250,21 @@ class EventDriven:
             if self.since_tangent > 0.0:
                 self.exponents.follow(self.state, self.clock + (length - self.since_tangent), False)
         return 0
+
+    def _mark(self) -> None:
+        """Keep the present state, whose next piece is the last one of the run unless it ends with an event."""
+        i: cython.Py_ssize_t
+        for i in range(self.state.blocks):
+            self.mark_state[0, i] = self.state.position[i]
+            self.mark_state[1, i] = self.state.velocity[i]
+            self.mark_state[2, i] = self.state.acceleration[i]
+            self.mark_state[3, i] = self.state.age[i]
+            self.mark_slip[0, i] = self.state.slip[i]
+            self.mark_slip[1, i] = self.state.touching[i]
+        self.mark_clock[0] = self.clock
+        self.mark_clock[1] = self.clock_rest
+        self.mark_clock[2] = self.since_event
+        self.mark_clock[3] = self.observer.side
 
     def _fastest(self) -> cython.double:
         """Return the largest speed of a block."""

@@ -12,6 +12,7 @@ cdef double NOTHING
 
 cdef class Observer:
     cdef readonly bint section_only
+    cdef public double begin
     cdef readonly double transient
     cdef readonly double end
     cdef double[::1] edge
@@ -39,5 +40,5 @@ cdef class Observer:
     cdef void _average(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _sample(self, Piece piece, double clock, double clock_rest, double length) noexcept nogil
     cdef void _cross(self, State state, Piece piece, double clock, double clock_rest, double length) noexcept nogil
-    cdef void _turn(self, State state, Piece piece, double t, double time) noexcept nogil
+    cdef void _turn(self, State state, Piece piece, double t, double clock, double clock_rest) noexcept nogil
     cdef void _extreme(self, State state, Piece piece, int stage, double start, double stop) noexcept nogil

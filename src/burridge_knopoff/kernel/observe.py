@@ -31,6 +31,7 @@ class Observer:
 
     section_only: cython.bint
 
+    begin: cython.double
     transient: cython.double
     end: cython.double
     edge: cython.double[::1]
@@ -64,6 +65,7 @@ class Observer:
         section_only: bool,
     ) -> None:
         self.section_only = section_only
+        self.begin = 0.0
         self.transient = edge[0]
         self.end = edge[len(edge) - 1]
         self.edge = np.array(edge, dtype=float)
@@ -90,6 +92,7 @@ class Observer:
         self, state: State, piece: Piece, clock: cython.double, clock_rest: cython.double, length: cython.double
     ) -> None:
         """Take everything from the first `length` of a piece that starts at time clock + clock_rest."""
+        until_begin: cython.double
         until_window: cython.double = (self.transient - clock) - clock_rest
         self.loaded = False
         if self.section_only:
@@ -102,7 +105,8 @@ class Observer:
             self._cross(state, piece, clock, clock_rest, length)
             self._extreme(state, piece, WINDOW, max(0.0, until_window), length)
         if until_window > 0.0:
-            self._extreme(state, piece, TRANSIENT, 0.0, min(length, until_window))
+            until_begin = max(0.0, (self.begin - clock) - clock_rest)
+            self._extreme(state, piece, TRANSIENT, until_begin, min(length, until_window))
         self._sample(piece, clock, clock_rest, length)
 
     def _load_distance(self, piece: Piece) -> None:
@@ -169,7 +173,7 @@ class Observer:
         value: cython.double
         if self.side != 0 and piece.crossing != UNCERTAIN:
             if piece.crossing >= 0.0:
-                self._turn(state, piece, piece.crossing, clock + (clock_rest + piece.crossing))
+                self._turn(state, piece, piece.crossing, clock, clock_rest)
             return
         self.polynomial.degree = piece.degree
         for k in range(piece.degree + 1):
@@ -202,12 +206,18 @@ class Observer:
             self.polynomial.deflate()
             if self.side * self.polynomial.coefficient[0] >= 0.0:
                 continue
-            self._turn(state, piece, start, clock + (clock_rest + start))
+            self._turn(state, piece, start, clock, clock_rest)
 
-    def _turn(self, state: State, piece: Piece, t: cython.double, time: cython.double) -> None:
-        """Change the side and keep the crossing to it: when, W' there, and the side."""
-        row: cython.Py_ssize_t = self.crossings.append(time)
+    def _turn(
+        self, state: State, piece: Piece, t: cython.double, clock: cython.double, clock_rest: cython.double
+    ) -> None:
+        """Change the side and keep the crossing to it, at t within a piece: when, W' there, and the side."""
+        row: cython.Py_ssize_t
         self.side = -self.side
+        # A run that goes on repeats a piece of the one before, and has kept what it crossed there.
+        if t <= (self.begin - clock) - clock_rest:
+            return
+        row = self.crossings.append(clock + (clock_rest + t))
         self.crossings.value[row, 0] = piece.sliding_rate(state.v, t)
         self.crossings.value[row, 1] = self.side
 

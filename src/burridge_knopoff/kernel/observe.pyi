@@ -8,6 +8,7 @@ from burridge_knopoff.kernel.record import Record
 class Observer:
     @property
     def section_only(self) -> bool: ...
+    begin: float
     @property
     def transient(self) -> float: ...
     @property

@@ -13,6 +13,8 @@ cdef class TimeStepping:
     cdef readonly double step
     cdef readonly double clock
     cdef readonly long long steps
+    cdef long long earlier_steps
+    cdef bint settled
     cdef double[:, ::1] speed
     cdef double[:, ::1] acceleration
     cdef double[::1] position

@@ -29,6 +29,8 @@ class TimeStepping:
     step: cython.double
     clock: cython.double
     steps: cython.longlong
+    earlier_steps: cython.longlong
+    settled: cython.bint
     speed: cython.double[:, ::1]
     acceleration: cython.double[:, ::1]
     position: cython.double[::1]
@@ -42,18 +44,34 @@ class TimeStepping:
         self.piece = Piece(n, CUBIC)
         self.step = step
         self.steps = 0
+        self.earlier_steps = 0
+        self.settled = False
         self.clock = 0.0
         self.position = np.zeros(n)
         self.velocity = np.zeros(n)
         self.speed = np.zeros((4, n))
         self.acceleration = np.zeros((4, n))
 
-    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> None:
-        """Begin again at τ = 0 from these positions x_i, velocities U_i' and stuck blocks."""
+    def begin(self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray, time: float = 0.0) -> None:
+        """Begin again at a time from these x_i, U_i' and stuck blocks; steps end at multiples of h."""
         self.state.begin(position, velocity, stuck)
-        self.clock = 0.0
+        self.clock = time
+        self.earlier_steps = int(time / self.step)
+        while (self.earlier_steps + 1) * self.step <= time:
+            self.earlier_steps += 1
         self.steps = 0
+        self.settled = False
+        self.observer.begin = time
         self.log.restart()
+
+    def mark(self) -> tuple:
+        """Return what `resume` needs besides the state: the slip directions."""
+        return (self.state.values()[2],)
+
+    def resume(self, mark: tuple, time: float) -> None:
+        """Go on as if the run that has come to this state had not ended."""
+        np.asarray(self.state.slip)[:] = mark[0]
+        self.settled = True
 
     def run(self) -> int:
         """Run on, to the end of the observer's window at most; return COMPLETED or why the run has ended."""
@@ -69,14 +87,15 @@ class TimeStepping:
         step: cython.double
         rate: cython.double
         work: cython.longlong = 0
-        if self.steps == 0:
-            self.log.settle(self.state, 0.0)
+        if not self.settled:
+            self.settled = True
+            self.log.settle(self.state, self.clock)
         while self.clock < self.observer.end:
             work += n
             if work >= WORK_UNTIL_CHECK:
                 check_signals()
                 work = 0
-            after = (self.steps + 1) * self.step
+            after = (self.earlier_steps + self.steps + 1) * self.step
             if after > self.observer.end:
                 after = self.observer.end
             step = after - self.clock

@@ -42,6 +42,8 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
     >>> law_of("mine", 0.5, {"formula": "(1 - drop)*exp(-a*u)", "drop": 0.02}).name
     'mine'
     """
+    if not isinstance(description, Mapping | None):
+        raise refusal("description", description, "the numbers of a law by name, and its formula")
     values = dict(description or {})
     if "name" in values:
         raise ValueError(f"{name}.name: not a number of a law")

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, TypedDict, TypeVar
 
 from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.values import instance_of
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _T = TypeVar("_T")
@@ -45,6 +46,13 @@ class SearchOptions(TypedDict, total=False):
     lifetime: float
 
 
+class AttractorOptions(SearchOptions, total=False):
+    """The rest of them as well: how many initial states are drawn, and their seed."""
+
+    samples: int
+    seed: int
+
+
 def shows(kind: type) -> Callable[[_F], _F]:
     """Return a decorator that shows the settings of a class in the signature of a function, in place of its `**`."""
 
@@ -66,6 +74,8 @@ def shows(kind: type) -> Callable[[_F], _F]:
 
 def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any]) -> _T:
     """Return settings of a class with some of them given by name; raises ValueError, one line, for other names."""
+    if settings is not None:
+        instance_of(settings, kind, "settings")
     known = fields_of(kind)
     for name in by_name:
         if name not in known:

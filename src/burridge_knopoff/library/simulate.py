@@ -8,28 +8,27 @@ from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
 from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.values import instance_of
 
 
 @overload
 def simulate(
-    law: Model, initial: Initial, settings: Settings | None, /, **by_name: Unpack[RunSettings]
+    law: Model, initial: Initial | Instant, settings: Settings | None, /, **by_name: Unpack[RunSettings]
 ) -> Trajectory: ...
 
 
 @overload
 def simulate(
-    law: Model, initial: Initial, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
+    law: Model, initial: Initial | Instant, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
 ) -> Trajectory: ...
 
 
 @overload
 def simulate(
-    law: Model, *, initial: Initial = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
+    law: Model, *, initial: Initial | Instant = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
 ) -> Trajectory: ...
 
 
@@ -37,7 +36,7 @@ def simulate(
 def simulate(
     law: GivenLaw = ...,
     a: float = ...,
-    initial: Initial = ...,
+    initial: Initial | Instant = ...,
     settings: Settings | None = ...,
     *,
     chain: Chain | None = ...,
@@ -65,7 +64,8 @@ def simulate(
         `Law` (its own a), or {"formula": "1 - c*a*u", "c": 0.5}; or in the place of both a `Model`, which has its own
         chain, v and contact
     initial : minus (if none is given) or plus (the paper's, three blocks), an `InitialState`,
-        {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,)
+        {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,); or an
+        `Instant`, as `final` of another run: the run continues from there, and its times count on
     settings : of the run; by_name : some of them, or all, by name (see `Settings`)
     chain : without one the paper's springs, as many blocks as the initial state has
     v, contact : see `Model`, whose defaults they are if none is given
@@ -81,6 +81,9 @@ def simulate(
     >>> own = {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}
     >>> simulate("nonlinear", 0.1, own, transient=0, window=50).model.blocks
     2
+    >>> longer = simulate(run.model, run.final, transient=0, window=100)
+    >>> longer.begin_time, longer.end_time
+    (200.0, 300.0)
     """
     if not isinstance(law, Model):
         own = law.a if isinstance(law, Law) else 0.08
@@ -90,8 +93,6 @@ def simulate(
         if initial is not None and settings is not None:
             raise ValueError("settings: not allowed twice")
         a, initial, settings = None, a, settings if initial is None else initial
-    if settings is not None:
-        instance_of(settings, Settings, "settings")
-    state = given_state("minus" if initial is None else initial)
+    state = initial if isinstance(initial, Instant) else given_state("minus" if initial is None else initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
     return run(model, state, settings_of(Settings, settings, by_name))

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
 from burridge_knopoff.values import read_only
 
@@ -24,6 +24,7 @@ _STRENGTH = Number(1e-6, 1e6)
 _STRENGTHS = Either((_STRENGTH, Several(_STRENGTH)))
 
 
+@settings
 @dataclass(frozen=True)
 class Chain:
     """N blocks of equal mass in a row, or in a ring.

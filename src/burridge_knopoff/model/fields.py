@@ -5,7 +5,7 @@ A setting is a field of a dataclass whose type is annotated with a range and a d
     step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
 
 That line is all that Python, the options of `bk simulate`, the config of a study and the tables of config/README.md
-know of it.
+know of it. The class is decorated with `settings`, so that `help` shows readers the plain type.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from burridge_knopoff.model.ranges import Range, joined
 
@@ -65,7 +65,17 @@ def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
     return ValueError(f"{joined(place, name)}: unknown key{hint}; allowed here: {', '.join(allowed)}")
 
 
+_T = TypeVar("_T")
 _KNOWN: dict[type, Mapping[str, Field]] = {}
+
+
+def settings(kind: type[_T]) -> type[_T]:
+    """Decorate a dataclass whose fields have ranges: these are kept, and its signature shows the plain types."""
+    fields_of(kind)
+    plain = get_type_hints(kind)
+    for item in dataclasses.fields(kind):  # type: ignore[arg-type]
+        item.type = kind.__annotations__[item.name] = kind.__init__.__annotations__[item.name] = plain[item.name]
+    return kind
 
 
 def fields_of(kind: type) -> Mapping[str, Field]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
-from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Number, Several, Text
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
@@ -15,6 +15,7 @@ COORDINATE = Number(-1e6, 1e6)
 _ONE_A_BLOCK = Several(COORDINATE, 2, MAXIMUM_BLOCKS)
 
 
+@settings
 @dataclass(frozen=True)
 class InitialState:
     """Positions U(0) and velocities U'(0), one number a block, under a name: what a person chooses.

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.laws.law import FASTEST
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.ranges import Number, OneOf, Text
 from burridge_knopoff.values import instance_of, read_only
@@ -24,6 +24,7 @@ STARTS = ("moving", "tested")
 START = "moving: every block slips at tau = 0 | tested: those with spring force at most threshold stick there"
 
 
+@settings
 @dataclass(frozen=True)
 class Model:
     """A chain under a friction law, drawn at a velocity.
@@ -125,14 +126,17 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Instant:
-    """The state of all blocks at one instant of a motion, arrays of shape (blocks,): what a run can go on from.
+    """The state of all blocks at one instant of a motion, arrays of shape (blocks,): what a run can continue from.
 
     An `InitialState` becomes one by `Model.begin`, which decides which blocks stick; the kernel's `State` is the one
     that a solver changes as it goes.
 
     position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : which blocks stick
+    time : τ of the state, from which a run that continues counts on
 
-    Positions and velocities are in the units of `Model`, e_i is its `sliding_offset`.
+    Positions and velocities are in the units of `Model`, e_i is its `sliding_offset`. `Trajectory.final` also knows the
+    last step of its run: `simulate(model, run.final)` repeats that step, so that a split run equals the whole, bit for
+    bit.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -144,10 +148,16 @@ class Instant:
     position: np.ndarray
     velocity: np.ndarray
     stuck: np.ndarray
+    time: float = 0.0
+    # The solver of the run and the start of its last step. It belongs to this state alone: `replace` does not copy it.
+    last_step: Any = field(default=None, init=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<Instant at tau = {self.time:g}: {np.size(self.position)} blocks, {np.sum(self.stuck)} of them stuck>"
 
     def mirrored(self) -> Instant:
         """Return the state seen from the other end of the chain."""
-        return Instant(self.position[::-1].copy(), self.velocity[::-1].copy(), self.stuck[::-1].copy())
+        return Instant(self.position[::-1].copy(), self.velocity[::-1].copy(), self.stuck[::-1].copy(), self.time)
 
     def vector(self) -> np.ndarray:
         """Return positions and velocities in one array, shape (2 blocks,)."""

@@ -25,6 +25,7 @@ from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, step_along
 from burridge_knopoff.orbits.simpler import simplest
 from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.values import each_instance_of
 
 # Lengths along a branch to which roots are found, and by which they are held from both sides, in turn.
 TOLERANCE = 1e-14
@@ -74,6 +75,9 @@ class Edge:
     after: BranchOrbit | None
     turns: bool
 
+    def __repr__(self) -> str:
+        return f"<Edge: {self.kind.name.lower()} at a = {self.a:.12g} +- {self.a_error:.1g}, period {self.period:.9g}>"
+
     @property
     def period(self) -> float:
         """Period of the stable orbits there: at a flip twice that of the orbit itself."""
@@ -105,7 +109,7 @@ class Edge:
 def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
     """Yield all edges along a followed branch, in the order in which it meets them, each found as it is asked for.
 
-    branch : as `follow` returns it
+    branch : as `follow` returns it; raises ValueError, one line, for anything else
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
     docs/edges.md says how each kind is told.
@@ -118,6 +122,10 @@ def locate_edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
     >>> edge.kind.name, round(edge.a, 9)
     ('PITCHFORK', 0.086972905)
     """
+    return _edges(each_instance_of(branch, BranchOrbit, "branch"))
+
+
+def _edges(branch: Sequence[BranchOrbit]) -> Iterator[Edge]:
     for k, point in enumerate(branch):
         following = branch[k + 1] if k + 1 < len(branch) else None
         if point.corner:

@@ -47,6 +47,10 @@ class Multipliers:
     breaking: np.ndarray
     power: int
 
+    def __repr__(self) -> str:
+        leading = ", ".join(f"{value:.6g}" for value in self.whole[:3])
+        return f"<Multipliers of a period: {leading}{', ...' * (len(self.whole) > 3)}; {self.unstable} unstable>"
+
     @property
     def whole(self) -> np.ndarray:
         """All multipliers of a whole period, the largest modulus first."""

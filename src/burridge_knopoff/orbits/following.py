@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -12,6 +13,7 @@ from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch
 from burridge_knopoff.orbits.simpler import simpler_orbit, simplest
+from burridge_knopoff.values import instance_of, real_number, refusal
 
 # Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
 # comes back to itself in a mirror, or after half its period.
@@ -73,9 +75,14 @@ def follow(
     >>> [point.multipliers.unstable for point in branch]
     [0, 0, 0, 1, 1]
     """
-    low, high = a_range
+    try:
+        low, high = (real_number(value) for value in a_range)
+    except (TypeError, ValueError):
+        low = high = math.nan
     if not low <= high:
-        raise ValueError(f"a_range: {a_range!r} is not allowed: (low, high) with low ≤ high")
+        raise refusal("a_range", a_range, "(low, high) with low ≤ high")
+    instance_of(orbit, PeriodicOrbit, "orbit")
+    instance_of(settings, Following, "settings")
     if not low <= orbit.a <= high:
         raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
     points = [begin_branch(simpler_orbit(orbit) or orbit, upward)]

@@ -72,6 +72,12 @@ class Orbit:
     monodromy: np.ndarray
     events: tuple[tuple[float, int, int], ...]
 
+    def __repr__(self) -> str:
+        return (
+            f"<Orbit, {self.model.law.name} law, a = {self.model.a:.12g}: period {self.period:.9g}, "
+            f"{len(self.events)} events>"
+        )
+
     def times(self, block: int, kind: int) -> list[float]:
         """Return the times, since the reference instant, at which a block stops (kind 0) or starts (kind 1)."""
         return [time for time, moved, event in self.events if (moved, event) == (block, kind)]

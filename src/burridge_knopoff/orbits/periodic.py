@@ -24,6 +24,7 @@ from burridge_knopoff.orbits.orbit import OrbitError, flow, mean_distance, model
 from burridge_knopoff.orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.values import instance_of
 
 #: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
 #: long as it gains, down to where rounding begins to count.
@@ -80,6 +81,12 @@ class PeriodicOrbit:
         mapping = ReturnMap(self.model, self.symmetry)
         mapping.end(self.reference, self.return_time)
         return _event_rows(mapping, self.return_time)
+
+    def __repr__(self) -> str:
+        return (
+            f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.law.name} law, a = {self.a:.12g}: "
+            f"period {self.period:.9g}, stops of each block {self.signature}>"
+        )
 
     def forget_events(self) -> None:
         """Free what the events take, a megabyte on the longest orbits: they are found again when they are asked for."""
@@ -234,6 +241,7 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     >>> near.a, round(near.period, 4)
     (0.081, 157.2682)
     """
+    instance_of(model, Model, "model")
     return_time, symmetry = Number(0.0, LONGEST, above=True).form(return_time, "return_time"), Symmetry(symmetry)
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(

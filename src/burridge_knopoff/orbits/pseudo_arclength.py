@@ -54,6 +54,9 @@ class BranchOrbit:
     joined: PeriodicOrbit | None = None
     remaining: float = np.nan
 
+    def __repr__(self) -> str:
+        return f"<BranchOrbit: {self.orbit!r}>"
+
     @property
     def corner(self) -> bool:
         """Whether the orbit grazes, to rounding."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from burridge_knopoff import values
@@ -17,6 +19,7 @@ from burridge_knopoff.kernel.time_stepping import TimeStepping
 from burridge_knopoff.kernel.vector import WIDTH
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import instance_of, refusal
 
 NEVER = 1e300
 
@@ -55,12 +58,15 @@ class Runner:
         exponents: Exponents | None = None,
         perturbations: np.ndarray | None = None,
     ) -> None:
+        instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
                 "solver: 'map' is not allowed: it needs a closed form, that of a law which is a straight line, not too "
                 "steep, in a uniform chain with open ends; series | rk4"
             )
         self.model = model
+        # What decides its steps: a run continues step by step only under the same.
+        self.solver = model, solver, step if solver == "rk4" else None
         blocks = model.blocks
         order = RK4_ORDER if solver == "rk4" else SERIES_ORDER
         self.log = EventLog(blocks, events_from, keep_events, EVENTS_PER_BLOCK_AND_UNIT * blocks, stops_only)
@@ -81,11 +87,19 @@ class Runner:
             self.carry(perturbations)
 
     def begin(self, at: Instant) -> None:
-        """Begin at τ = 0 from an instant; raises ValueError if it is none of the model's blocks."""
+        """Begin from an instant, at its time; raises ValueError if it is none of the model's blocks."""
         blocks = self.model.blocks
-        if not isinstance(at, Instant) or any(np.shape(values) != (blocks,) for values in vars(at).values()):
-            raise ValueError(f"state: {' '.join(str(at).split())[:60]} is not allowed: an Instant of {blocks} blocks")
-        self.kernel.begin(at.position, at.velocity, at.stuck)
+        if not isinstance(at, Instant) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
+            raise refusal("state", at, f"an Instant of {blocks} blocks")
+        self.kernel.begin(at.position, at.velocity, at.stuck, at.time)
+        if at.last_step is not None and at.last_step[0] == self.solver:
+            self.kernel.resume(at.last_step[1], at.time)
+
+    def final(self) -> Instant:
+        """Return the state at the end of a completed run, from which another one continues with the same steps."""
+        at = replace(self.instant(), time=self.clock)
+        object.__setattr__(at, "last_step", (self.solver, self.kernel.mark()))
+        return at
 
     def carry(self, perturbations: np.ndarray) -> None:
         """Carry the columns of a matrix (2 blocks, vectors) along from now on, never orthonormalised."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
-from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.values import MOST_NUMBERS, refusal
@@ -26,6 +26,7 @@ MOST_STEPS = 1e10
 LONGEST_STEP = 0.25
 
 
+@settings
 @dataclass(frozen=True)
 class Settings:
     """How a run begins, how it is computed, and what is kept of it; times in units of 1/ω.

@@ -24,7 +24,8 @@ def run(
 ) -> Trajectory:
     """Run one simulation of a model and return its trajectory.
 
-    initial : where it begins; an instant is one in the middle of a motion, whatever `start` says
+    initial : where it begins; an instant is one in the middle of a motion, whatever `start` says, and times count on
+        from its own
     section_only : whether ⟨J⟩, and what is least in friction and spring force, is left out (NaN): an eighth of the time
     stops_only : whether only stops in the event window are kept, none of the other events: half of the memory
 
@@ -37,30 +38,31 @@ def run(
         initial = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
     else:
         begun = model.begin(initial, settings.start)
-    runner = _prepare(model, settings, section_only, stops_only)
+    runner = _prepare(model, settings, begun.time, section_only, stops_only)
     runner.begin(begun)
-    return collect(model, initial, settings, runner, runner.run())
+    return collect(model, initial, settings, runner, begun, runner.run())
 
 
-def _prepare(model: Model, settings: Settings, section_only: bool, stops_only: bool) -> Runner:
-    """Return a solver that measures what the settings ask for."""
+def _prepare(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
+    """Return a solver that measures what the settings ask for, in a run that begins at a time."""
     duration = settings.duration
-    edge = settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
-    edge[-1] = duration
-    distance_time = settings.sampling * np.arange(math.floor(duration / settings.sampling + 1e-9) + 1)
+    end = time + duration
+    edge = time + settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
+    edge[-1] = end
+    distance_time = time + settings.sampling * np.arange(math.floor(duration / settings.sampling + 1e-9) + 1)
     trajectory = min(settings.trajectory, duration)
     count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
-    trajectory_time = duration - settings.trajectory_sampling * np.arange(count, -1, -1)
+    trajectory_time = end - settings.trajectory_sampling * np.arange(count, -1, -1)
     order = RK4_ORDER if settings.solver == "rk4" else SERIES_ORDER
-    aligned = max(0.0, settings.transient - settings.lyapunov_alignment)
+    aligned = time + max(0.0, settings.transient - settings.lyapunov_alignment)
     exponents = Exponents(model.blocks, settings.lyapunov_exponents, aligned, edge)
     return Runner(
         model,
         settings.solver,
         step=settings.step,
-        events_from=0.0 if settings.events == "all" else duration - min(settings.event_window, settings.window),
+        events_from=time if settings.events == "all" else end - min(settings.event_window, settings.window),
         keep_events=settings.events != "none",
         stops_only=stops_only,
-        observer=new_observer(model, edge, np.minimum(distance_time, duration), trajectory_time, order, section_only),
+        observer=new_observer(model, edge, np.minimum(distance_time, end), trajectory_time, order, section_only),
         exponents=exponents,
     )

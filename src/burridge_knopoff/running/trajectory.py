@@ -10,26 +10,32 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.plot import plot_run
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import Status
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """What a run left: model, initial state, settings, status, and observables; arrays have the names of point files.
 
+    `final` is the state at its end, from which `simulate(model, run.final)` continues: times count on, and both runs
+    together have the events and crossings of one long run, bit for bit. `initially_slipping` tells which blocks slip
+    at the beginning, before the first event: the slips of a block are these and its starts.
+
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
-    Times are in units of 1/ω. Shapes: `time`, `distance` (samples,); `event_time`, `event_block`, `event_kind`
-    (events,), `event_position`, `event_velocity` (events, blocks), and likewise `earlier_event_…` for events without
-    states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`, `velocity` (times, blocks);
-    `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches in front. docs/data.md has a
-    line on each. Averages are NaN unless `status` is completed.
+    Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`,
+    `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
+    `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
+    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches
+    in front. docs/data.md has a line on each. Averages are NaN unless `status` is completed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
@@ -43,7 +49,10 @@ class Trajectory:
     initial: InitialState
     settings: Settings
     status: str
+    begin_time: float
     end_time: float
+    initially_slipping: np.ndarray = field(repr=False)
+    final: Instant = field(repr=False)
     event_count: int
     step_count: int
     mean_distance: float
@@ -74,14 +83,27 @@ class Trajectory:
     batch_lyapunov_exponent: np.ndarray = field(repr=False)
     lyapunov_infinite_count: int
 
+    def __repr__(self) -> str:
+        return (
+            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, "
+            f"a = {self.model.a:g}: {self.status} at tau = {self.end_time:g}, {self.event_count} events, "
+            f"<J> = {self.mean_distance:.6g} +- {self.mean_distance_error:.1g}>"
+        )
+
+    def plot(self) -> Figure:
+        """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run, as a notebook shows it."""
+        return plot_run(self)
+
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""
         # By its name: what computes with trajectories does not depend on how files hold them.
         return import_module("burridge_knopoff.dataset.point").to_dataset(self)
 
 
-def collect(model: Model, initial: InitialState, settings: Settings, runner: Runner, status: Status) -> Trajectory:
-    """Return what a run has left."""
+def collect(
+    model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: Instant, status: Status
+) -> Trajectory:
+    """Return what a run has left that began at an instant."""
     measured = runner.observer.results()
     n = model.blocks
     offset = model.sliding_offset
@@ -102,7 +124,10 @@ def collect(model: Model, initial: InitialState, settings: Settings, runner: Run
         initial=initial,
         settings=settings,
         status=status.name.lower(),
+        begin_time=begun.time,
         end_time=runner.clock,
+        initially_slipping=~begun.stuck,
+        final=runner.final() if completed else runner.instant(),
         event_count=log.count,
         step_count=runner.kernel.steps,
         mean_distance=float(batch.mean()),

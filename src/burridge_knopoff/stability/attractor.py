@@ -44,6 +44,9 @@ class Attractor:
     close_returns: int = field(kw_only=True)
     patience: float = 0.0
 
+    def __repr__(self) -> str:
+        return f"<Attractor, {self.symmetry.name.lower()}: {self.motion.words}>"
+
 
 def close_returns(found: Returns, tolerance: float, tuning: Tuning = TUNING) -> int:
     """Return how many successive returns have to be close to a motion: twice round it if it is a closed orbit."""

@@ -25,6 +25,7 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.mirror import pair_distances, symmetrized
 from burridge_knopoff.stability.settings import SAMPLE, WATCH, Sample, Watch
+from burridge_knopoff.values import instance_of
 
 
 class Outcome(IntEnum):
@@ -141,6 +142,7 @@ def transverse_exponent(
     >>> round(exponent, 3), error < 1e-3
     (-0.007, True)
     """
+    instance_of(model, Model, "model")
     _check_mirror(model)
     alignment, window = DURATION.form(alignment, "alignment"), WINDOW.form(window, "window")
     blocks = model.blocks

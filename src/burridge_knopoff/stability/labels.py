@@ -17,7 +17,7 @@ from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settings import SEARCH
-from burridge_knopoff.values import instance_of, real_array
+from burridge_knopoff.values import each_instance_of, instance_of, real_array
 
 
 def label(
@@ -117,8 +117,7 @@ def label_states(
     ([0, 1], [62.0, 355.0])
     """
     instance_of(model, Model, "model")
-    for number, attractor in enumerate(attractors):
-        instance_of(attractor, Attractor, f"attractors[{number}]")
+    attractors = each_instance_of(attractors, Attractor, "attractors")
     position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
     if not position.shape == velocity.shape == (*position.shape[:1], model.blocks):
         raise ValueError(

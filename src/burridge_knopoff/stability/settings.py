@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from burridge_knopoff.model.fields import check_fields
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import COORDINATE, PAPER_STATES, InitialState
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, Whole
@@ -34,6 +34,7 @@ def seed_at(seed: int, a: float) -> list[int]:
     return [seed, int(np.float64(a).view(np.uint64))]
 
 
+@settings
 @dataclass(frozen=True)
 class MotionSettings:
     """How kinds of motion are told: the config's section `motion`, and its synchronization_threshold.
@@ -83,6 +84,7 @@ class MotionSettings:
 MOTION = MotionSettings()
 
 
+@settings
 @dataclass(frozen=True)
 class SearchSettings:
     """How attractors are looked for, told apart and matched along a: the config's section `attractors`.
@@ -150,6 +152,7 @@ SEARCH = SearchSettings()
 OF_GIVEN_STATES = ("seed", "transient", "window", "time_limit", "resolution", "pushes", "lifetime")
 
 
+@settings
 @dataclass(frozen=True)
 class Refine:
     """Where values of a are put in between those of the grid, for attractors: the config's section `refine`.
@@ -172,6 +175,7 @@ class Refine:
 REFINE = Refine()
 
 
+@settings
 @dataclass(frozen=True)
 class BasinSettings:
     """A map of basins over U_1(0) and U_N(0): the config's section `basins`, without the values of a.
@@ -199,6 +203,7 @@ class BasinSettings:
             raise ValueError(f"tiles: {self.tiles} is not allowed: at most the {self.pixels} rows of a map")
 
 
+@settings
 @dataclass(frozen=True)
 class PhaseSettings:
     """Blocks that oscillate about uniform sliding: the config's section `phases`, without the values of a.
@@ -232,6 +237,7 @@ class PhaseSettings:
         check_fields(self)
 
 
+@settings
 @dataclass(frozen=True)
 class Sample:
     """Which initial states are watched: `samples` of them in a box, drawn with a seed, under a convention of start.
@@ -277,6 +283,7 @@ class Sample:
 SAMPLE = Sample()
 
 
+@settings
 @dataclass(frozen=True)
 class Watch:
     """How long a state is watched and when it counts as synchronized.

@@ -64,6 +64,16 @@ class SteadyMotion:
     recurrence: float = 0.0
     left_for: Instant | None = None
 
+    @property
+    def words(self) -> str:
+        """Kind of motion, section points of a closed orbit, ⟨J⟩ and Lyapunov exponents, in a line."""
+        points = f", {self.section_period} section points" if self.section_period else ""
+        exponents = ", ".join(f"{value:.4f}" for value in self.exponent)
+        return f"{self.kind.words}{points}, <J> = {self.mean_distance:.6g}, exponents {exponents}"
+
+    def __repr__(self) -> str:
+        return f"<SteadyMotion: {self.words}>"
+
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
         return replace(

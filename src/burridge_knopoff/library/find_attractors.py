@@ -1,0 +1,76 @@
+"""The attractors of a model in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Unpack
+
+import numpy as np
+
+from burridge_knopoff.library.by_name import AttractorOptions, settings_of, shows
+from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import STARTS, Model
+from burridge_knopoff.model.ranges import OneOf
+from burridge_knopoff.stability import attractors
+from burridge_knopoff.stability.attractor import Attractor
+from burridge_knopoff.stability.settings import MOTION, MotionSettings, SearchSettings
+from burridge_knopoff.values import instance_of, refusal
+
+
+@shows(SearchSettings)
+def find_attractors(
+    law: Model | GivenLaw,
+    a: Any = None,
+    settings: SearchSettings | None = None,
+    motion: MotionSettings = MOTION,
+    *,
+    starts: Iterable[Initial] = (),
+    start: str = "moving",
+    chain: Chain | None = None,
+    v: float | None = None,
+    contact: str | None = None,
+    **by_name: Unpack[AttractorOptions],
+) -> tuple[list[Attractor], np.ndarray]:
+    """Return the attractors of a model, and the index among them that each initial state reaches.
+
+    law, a, chain, v, contact : as `simulate` takes them: `find_attractors(law, a)`, or `find_attractors(model,
+        settings)` with a `Model` in the place of both
+    settings : how attractors are searched for, and how many initial states are drawn; by_name : some of them, or all,
+        by name (see `SearchSettings`)
+    motion : how kinds of motion are told apart
+    starts : initial states besides those that are drawn, each in any form that `simulate` takes
+    start : moving or tested, see `Model.begin`
+
+    The indices have shape (samples + len(starts),), those of the drawn states first; −1 where a state reaches nothing
+    that settles. An attractor that no state reaches is not found, nor is a motion on which no block ever stops:
+    attractors are known by the states at the stops of the outermost block that stops regularly. Raises ValueError, one
+    line, for anything that is not allowed.
+
+    Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
+
+    >>> from burridge_knopoff import find_attractors
+    >>> search = {"samples": 12, "transient": 500, "window": 500}
+    >>> attractors, labels = find_attractors("linearized", 0.08, starts=["plus"], **search)
+    >>> for attractor in attractors:
+    ...     print(attractor.motion.kind.words, round(attractor.motion.mean_distance, 3))
+    synchronized 0.0
+    periodic 0.141
+    >>> labels.shape, labels[-1].item()
+    ((13,), 1)
+    """
+    if isinstance(law, Model) and isinstance(a, SearchSettings):
+        if settings is not None:
+            raise ValueError("settings: got two, expected one")
+        a, settings = None, a
+    instance_of(motion, MotionSettings, "motion")
+    OneOf(STARTS).form(start, "start")
+    if isinstance(starts, str) or not isinstance(starts, Iterable):
+        raise refusal("starts", starts, "a list of initial states")
+    states = [given_state(state) for state in starts]
+    # Without states and chain it is the paper's.
+    blocks = len(states[0].position) if states else 3
+    model = given_model(law, a, blocks, chain, v, contact)
+    return attractors.find_attractors(
+        model, settings_of(SearchSettings, settings, by_name), motion, starts=states, start=start
+    )

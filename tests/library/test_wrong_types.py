@@ -1,0 +1,116 @@
+"""Every public call refuses a value of a wrong type in one line that names the argument."""
+
+import inspect
+
+import numpy as np
+import pytest
+
+import burridge_knopoff
+from burridge_knopoff import (
+    Chain,
+    Following,
+    InitialState,
+    Model,
+    SearchSettings,
+    Symmetry,
+    closed_motion,
+    follow,
+    law_of,
+    simulate,
+    synchronized_orbit,
+)
+
+MODEL = Model(Chain(3), law_of("linearized", 0.0865))
+STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
+QUICK = {"transient": 0, "window": 1, "batches": 2}
+SEARCH = SearchSettings(samples=1, fraction_samples=1, transient=100, window=100, time_limit=200)
+WRONG = (
+    object(),
+    {1, 2},
+    b"minus",
+    1j,
+    np.array(["x"]),
+    lambda: None,
+    "no such thing",
+    [[]],
+    {"x": object()},
+    -1.5,
+    None,
+)
+
+
+def correct_calls():
+    """Return arguments that each public function takes, by its name."""
+    orbit = closed_motion(MODEL, synchronized_orbit(MODEL).reference)
+    branch = follow(orbit, (0.0864, 0.0866))
+    return {
+        "basin_map": {"law": "linearized", "a": 0.08, "initial": "minus", "pixels": 1, "samples": 1},
+        "closed_motion": {"model": MODEL, "state": STATE, "settling": 1000.0},
+        "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
+        "find_periodic_orbit": {
+            "model": MODEL,
+            "guess": orbit.reference,
+            "return_time": orbit.return_time,
+            "symmetry": Symmetry.ASYMMETRIC,
+        },
+        "follow": {"orbit": orbit, "a_range": (0.0864, 0.0866), "settings": Following()},
+        "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
+        "law_of": {"name": "linearized", "a": 0.08, "description": {}},
+        "locate_edges": {"branch": branch},
+        "multipliers": {"orbit": orbit},
+        "open_study": {"results": "results/nothing"},
+        "simulate": {
+            "law": "linearized",
+            "a": 0.08,
+            "initial": "minus",
+            "settings": None,
+            "chain": None,
+            "v": 0.1,
+            **QUICK,
+        },
+        "sweep": {"law": "linearized", "a": [0.08], "initial": "minus", "settings": None, "chain": None, **QUICK},
+        "synchronized_orbit": {"model": MODEL},
+        "transverse_exponent": {"model": MODEL, "state": STATE, "alignment": 10.0, "window": 10.0},
+        "transverse_multiplier": {"orbit": synchronized_orbit(MODEL)},
+    }
+
+
+CALLS = correct_calls()
+
+
+def test_every_public_function_is_tried():
+    public = {name for name in burridge_knopoff.__all__ if inspect.isfunction(getattr(burridge_knopoff, name))}
+    assert public == set(CALLS)
+
+
+@pytest.mark.parametrize(("name", "argument"), [(name, key) for name, given in CALLS.items() for key in given])
+def test_a_wrong_type_is_refused_in_one_line(name, argument):
+    call = getattr(burridge_knopoff, name)
+    refused = 0
+    for wrong in WRONG:
+        try:
+            call(**{**CALLS[name], argument: wrong})
+        except (ValueError, FileNotFoundError) as error:
+            text = str(error)
+            assert "\n" not in text, text
+            assert len(text) < 400, text
+            refused += 1
+    # The others are allowed: None where there is a default, a number or a text where one is taken.
+    assert refused >= len(WRONG) - 3
+
+
+@pytest.mark.parametrize("kind", ["Chain", "Model", "InitialState", "Settings", "SearchSettings", "MotionSettings"])
+def test_help_shows_plain_types(kind):
+    shown = inspect.getdoc(getattr(burridge_knopoff, kind)) + str(inspect.signature(getattr(burridge_knopoff, kind)))
+    assert "Annotated" not in shown
+    assert ": " in str(inspect.signature(getattr(burridge_knopoff, kind)))
+
+
+def test_results_print_in_a_line_or_two():
+    orbit = CALLS["follow"]["orbit"]
+    branch = CALLS["locate_edges"]["branch"]
+    run = simulate("linearized", 0.08, "plus", **QUICK)
+    attractors, _ = burridge_knopoff.find_attractors("linearized", 0.08, SEARCH)
+    for result in (run, run.final, MODEL, orbit, branch[0], burridge_knopoff.multipliers(orbit), *attractors):
+        assert "\n" not in repr(result)
+        assert len(repr(result)) <= 240, repr(result)

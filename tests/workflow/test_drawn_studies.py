@@ -1,0 +1,97 @@
+"""Small studies drawn from the ends of what config/README.md allows, each run to its report or refused at once.
+
+`BK_FUZZ=10` draws ten times as many; `BK_KEEP` names a folder in which the studies stay, to look at their figures.
+"""
+
+import os
+import random
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.fuzzing import TIMES
+from tests.workflow.conftest import Study
+
+#: So little of everything that a study takes half a minute.
+BASE = {
+    "a": [0.08],
+    "initial": {"minus": {}},
+    "transient": 40,
+    "window": 60,
+    "batches": 2,
+    "attractors": {
+        **{"samples": 2, "fraction_samples": 2, "pushes": 4},
+        **{"transient": 100, "window": 100, "time_limit": 500, "lifetime": 500},
+    },
+    "refine": {"resolution": 1},
+    "basins": {"pixels": 2, "pairs": 2, "tiles": 1},
+    "phases": {"amplitude": [0.03], "phase_difference": [180], "inner_share": [0], "samples": 1},
+    "solvers": {"step": 0.02},
+    "chains": {"two_blocks": {"a": [0.05], "samples": 1}},
+}
+
+
+def blocks(count):
+    return {"own": {"position": [-0.9, -1.1, -1.0, -0.95, -1.05, -0.9][:count], "velocity": [0.1] * count}}
+
+
+#: What a key may be instead: values at an end of its range, and what changes most in a study.
+ENDS = {
+    "a": [[0.0], [0.05, 0.2], [0.3]],
+    "initial": [{"minus": {}, "plus": {}}, blocks(2), blocks(3), blocks(4), blocks(6)],
+    "laws": [{"linearized": {}}, {"nonlinear": {}}, {"own": {"formula": "exp(-a*u)"}, "stribeck": {}}],
+    "chain": [{"ends": "ring"}, {"coupling": 4.0, "pulling": 1.0}, {"threshold": 0.5}],
+    "contact": ["symmetric"],
+    "start": ["tested"],
+    "solver": ["rk4", {"linearized": "map"}],
+    "lyapunov_exponents": [0, 1, 4],
+    "lyapunov_alignment": [0],
+    "batches": [3, 50],
+    "window": [0.5, 200],
+    "transient": [0.001],
+    "sampling": [1000.0, 0.5],
+    "trajectory": [0, 1000],
+    "events": ["none", "all"],
+    "event_window": [0],
+    "without": [["attractors"], ["edges"], ["basins", "phases"], ["solvers", "two_blocks"], ["claims"]],
+    "motion": [{"longest_period": 1}, {"zero_exponent": 0.0, "chaotic_exponent": 0.0}],
+    "basins": [{"pixels": 1, "pairs": 0, "tiles": 1}, {"a": {}}],
+}
+
+#: Each found a fault once: without exponents, with few events, of chains of other lengths.
+KNOWN = [
+    {"lyapunov_exponents": 0, "batches": 3, "contact": "symmetric"},
+    {"events": "none", "trajectory": 0, "initial": blocks(6), "chain": {"ends": "ring"}, "start": "tested"},
+]
+
+
+def drawn(number):
+    """Return a study in which four keys, and the stages that it goes without, are drawn."""
+    generator = random.Random(number)
+    keys = generator.sample(sorted(ENDS), 4)
+    return {key: generator.choice(ENDS[key]) for key in keys}
+
+
+STUDIES = [*KNOWN, *map(drawn, range(2 * TIMES))]
+
+
+@pytest.mark.parametrize(("number", "changes"), enumerate(STUDIES))
+def test_a_drawn_study_ends_with_its_report(number, changes, tmp_path):
+    name = f"drawn_{number}"
+    config = {"study": name, **BASE, **{"without": ["proof"]}, **changes}
+    folder = Path(os.environ["BK_KEEP"]) / name if "BK_KEEP" in os.environ else tmp_path / name
+    study = Study(folder, yaml.safe_dump(config, sort_keys=False))
+    run = study.run()
+    results = study.folder / "results" / name
+    if run.returncode and not results.exists():
+        # What is not allowed is refused before anything is written.
+        assert len(run.stderr.strip().splitlines()) == 1, run.stderr
+        return
+    assert run.returncode == 0, run.stderr
+    assert (results / "report.html").stat().st_size > 10_000
+    figures = sorted((results / "figures").glob("*.png"))
+    assert len(figures) >= 5
+    assert all(figure.stat().st_size > 3_000 for figure in figures)
+    again = study.ok("-n")
+    assert "Nothing to be done" in again or "nothing to do" in again.lower(), again
