@@ -7,7 +7,7 @@ from burridge_knopoff.figures.branches import COLORS, OTHER_COLOR, branch_colors
 
 
 def attractors(values):
-    """Return attractors of one law with each branch, {number: values of a at which it is there}, in a slot of its own."""
+    """Return attractors of one law, each branch in a slot of its own: {number: values of a at which it is there}."""
     grid = np.arange(max(values.values()))[:, None]
     branch = np.where(grid < np.array(list(values.values())), np.array(list(values)), -1)
     return xr.Dataset({"branch": (("law", "a", "attractor"), branch[None])})
