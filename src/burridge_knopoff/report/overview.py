@@ -26,6 +26,13 @@ LIBRARIES = (
 )
 
 
+def opening(study: Study) -> str:
+    """Return what the study is about, in a line."""
+    config, laws = study.config, study.laws
+    words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
+    return f"{counted(study.blocks, 'block')}, v = {text(config['v'])}, a = {_grid(config['a'])}, {words}"
+
+
 def what_was_run(study: Study) -> list[tuple[str, str]]:
     """Return names and values of what decides the runs."""
     config = study.config

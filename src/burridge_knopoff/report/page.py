@@ -95,6 +95,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     return environment.get_template("report.html.jinja").render(
         study=study.name,
         blocks=study.blocks,
+        opening=overview.opening(study),
         setting=verdicts.setting,
         verdicts=verdicts,
         signs=SIGNS,
