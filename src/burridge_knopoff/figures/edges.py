@@ -131,7 +131,7 @@ def _edges(panel: Axes, edges: xarray.Dataset, law: int, colors: dict[int, str])
         for k in np.flatnonzero((edges["law"].values == law) & (kind == one)):
             color = colors.get(int(branch[k]), OTHER_COLOR)
             width = 0.0 if one in MARKS else 2.0 * error[k]
-            panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6)
+            panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
     panel.set_yticks(range(len(ROWS)), list(ROWS.values()), fontsize=7.0)
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(ROWS) - 0.4, -0.6)

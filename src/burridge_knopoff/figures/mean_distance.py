@@ -67,7 +67,7 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None
         panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     if strips:
-        panels[1, 0].set_ylabel("initial state, contact, start")
+        panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
     begin_at_zero(panels[0, 0])
     show_all(panels[0, 0], mean_distance["a"].values)
     _legend(figure, mean_distance, colors, {} if attractors is None else branch_names(attractors))

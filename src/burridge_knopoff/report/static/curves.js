@@ -14,7 +14,7 @@ const runShape = (n) => runShapes[n % runShapes.length] + (n % 2 ? "-open" : "")
 legends.branches = () => [...groups.values()].map((group) => ({ ...group, color: hue(group.color) }));
 legends.runs = () => [
   ...runs.initial.map((name, n) => ({ name: `run from ${name}`, color: ink("text"), shape: runShape(n) })),
-  { name: "the run shown below", color: ink("focus"), shape: "circle-open" },
+  { name: "the run shown under One run", color: ink("focus"), shape: "circle-open" },
 ];
 
 builders.distance = (box) => {
