@@ -17,7 +17,6 @@ from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.formats import content_digest as digest_of
 from burridge_knopoff.claims.ledger import ledger
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Range, at_values, by_interval, by_value
-from burridge_knopoff.claims.verdict import with_error as shown
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.claims.said import CLAIMS, PICTURES
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
@@ -188,19 +187,6 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     text = as_markdown({**content, "claims": claims}, "figures")
     assert text.endswith("\n\n### Not testable\n\n- Short runs. (2: one, two)\n")
     assert "|" not in text
-
-
-def test_numbers_are_shown_with_the_digits_that_their_errors_leave() -> None:
-    assert shown(0.140640595, 9.5e-6) == "0.1406406 ± 0.0000095"
-    assert shown(5.7, 0.2) == "5.70 ± 0.20"
-    assert shown(1.0, 0.0995) == "1.00 ± 0.10"
-    assert shown(123.4, 20.0) == "123 ± 20"
-    assert shown(-0.25, 0.01) == "−0.250 ± 0.010"
-    assert shown(-1 / 3) == "−0.333333"
-    assert shown(1 / 3, 1e-11) == "0.333333333333 ± 0.000000000010"
-    assert shown(-1 / 3, 1e-12) == "−0.333333333333"
-    assert shown(0.25) == shown(0.25, 0.0) == shown(0.25, math.nan) == "0.25"
-    assert shown(math.nan) == "nan"
 
 
 def test_values_join_neighbours_and_count_many() -> None:

@@ -15,6 +15,7 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.attractors import attractor_table
 from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.settings import MOTION, SearchSettings
+from burridge_knopoff.study.words import plain, with_error
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 GIVEN = ["--law", "linearized", "--a", "0.08"]
@@ -46,9 +47,10 @@ def test_attractors(capsys, tmp_path):
     # An exponent is 0 within its error from either side.
     below = written.assign(lyapunov_exponent=xr.full_like(written["lyapunov_exponent"], -1e-5))
     assert all("   0.0000  0.0000  0.0000" in line for line in attractor_table(below, {})[1:])
+    means = np.array([written[f"mean_distance{end}"].values[0, 0] for end in ("", "_error")])
     for slot, name in enumerate(written["branch_name"].values):
         row = next(line for line in rows if line.startswith(f"{name}  "))
-        assert f"  {written['mean_distance'].values[0, 0, slot]:.6f} +- " in row
+        assert f"  {plain(with_error(*means[:, slot].tolist()))}  " in row
         assert f"  {100 * written['basin_fraction'].values[0, 0, slot]:.1f} (" in row
     reached = found[labels[-1]].motion.mean_distance
     name = written["branch_name"].values[np.abs(written["mean_distance"].values[0, 0] - reached).argmin()]

@@ -1,34 +1,40 @@
-"""Colours of branches: those that most states reach have one of their own."""
+"""Colours of branches: those that are found at the most values of a have one of their own, the same in every file."""
 
 import numpy as np
-import pytest
 import xarray as xr
 
 from burridge_knopoff.figures.branches import COLORS, OTHER_COLOR, branch_colors, map_colors
 
 
-@pytest.mark.parametrize(("sampled", "grey"), [(True, 1), (False, len(COLORS))])
-def test_small_basins_share_a_colour_and_short_ranges_where_nothing_was_sampled(sampled, grey):
-    # Branch n exists at all values of a but n − 1 of them, and n states reach it at each.
-    numbers = np.arange(1, len(COLORS) + 1)
-    branch = np.where(np.arange(2 * len(COLORS))[:, None] >= numbers - 1, numbers, -1)[None]
-    count = np.where(branch > 0, branch, 0) * sampled
-    names = ("law", "a", "attractor")
-    colors = branch_colors(xr.Dataset({"branch": (names, branch), "basin_count": (names, count)}))
-    assert [number for number, color in colors.items() if color == OTHER_COLOR] == [grey]
-    assert len(set(colors.values())) == len(COLORS)
+def attractors(values):
+    """Return attractors of one law, each branch in a slot of its own: {number: values of a at which it is there}."""
+    grid = np.arange(max(values.values()))[:, None]
+    branch = np.where(grid < np.array(list(values.values())), np.array(list(values)), -1)
+    return xr.Dataset({"branch": (("law", "a", "attractor"), branch[None])})
 
 
-def test_in_a_map_only_one_branch_has_the_colour_of_the_others():
-    count = len(COLORS) + 4
-    branch = np.arange(count)[None, None]
-    states = xr.Dataset(
-        {"branch": (("law", "a", "attractor"), branch), "basin_count": (("law", "a", "attractor"), count - branch)}
-    )
-    known = branch_colors(states)
-    others = [n for n, color in known.items() if color == OTHER_COLOR]
-    assert len(others) == 4
-    found = map_colors(states, [-1, 0, 3, *others])
-    assert sorted(found) == [0, 3, *others]
-    assert {n: found[n] for n in (0, 3, others[0])} == {n: known[n] for n in (0, 3, others[0])}
-    assert len(set(found.values())) == 6
+def test_branches_at_few_values_share_a_colour():
+    count = len(COLORS) + 3
+    colors = branch_colors(attractors({number: number + 1 for number in range(count)}))
+    assert [number for number, color in colors.items() if color == OTHER_COLOR] == [3, 2, 1]
+    assert colors[0] == COLORS[0]
+    assert len(set(colors.values())) == len(COLORS) + 1
+
+
+def test_files_with_more_or_fewer_branches_agree_on_the_colours_of_the_first():
+    few, many = attractors({0: 1, 1: 1, 2: 1}), attractors({0: 9, 1: 9, 2: 9, 9: 2, 10: 5, 12: 8})
+    colors = branch_colors(many)
+    assert {number: colors[number] for number in (0, 1, 2)} == branch_colors(few)
+    assert len(set(colors.values())) == 6
+    # Branch 10 would have the colour of branch 2.
+    assert (colors[2], colors[10]) == (COLORS[2], COLORS[3])
+
+
+def test_a_map_has_the_colours_of_the_other_figures_and_tells_grey_branches_apart():
+    found = attractors({number: 20 - number for number in range(len(COLORS) + 3)})
+    known = branch_colors(found)
+    grey = [number for number, color in known.items() if color == OTHER_COLOR]
+    colors = map_colors(found, [-1, 0, 3, *grey])
+    assert sorted(colors) == [0, 3, *grey]
+    assert {number: colors[number] for number in (0, 3)} == {number: known[number] for number in (0, 3)}
+    assert len(set(colors.values())) == 2 + len(grey)

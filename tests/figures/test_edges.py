@@ -3,9 +3,14 @@
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.colors import to_hex
 
+from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.edges import draw
 from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.summaries.branch_changes import Change
+
+EDGE = ("law", "a", "a_error", "mean_distance", "kind", "change", "from_branch", "to_branch")
 
 
 def test_an_edge_that_is_not_located_is_as_wide_as_its_error():
@@ -16,10 +21,13 @@ def test_an_edge_that_is_not_located_is_as_wide_as_its_error():
     ).assign(branch_number=("number", [1]), branch_name=("number", ["alternating (1)"]))
     none = {f"orbit_{name}": ("orbit", []) for name in ("law", "a", "mean_distance", "stable", "stretch", "branch")}
     edge = {"law": 0, "a": 0.14, "a_error": 0.01, "mean_distance": np.nan, "kind": int(EdgeKind.CRISIS)}
+    edge |= {"change": int(Change.END), "from_branch": 1, "to_branch": -1}
     edges = xr.Dataset({**none, **{name: ("edge", [value]) for name, value in edge.items()}})
-    (panel,) = draw(attractors, edges).axes
-    (bar,) = panel.patches
+    panel, rows = draw(attractors, edges).axes
+    (bar,) = rows.patches
     assert (bar.get_x(), bar.get_width()) == pytest.approx((0.13, 0.02))
+    assert to_hex(bar.get_facecolor()).upper() == branch_colors(attractors)[1]
+    assert rows.get_yticklabels()[round(bar.get_y() + 0.4)].get_text() == "crisis"
     assert panel.get_xlim() == pytest.approx((0.098, 0.202))
 
 
@@ -33,7 +41,7 @@ def test_the_legend_names_the_branches_whose_orbits_are_drawn():
     drawn = [0, 2, 10, 11]
     orbits = {"law": [0] * 4, "a": [0.1] * 4, "mean_distance": [0.1] * 4, "stable": [1] * 4, "stretch": range(4)}
     orbits = {f"orbit_{name}": ("orbit", list(values)) for name, values in {**orbits, "branch": drawn}.items()}
-    none = {name: ("edge", np.zeros(0)) for name in ("law", "a", "a_error", "mean_distance", "kind")}
+    none = {name: ("edge", np.zeros(0)) for name in EDGE}
     (legend,) = draw(attractors, xr.Dataset({**orbits, **none})).legends
     words = [text.get_text() for text in legend.get_texts()]
     # Two of them have the colour that branches of small basins share.

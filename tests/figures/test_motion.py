@@ -1,6 +1,7 @@
 """Motion and distance of one run: the curves are its data, the style is nobody else's, the bytes are the same."""
 
 import matplotlib as mpl
+import numpy as np
 import pytest
 
 from burridge_knopoff import simulate
@@ -17,9 +18,31 @@ def test_motion_draws_every_block_in_a_style_that_is_nobody_elses(point):
     before = dict(mpl.rcParams)
     figure = motion.draw({"plus": point})
     assert dict(mpl.rcParams) == before
-    for panel, name in zip(figure.axes, ("velocity", "position"), strict=True):
+    for panel, name in zip(figure.axes[:2], ("velocity", "position"), strict=True):
         assert len(panel.get_lines()) == 3
         assert (panel.get_lines()[2].get_ydata() == point[name].values[:, 2]).all()
+
+
+def test_the_section_shows_each_upward_crossing_against_the_one_before(point):
+    upward = point["crossing_velocity"].values[point["crossing_direction"].values > 0]
+    section, times = motion.draw({"plus": point}).axes[2:]
+    (points,), (in_time,) = section.get_lines(), times.get_lines()
+    assert (points.get_xdata() == upward[:-1]).all()
+    assert (points.get_ydata() == upward[1:]).all()
+    assert (in_time.get_ydata() == upward).all()
+    none = point.isel(crossing=slice(0))
+    assert [[text.get_text() for text in panel.texts] for panel in motion.draw({"plus": none}).axes[2:]] == [
+        ["$W$ crosses 0 upward\nless than twice in the window"],
+        ["no section points"],
+    ]
+
+
+def test_the_linear_scale_of_a_distance_is_cut_only_far_above_what_follows():
+    settled = np.full(200, 0.1)
+    for first, top in ((0.4, 0.42), (0.8, 0.125)):
+        assert distance.linear_top(np.append(first, settled)) == pytest.approx(top)
+    assert distance.linear_top(np.append(0.4, 0.0 * settled)) == pytest.approx(0.42)
+    assert distance.linear_top(np.zeros(200)) is None
 
 
 def test_distance_draws_both_scales(point):

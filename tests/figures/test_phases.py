@@ -34,18 +34,19 @@ def phases(shares: list[float], a: list[float]) -> xarray.Dataset:
 @pytest.mark.parametrize("shares", [[0.0], [0.0, 1.0], [0.0, 0.1, 0.3, 0.7, 1.0]])
 def test_every_panel_shows_its_law_share_and_a(shares):
     found = phases(shares, [0.01, 0.02, 0.03])
-    # Whatever the order in which a study names them.
-    panels = [panel for panel in draw(found.isel(amplitude=slice(None, None, -1))).axes if panel.get_images()]
+    # Whatever the order in which a study names them. At the last a nothing synchronizes.
+    maps, means = np.reshape(draw(found.isel(amplitude=slice(None, None, -1))).axes[:4], (2, 2))
     kept = shares if len(shares) < 4 else [0.0, 0.3, 1.0]
-    assert len(panels) == 2 * len(kept) * 2
-    # At the last a nothing synchronizes.
-    shown = [(law, share, a) for law in found["law"].values for share in kept for a in (0.01, 0.02)]
-    for panel, (law, share, a) in zip(panels, shown, strict=True):
-        assert f"{law}, $a={a:g}$" in panel.get_title(loc="left").replace("\n", " ")
-        expected = found["synchronized_fraction"].sel(law=law, inner_share=share, a=a).values.T
-        assert (panel.get_images()[0].get_array() == expected).all()
-        (line,) = panel.get_lines()
-        # With a share of 1 the limit is 0.1, and 0.2 with none: between the first two amplitudes, and the last two.
-        assert line.get_xdata()[0] == (0.5 if share >= 0.7 else 1.5)
-        if a == 0.01:
-            assert panel.get_ylabel().startswith(f"inner amplitude {share:g}{' $A$' if share else ''}\n")
+    for over, below, a in zip(maps, means, (0.01, 0.02), strict=True):
+        assert f"linearized, $a={a:g}$" in over.get_title(loc="left").replace("\n", " ")
+        fraction = found["synchronized_fraction"].sel(a=a)
+        assert (over.get_images()[0].get_array() == fraction.sel(law="linearized", inner_share=0.0).values.T).all()
+        # No block stops up to 0.2 where the inner ones slide: between the last two amplitudes.
+        assert over.get_lines()[0].get_xdata()[0] == 1.5
+        assert len(below.get_lines()) == 2 * len(kept)
+        drawn = iter(below.get_lines())
+        for share in kept:
+            # With a share of 1 the limit is 0.1, above the first amplitude only.
+            small = fraction.sel(inner_share=share).isel(amplitude=slice(1 if share >= 0.7 else 2))
+            for law in ("linearized", "nonlinear"):
+                assert next(drawn).get_ydata() == pytest.approx(small.sel(law=law).mean("amplitude").values)

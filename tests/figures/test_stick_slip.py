@@ -49,5 +49,5 @@ def test_two_blocks_have_no_ratio_to_a_middle_one():
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "block 1",
         "block 2",
-        "2 to 3, the paper's chain",
+        "stated in the paper: 2 to 3",
     ]

@@ -1,26 +1,30 @@
-"""The figure of two blocks: what is shaded can be seen."""
+"""The figure of two blocks: states for which the laws disagree can be seen where symbols coincide as well."""
 
 import numpy as np
 import pytest
 import xarray
+from matplotlib.colors import to_rgb
 
-from burridge_knopoff.figures.two_blocks import draw
+from burridge_knopoff.figures.two_blocks import ANSWERS, draw
 
 
 @pytest.mark.parametrize("a", [[0.05], [0.05, 0.1, 0.3]])
-def test_where_the_laws_disagree_is_shaded_halfway_to_the_neighbours(a):
-    agrees = np.ones((1, 1, len(a)), dtype=np.int8)
-    agrees[..., -1] = 0
+def test_each_state_for_which_the_laws_disagree_is_marked(a):
+    agrees = np.ones((1, 2, len(a)), dtype=np.int8)
+    agrees[0, 1, -1] = 0
+    agrees[0, 0, -1] = -1
     summary = xarray.Dataset(
         {
             "agrees": (("other_law", "state", "a"), agrees),
-            "mean_distance": (("law", "state", "a"), np.full((2, 1, len(a)), 0.1)),
+            "mean_distance": (("law", "state", "a"), np.full((2, 2, len(a)), 0.1)),
         },
         {"a": a, "law": ["linearized", "nonlinear"]},
     )
-    (shaded,) = draw(summary).axes[0].patches
-    (left, right) = shaded.get_extents().transformed(shaded.axes.transData.inverted()).intervalx
-    if len(a) == 1:
-        assert 0.0 < left < a[0] < right
-    else:
-        assert (left, right) == pytest.approx((0.2, 0.3))
+    figure = draw(summary)
+    picture = figure.axes[1].collections[0].get_array()
+    assert picture.shape == (2, len(a), 3)
+    assert [tuple(row[-1]) for row in picture] == [to_rgb(ANSWERS[answer][0]) for answer in (-1, 0)]
+    assert (picture[:, :-1] == 1.0).all()
+    (legend,) = figure.legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words == ["linearized law", "nonlinear law", "not known", "the laws disagree"]

@@ -99,7 +99,8 @@ def detail(page):
 
 def check_number(text, value, error):
     """Hold a number with its error against the file: it is rounded to a tenth of its error, and no coarser."""
-    parts = [float(part) for part in text.replace("−", "-").replace("∞", "inf").split(" ± ")]
+    number, _, power = text.replace("−", "-").replace("∞", "inf").lstrip("(").partition(")e")
+    parts = [float(part) * 10.0 ** int(power or 0) for part in number.split(" ± ")]
     if len(parts) == 1 or not error > 0.0:
         assert parts[0] == value
         return
@@ -183,6 +184,8 @@ def test_the_report_of_a_study(browser, reported):
     assert reader.draw_everything() == 21
     assert page.locator(".picture.fallback").first.is_hidden()
     assert page.locator(".badge").first.inner_text() == "✓ holds"
+    titles = page.locator("main > section > h2").all_inner_texts()
+    assert titles[:3] == ["Mean distance ⟨J⟩", "Bifurcation diagrams", "Verdicts on the paper"]
 
     # A run by pointer, by arrow keys, by the buttons and by the lists.
     check_run(page, results, "linearized", "minus", 0.08)
@@ -211,7 +214,7 @@ def test_the_report_of_a_study(browser, reported):
     assert download.value.path().read_bytes().startswith(b"\x89PNG")
 
     # A figure at its full size, opened and closed with the keyboard.
-    page.locator(".thumbnail").first.press("Enter")
+    page.locator(".verdicts .opens-picture").first.press("Enter")
     assert page.locator("#viewer").is_visible()
     assert page.locator("#viewer img").evaluate("image => image.decode().then(() => image.naturalWidth)") == 2100
     page.keyboard.press("Escape")

@@ -1,5 +1,6 @@
 """The page of a study that lacks most of what a report can show: whole HTML, and a line for what is not there."""
 
+import json
 from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -9,6 +10,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import render
+from tests.report.conftest import CLAIMS
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 
@@ -61,6 +63,15 @@ def test_what_is_missing_is_said_in_a_line(page):
     charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
     assert not {"map", "chains", "multipliers", "asymmetry", "sections"} & set(charts)
     assert {"distance", "exponents", "agreement"} <= set(charts)
+
+
+def test_curves_come_first_and_all_verdicts_are_rows_of_one_table(poor):
+    page = Page(render(poor.study, replace(poor.sources, claims=CLAIMS), []))
+    sections = [attributes["id"] for tag, attributes in page.elements if tag == "section"]
+    assert sections[:3] == ["distance", "sections", "verdicts"]
+    rows = [attributes["id"] for tag, attributes in page.elements if tag == "tr" and "id" in attributes]
+    names = [claim["name"] for claim in json.loads(CLAIMS.read_text())["claims"]]
+    assert sorted(rows) == sorted(f"claim-{name}" for name in names)
 
 
 def test_an_optional_result_of_other_sources_is_left_out(poor):

@@ -17,6 +17,7 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import summary_lines
+from burridge_knopoff.study.words import plain, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
 
@@ -61,8 +62,8 @@ def test_a_point_in_words(point, capsys):
     ):
         assert words in said
     with netCDF4.Dataset(point) as dataset:
-        mean, error = dataset["mean_distance"][...], dataset["mean_distance_error"][...]
-        assert f"<J>               {mean:.9g} +- {error:.2g}\n" in said
+        mean, error = (dataset[name][...].item() for name in ("mean_distance", "mean_distance_error"))
+        assert f"<J>               {plain(with_error(mean, error))}\n" in said
         assert f"{dataset['event_count'][...]} stops and starts in the whole run\n" in said
         assert f"{dataset.history} --out FILE\n" in said
     assert "other sources" not in said

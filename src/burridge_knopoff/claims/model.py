@@ -17,12 +17,12 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_value,
-    with_error,
     worst,
 )
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.words import with_error
 
 
 def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:

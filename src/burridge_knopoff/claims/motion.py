@@ -23,11 +23,11 @@ from burridge_knopoff.claims.verdict import (
     known_share,
     share_is_decided,
     shares_text,
-    with_error,
     worst,
 )
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.words import with_error
 from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:

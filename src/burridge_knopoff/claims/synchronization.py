@@ -21,10 +21,10 @@ from burridge_knopoff.claims.verdict import (
     by_interval,
     by_value,
     is_decided,
-    with_error,
     worst,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.words import with_error
 from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:

@@ -165,18 +165,6 @@ def by_interval(low: float, high: float, claimed: float, tolerance: float, loose
     raise NotTestableError(f"between {low:g} and {high:g} the grid of a is too coarse to tell")
 
 
-def with_error(value: float, error: float | None = None) -> str:
-    """Return a number as a text shows it: with as many digits as its error leaves, at most six."""
-    if not math.isfinite(value):
-        return str(value)
-    if error is None or not math.isfinite(error) or error <= 0.0:
-        return f"{value:.6g}".replace("-", "−")
-    digits = max(0, 1 - math.floor(math.log10(float(f"{error:.1e}"))))
-    if digits > 12:
-        return f"{value:.12g}".replace("-", "−")
-    return f"{value:z.{digits}f} ± {error:.{digits}f}".replace("-", "−")
-
-
 def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
     """Return where the chosen values of a grid lie, neighbours of the grid joined: «at a = 0.0025 to 0.02, 0.0475».
 

@@ -8,6 +8,7 @@ from burridge_knopoff.cli.options import add, add_model, add_state, model_of, sa
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.study.words import plain, with_error
 
 DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and tell its kind. In a chain that is
 its own mirror image also the transverse exponent: mirror blocks near each other synchronize where it is negative."""
@@ -50,11 +51,11 @@ def run(options: argparse.Namespace) -> int:
         print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
     found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion.at_speed(model.v))
     print(f"\nmotion: {found.words}")
-    print(f"<J> = {trajectory.mean_distance:.6g} +- {trajectory.mean_distance_error:.2g}")
+    print(f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         value, error = transverse_exponent(model, start, max(options.transient, ALIGNMENT), options.window)
-        print(f"transverse exponent of the symmetric motion beside it: {value:z.6f} +- {error:.6f}")
+        print(f"transverse exponent of the symmetric motion beside it: {plain(with_error(value, error))}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")

@@ -11,6 +11,7 @@ from burridge_knopoff.cli.options import add, add_model, add_state, model_of, se
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.study.words import plain, with_error
 
 if TYPE_CHECKING:
     from burridge_knopoff.running.trajectory import Trajectory
@@ -68,8 +69,8 @@ def run(options: argparse.Namespace) -> int:
 
 def outcome(trajectory: Trajectory) -> str:
     """Return in a line what came out of a run that completed."""
-    words = f"<J> = {trajectory.mean_distance:.6g} +- {trajectory.mean_distance_error:.2g}"
+    words = f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}"
     for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
         if not math.isnan(error):
-            words += f", largest Lyapunov exponent {exponent:z.5f} +- {error:.5f}"
+            words += f", largest Lyapunov exponent {plain(with_error(float(exponent), float(error)))}"
     return f"{words}, {trajectory.event_count} stops and starts until tau = {trajectory.end_time:g}"

@@ -75,7 +75,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
             panel.set_xlabel("$U_1(0)$")
             panel.tick_params(labelbottom=True)
         if number % columns == 0:
-            panel.set_ylabel("$U_N(0)$")
+            panel.set_ylabel(f"$U_{{{basins.attrs['plane_position'].size}}}(0)$")
     states = [Line2D([], [], **_number(index), label=f"state {name}") for index, name in enumerate(there)]
     legend_below(figure, [*(shown[key] for key in sorted(shown)), *states])
     label_panels(list(panels.flat)[:count], titles)

@@ -21,6 +21,7 @@ from burridge_knopoff.figures.style import (
     styled,
 )
 from burridge_knopoff.summaries.bifurcation import ROUNDING, section_points
+from burridge_knopoff.summaries.refined import CROSSINGS
 
 TITLE = "Bifurcation diagrams"
 CATEGORY = "Synchronization"
@@ -31,6 +32,10 @@ Section points W' at W = 0 against a, for each law and initial state; upward cro
 below. W is the sum of the positions relative to uniform sliding. Crossings slower than 10⁻⁹ are not shown: they are
 uniform sliding itself, by rounding.
 """
+OPTIONAL = {
+    "attractors": "At values of a in between, where some attractor changes: the section of the attractor",
+    "refined": "that the initial state reaches at the nearest value of the grid at which it is the same branch.",
+}
 
 # Values of a beyond which points are so small that a cloud of many can be told apart; those of few are to be seen.
 FEW = 30
@@ -40,8 +45,14 @@ _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"]
 
 
 @styled
-def draw(bifurcation: xarray.Dataset) -> Figure:
-    """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
+def draw(
+    bifurcation: xarray.Dataset, attractors: xarray.Dataset | None = None, refined: xarray.Dataset | None = None
+) -> Figure:
+    """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state.
+
+    attractors, refined : which branch each initial state reaches, and the sections of all attractors between the values
+        of the grid
+    """
     laws, initial = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
     figure, table = panel_table(2.6, len(initial), "$a$", ["$W$′ at $W=0$" for _ in laws])
     panels = list(table.flat)
@@ -49,8 +60,12 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
     titles = []
     for number, panel in enumerate(panels):
         law, state = laws[number // len(initial)], initial[number % len(initial)]
+        between = np.zeros((2, 0))
+        if attractors is not None and refined is not None:
+            between = _between(attractors.sel(law=law, initial=state), refined.sel(law=law))
         for index, direction in enumerate(_DIRECTIONS):
-            a, velocity = section_points(bifurcation, law, state, direction)
+            own = section_points(bifurcation, law, state, direction)
+            a, velocity = np.hstack([_last(*own), between[:, direction * between[1] > 0.0]])
             real = np.abs(velocity) > ROUNDING
             # A cloud of 10^5 points is a picture, not 10^5 shapes: kept as pixels inside the PDF.
             panel.plot(
@@ -79,3 +94,38 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
     )
     label_panels(panels, titles)
     return figure
+
+
+def _last(a: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the last section points of each run, about as many as are kept of an attractor: no column stands out.
+
+    a : ascending
+    """
+    behind = np.searchsorted(a, a, "right") - np.arange(len(a))
+    chosen = behind <= CROSSINGS // 2
+    return a[chosen], velocity[chosen]
+
+
+def _between(attractors: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
+    """Return a and W' of the section points between the values of the grid, shape (2, points).
+
+    attractors : of one law and initial state; refined : of the same law
+    """
+    about = attractors.attrs
+    reached = attractors["initial_branch"].sel(contact=about["contact_convention"], start=about["start_convention"])
+    grid, branches = attractors["a"].values, refined["branch"].values
+    found = [np.zeros((2, 0))]
+    for place in np.flatnonzero(refined["in_grid"].values == 0):
+        a = refined["a"].values[place]
+        after = int(np.searchsorted(grid, a))
+        if not 0 < after < len(grid):
+            continue
+        ends = sorted((after - 1, after), key=lambda k: abs(grid[k] - a))
+        for branch in reached.values[ends]:
+            (slots,) = np.nonzero((branches[place] == branch) & (branch >= 0))
+            if len(slots):
+                velocity = refined["section_velocity"].values[place, slots[0]]
+                velocity = velocity[np.isfinite(velocity)]
+                found.append(np.array([np.full(len(velocity), a), velocity]))
+                break
+    return np.hstack(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from itertools import cycle
 
 import numpy as np
 import xarray
@@ -14,30 +15,37 @@ OTHER_COLOR = "#999999"
 OTHERS = "other branches"
 UNDETERMINED_COLOR = "#000000"
 
-# The synchronized attractor has the first; the others go to the branches that most sampled states reach.
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#999933", "#332288")
+# The synchronized attractor has the first, branch 1 the second and so on, as long as they last.
+COLORS = ("#0072B2", "#D55E00", "#999933", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#332288")
+
+# Of the branches that share a colour those in one map are told apart by its lightness.
+OTHER_SHADES = (OTHER_COLOR, "#666666", "#cccccc", "#444444")
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch; those of small basins share one."""
-    branch, count = attractors["branch"].values, attractors["basin_count"].values
-    # Where no states were sampled, the number of values of a decides; both sides of a branch are counted once there.
-    sizes = {
-        int(n): (int(count[branch == n].sum()), int((branch == n).any(axis=-1).sum()))
-        for n in np.unique(branch)
-        if n > 0
-    }
-    ranked = sorted(sizes, key=lambda n: (sizes[n], -n), reverse=True)
-    colors = dict.fromkeys(ranked, OTHER_COLOR)
-    colors.update(zip(ranked[: len(COLORS) - 1], COLORS[1:], strict=False))
-    return {**({0: COLORS[0]} if (branch == 0).any() else {}), **colors}
+    """Return the colour of each branch: its own for those that are found at the most values of a, grey for the others.
+
+    The number of a branch decides its colour, so that files of one model agree; where two would have the same, the one
+    found at more values keeps it, and the other one takes the next that is free.
+    """
+    branch = attractors["branch"].values
+    # Both sides of a branch are counted once.
+    sizes = {int(n): int((branch == n).any(axis=-1).sum()) for n in np.unique(branch) if n > 0}
+    ranked = sorted(sizes, key=lambda n: (-sizes[n], n))
+    colors = {0: COLORS[0]} if (branch == 0).any() else {}
+    own = len(COLORS) - 1
+    free = dict.fromkeys(range(own))
+    for number in ranked[:own]:
+        place = min(free, key=lambda k: (k - number + 1) % own)
+        del free[place]
+        colors[number] = COLORS[1 + place]
+    return colors | dict.fromkeys(ranked[own:], OTHER_COLOR)
 
 
 def map_colors(attractors: xarray.Dataset, shown: Collection[int]) -> dict[int, str]:
-    """Return the colours of the branches in maps: all but one of those that share one have others, not seen there."""
-    colors = branch_colors(attractors)
-    unused = iter([OTHER_COLOR, *(color for color in COLORS if color not in {colors[n] for n in shown if n >= 0})])
-    return {n: next(unused, OTHER_COLOR) if colors[n] == OTHER_COLOR else colors[n] for n in sorted(shown) if n >= 0}
+    """Return the colours of the branches in maps, where those that share one have different shades of it."""
+    colors, shades = branch_colors(attractors), cycle(OTHER_SHADES)
+    return {n: next(shades) if colors[n] == OTHER_COLOR else colors[n] for n in sorted(shown) if n >= 0}
 
 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Mirror synchrony of longer chains, and two blocks under each law."""
+"""Mirror synchrony of longer chains."""
 
 from __future__ import annotations
 
@@ -10,42 +10,35 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_below, legend_entries, styled
-from burridge_knopoff.figures.two_blocks import draw_panel
 from burridge_knopoff.stability.chains import STANDARD_ERRORS
 
 TITLE = "Longer chains"
 CATEGORY = "Longer chains"
-INPUTS = ("chains", "two_blocks")
+INPUTS = ("chains",)
 CAPTION = """\
-Small panels: the fraction of sampled states, drawn anew at each a, that end in mirror synchrony, for each number of
-blocks N, with confidence intervals; open circles count undetermined states as well; squares mark where synchrony is
-stable. Below: ⟨J⟩ of what two blocks end on under
-each law, shaded where one disagrees with the first one.
+The fraction of sampled states, drawn anew at each a, that end in mirror synchrony, for each number of blocks N, with
+confidence intervals; open circles count undetermined states as well; squares mark where synchrony is stable.
 """
 
 COLUMNS = 3
 ROW_HEIGHT = 1.45
-TWO_BLOCKS_HEIGHT = 2.3
 
 # Curves of the laws at the same a are drawn this share of a step apart.
 SHIFT = 0.15
 
 
 @styled
-def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
-    """Draw the synchronized fraction against a, a panel for each number of blocks, and ⟨J⟩ of two blocks for each law.
+def draw(chains: xarray.Dataset) -> Figure:
+    """Draw the synchronized fraction against a, a panel for each number of blocks.
 
     Bars: confidence intervals, undetermined states counted either way; open circles: the fraction with all of those
     counted as synchronized. Squares at the top: some symmetric motion has a transverse exponent that is negative beyond
-    its error, so that synchrony is stable. Shaded at two blocks: some law disagrees with the first one for at
-    least one initial state.
+    its error, so that synchrony is stable.
     """
     blocks = chains["blocks"].values
     rows = math.ceil(len(blocks) / COLUMNS)
-    figure = Figure(figsize=(PAGE, rows * ROW_HEIGHT + TWO_BLOCKS_HEIGHT + 0.6), layout="constrained")
-    heights = [rows * ROW_HEIGHT + 0.6, TWO_BLOCKS_HEIGHT]
-    upper, lower = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
-    grid = upper.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False)
+    figure = Figure(figsize=(PAGE, rows * ROW_HEIGHT + 0.6), layout="constrained")
+    grid = figure.subplots(rows, COLUMNS, sharex=True, sharey=True, squeeze=False)
     panels = list(grid.flat)
     for panel in panels[len(blocks) :]:
         panel.set_axis_off()
@@ -60,11 +53,8 @@ def draw(chains: xarray.Dataset, two_blocks: xarray.Dataset) -> Figure:
     handles, labels = legend_entries(panels[: len(blocks)])
     # Points with bars come last of themselves.
     order = sorted(range(len(labels)), key=lambda k: not labels[k].startswith("synchronized"))
-    legend_below(upper, [handles[k] for k in order])
-    wide = lower.subplots()
-    draw_panel(lower, wide, two_blocks)
-    titles = [f"$N={count}$" for count in blocks]
-    label_panels([*panels[: len(blocks)], wide], [*titles, r"$N=2$: $\langle J\rangle$ of each initial state"])
+    legend_below(figure, [handles[k] for k in order])
+    label_panels(panels[: len(blocks)], [f"$N={count}$" for count in blocks])
     return figure
 
 

@@ -16,26 +16,32 @@ PAPER = "Figs. 5a, 5b"
 INPUTS = ("runs",)
 CAPTION = """\
 The phase-space distance J between the end blocks against time τ in single runs from each initial state, on a linear
-scale that leaves out the first relaxation, and on a logarithmic one that leaves out what is 0 or rounding, below 10⁻¹⁵.
+scale and on a logarithmic one, which leaves out what is 0 or rounding, below 10⁻¹⁵. Where the first relaxation, before
+a hundredth of the run, is more than five times what follows, the linear scale is cut there, and J(0) is given.
 """
 
 # Below this J is rounding.
 FLOOR = 1e-15
+# A first relaxation more than so many times what follows is cut.
+CUT = 5.0
 
 
 @styled
 def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     """Draw J(τ), a panel for each {initial state: point file}, with the same run on a logarithmic scale below.
 
-    The linear panels leave out the first relaxation, which is up to a hundred times what follows; a run that ended
-    early leaves the rest of its panel empty.
+    A linear panel is cut where the first relaxation is far above what follows; a run that ended early leaves the rest
+    of its panel empty.
     """
     figure, table = panel_table(1.8, len(runs), r"$\tau$", [r"$J(\tau)$"] * 2, share_y=False)
     titles = []
     for (linear, logarithmic), (initial, point) in zip(table.T, runs.items(), strict=True):
         time, distance = point["time"], point["distance"].values
         linear.plot(time, distance, color=color(0), linewidth=0.5)
-        linear.set_ylim(0.0, settled_top(distance))
+        top = linear_top(distance)
+        linear.set_ylim(0.0, top)
+        if top is not None and np.nanmax(distance) > top:
+            linear.text(0.07, 0.95, f"$J(0)={distance[0]:.2g}$", va="top", transform=linear.transAxes)
         logarithmic.plot(time, np.where(distance >= FLOOR, distance, np.nan), color=color(0), linewidth=0.5)
         logarithmic.set_yscale("log")
         to_decades(logarithmic)
@@ -49,8 +55,11 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     return figure
 
 
-def settled_top(distance: np.ndarray) -> float | None:
-    """Return the upper end of a linear axis for J after its first relaxation; None if there is no value."""
-    settled = distance[len(distance) // 100 :]
-    settled = settled[np.isfinite(settled)]
-    return 1.25 * float(settled.max()) or None if len(settled) else None
+def linear_top(distance: np.ndarray) -> float | None:
+    """Return the upper end of a linear axis for J, without a first relaxation far above the rest; None if all is 0."""
+    finite = np.isfinite(distance)
+    if not distance[finite].any():
+        return None
+    largest = float(distance[finite].max())
+    settled = float(distance[len(distance) // 100 :].max(where=finite[len(distance) // 100 :], initial=0.0))
+    return 1.05 * largest if largest <= CUT * settled or not settled else 1.25 * settled

@@ -9,33 +9,34 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     label_panels,
     legend_below,
-    new_figure,
     page_width,
     say_nothing,
     show_all,
     styled,
 )
 from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.summaries.branch_changes import Change
 from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Edges of the attractors"
 CATEGORY = "Attractors"
 INPUTS = ("attractors", "edges")
 CAPTION = """\
-⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to: solid
-where they are stable, dashed where they are not and were followed a little beyond an edge. Grey points: all attractors.
-Marks: edges, by what happens there; a bar at the foot is the range of a in which one is only known to lie. Below, where
-the study covers it: the road from one period to chaos, enlarged, with the stops of the three blocks in a period.
+Above: ⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to:
+solid where they are stable, dashed where they are not and were followed a little beyond an edge. Grey points: all
+attractors. In the middle: the edges, a row for each thing that happens there, in the colour of the branch that begins,
+ends or changes; crises and what is undetermined are only known to lie in a range of a, the width of the bar. Below,
+where the study covers it: the road from one period to chaos, enlarged, with the edges as symbols on the orbits and the
+stops of all blocks in a period.
 """
 
-# Marker and name of each kind of edge.
+# Marker and name of each kind of edge that is located.
 MARKS = {
     EdgeKind.GRAZING: ("v", "grazing"),
     EdgeKind.FOLD: ("s", "fold"),
@@ -43,12 +44,13 @@ MARKS = {
     EdgeKind.NEIMARK_SACKER: ("o", "Neimark–Sacker"),
     EdgeKind.PITCHFORK: ("P", "pitchfork"),
 }
-UNLOCATED: dict[EdgeKind, tuple[Any, str]] = {
-    EdgeKind.UNDETERMINED: ({"facecolor": "0.9", "linestyle": ":"}, "undetermined"),
-    EdgeKind.CRISIS: ({"facecolor": "0.5", "linestyle": "-"}, "crisis"),
+MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
+# Rows of the panels of edges.
+ROWS = {
+    **{kind: name for kind, (_, name) in MARKS.items()},
+    EdgeKind.CRISIS: "crisis",
+    EdgeKind.UNDETERMINED: "unknown",
 }
-
-BAR: Any = {"edgecolor": "black", "linewidth": 0.7}
 
 #: Ranges of a and ⟨J⟩ of the panels below.
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
@@ -59,31 +61,36 @@ NAMED = 0.01
 
 @styled
 def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and a mark at each edge, for each law."""
+    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and below it the edges by kind, for each law."""
     laws = [str(law) for law in attractors["law"].values]
-    rows = 1 + _covers_road(attractors, edges)
-    figure, panels = new_figure(page_width(len(laws)), 0.2 + 3.0 * rows, rows, len(laws), share_columns=False)
+    rows = 2 + _covers_road(attractors, edges)
+    heights = [3.0, 1.3, 2.6][:rows]
+    figure = Figure(figsize=(page_width(len(laws)), 1.2 + sum(heights)), layout="constrained")
+    panels = figure.subplots(rows, len(laws), sharey="row", squeeze=False, height_ratios=heights)
     colors = branch_colors(attractors)
-    for place, panel in enumerate(panels):
-        number = place % len(laws)
+    for number, column in enumerate(panels.T):
         law = attractors.sel(law=laws[number])
-        _attractors(panel, law)
-        _orbits(panel, edges, number, colors)
-        _edges(panel, edges, number)
-        panel.set_xlabel("$a$")
-        if place < len(laws):
-            begin_at_zero(panel)
-            show_all(panel, attractors["a"].values)
-            if (law["branch"] < 0).all():
-                say_nothing(panel, "no attractor was found")
-        else:
+        for panel in (column[0], *column[2:]):
+            _attractors(panel, law)
+            _orbits(panel, edges, number, colors)
+        begin_at_zero(column[0])
+        show_all(column[0], attractors["a"].values)
+        if (law["branch"] < 0).all():
+            say_nothing(column[0], "no attractor was found")
+        _edges(column[1], edges, number, colors)
+        column[1].sharex(column[0])
+        column[0].tick_params(labelbottom=False)
+        for panel in column[2:]:
+            _marks(panel, edges, number)
             _stops(panel, edges, number)
-            panel.set_xlim(*ROAD[0])
-            panel.set_ylim(*ROAD[1])
-    for panel in panels[:: len(laws)]:
+            panel.set(xlim=ROAD[0], ylim=ROAD[1])
+        for panel in column[1:]:
+            panel.set_xlabel("$a$")
+    for panel in (panels[0, 0], *panels[2:, 0]):
         panel.set_ylabel(r"$\langle J\rangle$")
-    _legend(figure, edges, colors, branch_names(attractors))
-    label_panels(panels, [f"{law} law{end}" for end in ("", ", the road to chaos")[:rows] for law in laws])
+    figure.align_ylabels()
+    _legend(figure, edges, colors, branch_names(attractors), rows > 2)
+    label_panels(panels.flat, [f"{law} law{end}" for end in ("", ": edges", ": road to chaos")[:rows] for law in laws])
     return figure
 
 
@@ -115,24 +122,28 @@ def _orbits(panel: Axes, edges: xarray.Dataset, law: int, colors: dict[int, str]
             panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
 
 
-def _edges(panel: Axes, edges: xarray.Dataset, law: int) -> None:
-    own = edges["law"].values == law
-    a, mean, kind = edges["a"].values, edges["mean_distance"].values, edges["kind"].values
+def _edges(panel: Axes, edges: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
+    """Draw each edge into the row of its kind: a line where it is located, else the range of a in which it lies."""
+    a, error, kind = (edges[name].values for name in ("a", "a_error", "kind"))
+    # What begins is above the edge, all else below.
+    branch = np.where(edges["change"] == Change.BEGINNING, edges["to_branch"], edges["from_branch"])
+    for row, one in enumerate(ROWS):
+        for k in np.flatnonzero((edges["law"].values == law) & (kind == one)):
+            color = colors.get(int(branch[k]), OTHER_COLOR)
+            width = 0.0 if one in MARKS else 2.0 * error[k]
+            panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
+    panel.set_yticks(range(len(ROWS)), list(ROWS.values()), fontsize=7.0)
+    panel.tick_params(axis="y", length=0)
+    panel.set_ylim(len(ROWS) - 0.4, -0.6)
+
+
+def _marks(panel: Axes, edges: xarray.Dataset, law: int) -> None:
+    """Draw a symbol at each edge that is located."""
+    own, kind = edges["law"].values == law, edges["kind"].values
+    a, mean = edges["a"].values, edges["mean_distance"].values
     for one, (marker, _) in MARKS.items():
         chosen = own & (kind == one) & np.isfinite(mean)
-        panel.plot(
-            a[chosen],
-            mean[chosen],
-            marker,
-            color="black",
-            markersize=3.6,
-            markerfacecolor="white",
-            markeredgewidth=0.7,
-            zorder=3,
-        )
-    for one, (look, _) in UNLOCATED.items():
-        for value, error in np.unique(np.stack([a, edges["a_error"].values], 1)[own & (kind == one)], axis=0):
-            panel.axvspan(value - error, value + error, 0.0, 0.05, **look, **BAR, zorder=0)
+        panel.plot(a[chosen], mean[chosen], marker, zorder=3, **MARK)
 
 
 def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
@@ -150,11 +161,11 @@ def _stops(panel: Axes, edges: xarray.Dataset, law: int) -> None:
         panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
-def _legend(figure: Figure, edges: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
-    """Put a legend of what is drawn below all panels."""
+def _legend(figure: Figure, edges: xarray.Dataset, colors: dict[int, str], names: dict[int, str], marked: bool) -> None:
+    """Put a legend of what is drawn below all panels; marked : whether there are symbols of edges."""
     drawn = {int(number): colors.get(int(number), OTHER_COLOR) for number in edges["orbit_branch"].values}
-    kind, stable = edges["kind"].values, edges["orbit_stable"].values
-    located = kind[np.isfinite(edges["mean_distance"].values)]
+    stable = edges["orbit_stable"].values
+    located = edges["kind"].values[np.isfinite(edges["mean_distance"].values)]
     orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
         *(
@@ -163,13 +174,10 @@ def _legend(figure: Figure, edges: xarray.Dataset, colors: dict[int, str], names
             if number in stable
         ),
         *(
-            Line2D(
-                [], [], color="black", linestyle="", marker=marker, markersize=4, markerfacecolor="white", label=name
-            )
+            Line2D([], [], linestyle="", marker=marker, label=name, **MARK)
             for one, (marker, name) in MARKS.items()
-            if one in located
+            if marked and one in located
         ),
-        *(Patch(label=name, **look, **BAR) for one, (look, name) in UNLOCATED.items() if one in kind),
         *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
     ]
     legend_below(figure, handles)

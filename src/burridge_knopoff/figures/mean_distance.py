@@ -31,9 +31,12 @@ state (black, bars of three standard errors).
 """
 OPTIONAL = {
     "attractors": """\
-Coloured points: the attractors that were found, by branch. Below: the branch on which each initial state ends under
-each convention of contact and start, after a push if the motion before it does not attract (white: undetermined); a run
-above may not get there within its time.
+Coloured points: the attractors that were found, by branch; a branch has the same number, in brackets, and colour in all
+figures, and branches that are found at few values of a are grey. Below: the branch on which each initial state ends, a
+row for each state and convention: contact one_sided, where a stuck block holds against any backward pull, or symmetric,
+where it does not; start moving, where all blocks slip at τ = 0, or tested, where those that friction can hold are
+stuck. The state is pushed if the motion before does not attract (white: undetermined); a run above may not get there
+within its time.
 """
 }
 
@@ -63,6 +66,8 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None
         _runs(panels[0, column], mean_distance.sel(law=law))
         panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
+    if strips:
+        panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
     begin_at_zero(panels[0, 0])
     show_all(panels[0, 0], mean_distance["a"].values)
     _legend(figure, mean_distance, colors, {} if attractors is None else branch_names(attractors))

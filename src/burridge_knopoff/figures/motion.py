@@ -1,14 +1,17 @@
-"""Velocities and positions of the blocks at the end of a run: the paper's Figs. 6 and 7."""
+"""Velocities and positions of the blocks at the end of a run, and its section: the paper's Figs. 6 and 7."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
+import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, say, say_nothing, styled
+from burridge_knopoff.summaries.bifurcation import ROUNDING
 
 TITLE = "Motion from {initial}"
 CATEGORY = "Runs"
@@ -16,7 +19,10 @@ PAPER = "Figs. 6, 7"
 FILE = "motion_{initial}"
 INPUTS = ("runs",)
 CAPTION = """\
-Velocities U_i' and positions U_i − vτ of all blocks against time τ at the end of the run from the state {initial}.
+The run from the state {initial}. (a) Velocities U_i' and (b) positions U_i − vτ of all blocks against time τ at its
+end. (c) W' at each upward crossing of the section W = 0 in the window against W' at the crossing before, W being the
+sum of the positions relative to uniform sliding: a point for each crossing in a period if the motion is periodic,
+curves if it is quasiperiodic. (d) The same W' against the time of the crossing.
 """
 
 # Later blocks lie above earlier ones and are thinner or broken, so that blocks in synchrony are all seen.
@@ -28,23 +34,34 @@ MOST_NAMED = 12
 # Their number has no divisor in common with that of the dashes: all pairs come up before one comes again.
 SHADES = ("#7FB2DA", "#D55E00", "#000000", "#009E73", "#CC79A7", "#E69F00", "#0072B2")
 
+# Section points of a run that are drawn larger.
+FEW = 50
+
 
 @styled
 def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
-    """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the one run."""
+    """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the one run, and its section W = 0."""
     (point,) = runs.values()
-    figure, panels = new_figure(PAGE, 4.0, rows=2)
-    for panel, name in zip(panels, ("velocity", "position"), strict=True):
-        draw_blocks(panel, point, name)
-    panels[0].set_ylabel("$U_i$′")
-    panels[1].set(ylabel=r"$U_i-v\tau$", xlabel=r"$\tau$")
+    figure = Figure(figsize=(PAGE, 6.4), layout="constrained")
+    places: Any = [["velocity", "velocity"], ["position", "position"], ["section", "times"]]
+    panels = figure.subplot_mosaic(places, height_ratios=[1.6, 1.6, 2.0], width_ratios=[1.0, 1.5])
+    for name, label in (("velocity", "$U_i$′"), ("position", r"$U_i-v\tau$")):
+        draw_blocks(panels[name], point, name)
+        panels[name].set_ylabel(label)
+    panels["velocity"].sharex(panels["position"])
+    panels["velocity"].tick_params(labelbottom=False)
+    panels["position"].set_xlabel(r"$\tau$")
+    draw_section(panels["section"], point)
+    _section_times(panels["times"], point)
+    figure.align_ylabels([panels["velocity"], panels["position"], panels["section"]])
     blocks = len(point["block"])
     if blocks <= 3:
-        panels[0].legend(ncols=blocks, loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
+        panels["velocity"].legend(ncols=blocks, loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
     elif blocks <= MOST_NAMED:
-        figure.legend(*panels[0].get_legend_handles_labels(), ncols=min(blocks, 6), loc="outside lower center")
+        figure.legend(*panels["velocity"].get_legend_handles_labels(), ncols=min(blocks, 6), loc="outside lower center")
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
-    label_panels(panels, [f"velocities: {run}", f"positions relative to the driver: {run}"])
+    titles = (f"velocities: {run}", f"positions relative to the driver: {run}", "section points", "the same in time")
+    label_panels(panels.values(), titles)
     return figure
 
 
@@ -60,3 +77,44 @@ def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
             color=SHADES[index % len(SHADES)],
             label=f"block {block}",
         )
+
+
+def draw_section(panel: Axes, point: xarray.Dataset) -> None:
+    """Draw W' at each upward crossing of W = 0 against the one before into a panel."""
+    _, upward = _upward(point)
+    if len(upward) < 2:
+        say_nothing(panel, "$W$ crosses 0 upward\nless than twice in the window")
+        return
+    panel.plot(upward[:-1], upward[1:], ".", **_look(upward))
+    limits = _limits(upward)
+    panel.set(xlabel="$W$′ at an upward crossing of $W=0$", ylabel="$W$′ at the next", xlim=limits, ylim=limits)
+    panel.locator_params(nbins=5)
+
+
+def _section_times(panel: Axes, point: xarray.Dataset) -> None:
+    time, upward = _upward(point)
+    panel.set(xlabel=r"$\tau$", ylabel="$W$′ at upward crossings")
+    if len(upward) < 2:
+        say(panel, "no section points")
+        return
+    panel.plot(time, upward, ".", **_look(upward))
+    panel.set_ylim(_limits(upward))
+
+
+def _upward(point: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return times and W' of the upward crossings that are not rounding."""
+    velocity = point["crossing_velocity"].values
+    chosen = (point["crossing_direction"].values > 0) & (np.abs(velocity) > ROUNDING)
+    return point["crossing_time"].values[chosen], velocity[chosen]
+
+
+def _look(velocity: np.ndarray) -> dict[str, Any]:
+    size = 2.5 if len(np.unique(velocity.round(6))) > FEW else 5.0
+    return {"markersize": size, "markeredgewidth": 0, "color": color(0), "rasterized": True}
+
+
+def _limits(velocity: np.ndarray) -> tuple[float, float]:
+    """Return the ends of an axis: points of a closed orbit differ by rounding, which is no range to be shown."""
+    middle = 0.5 * (velocity.min() + velocity.max())
+    half = 0.55 * max(np.ptp(velocity), 0.02 * np.abs(velocity).max())
+    return middle - half, middle + half

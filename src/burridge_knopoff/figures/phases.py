@@ -2,24 +2,36 @@
 
 from __future__ import annotations
 
-from itertools import product
+from typing import Any
 
 import numpy as np
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 
-from burridge_knopoff.figures.style import COLORS, PAGE, label_panels, new_figure, styled
+from burridge_knopoff.figures.style import (
+    COLORS,
+    PAGE,
+    color,
+    dashes,
+    label_panels,
+    legend_below,
+    legend_entries,
+    marker,
+    styled,
+)
 
 TITLE = "Phases of the end blocks"
 CATEGORY = "Attractors"
 INPUTS = ("phases",)
 CAPTION = """\
-The fraction of states that synchronize, by the amplitude A and the difference of phase at which the end blocks
-oscillate about uniform sliding; at up to four of the values of a at which any do. A row for each law and each amplitude
-of the inner blocks, of which up to three are shown: with 0 they slide uniformly, else they oscillate as well, at phases
-drawn at random. Right of the dashed line a block stops in the course of such an oscillation: the end blocks do from
-A = v/ω on.
+Above: the fraction of states that synchronize, by the amplitude A and the difference of phase at which the end blocks
+oscillate about uniform sliding, all others sliding uniformly, under the first law; at up to four of the values of a at
+which any do. Left of the dashed line no block stops in the course of such an oscillation: the end blocks do from
+A = v/ω on. Below: the mean of the same fraction over the amplitudes left of that line, against the difference of phase,
+for each law and up to three amplitudes of the inner blocks, which oscillate at phases drawn at random.
 """
 
 #: Columns of panels, and amplitudes of the inner blocks, at most.
@@ -29,46 +41,65 @@ SHARES = 3
 
 @styled
 def draw(phases: xarray.Dataset) -> Figure:
-    """Draw the fraction that synchronizes over amplitude and difference of phase, a column for each a that is shown.
+    """Draw the fraction that synchronizes over amplitude and difference of phase, and its mean at small amplitudes.
 
-    Amplitudes and differences are given equal steps, whatever their distance.
+    A column for each a that is shown. Amplitudes and differences are given equal steps above, whatever their distance.
     """
     phases = phases.sortby(["amplitude", "phase_difference"])
-    difference = phases["phase_difference"].values
     # Where synchrony does not attract all panels would be white.
     others = [name for name in phases["synchronized_fraction"].dims if name != "a"]
     some = np.flatnonzero((phases["synchronized_fraction"] > 0.0).any(others).values)
     values = some if len(some) else np.arange(phases.sizes["a"])
     shown = phases.isel(a=values[_spread(len(values), SHOWN)], inner_share=_spread(phases.sizes["inner_share"], SHARES))
-    rows = list(product(shown["law"].values, shown["inner_share"].values))
     columns = shown["a"].values
-    figure, panels = new_figure(PAGE, 0.9 + 1.3 * len(rows), rows=len(rows), columns=len(columns))
-    white_to_blue = LinearSegmentedColormap.from_list("fraction", ["white", COLORS[0]])
-    titles = []
-    for number, (panel, ((law, share), a)) in enumerate(zip(panels, product(rows, columns), strict=True)):
-        fraction = shown["synchronized_fraction"].sel(law=law, inner_share=share, a=a)
-        image = panel.imshow(
-            fraction.transpose("phase_difference", "amplitude").values,
-            origin="lower",
-            aspect="auto",
-            cmap=white_to_blue,
-            vmin=0.0,
-            vmax=1.0,
-            interpolation="none",
-        )
-        amplitude, slipping = shown["amplitude"].values, shown["slipping_amplitude"].sel(inner_share=share).item()
-        panel.axvline(np.count_nonzero(amplitude <= slipping) - 0.5, color="black", linestyle="--", linewidth=0.8)
-        panel.set_xticks(range(len(amplitude)), [f"{value:g}" for value in amplitude], rotation=90)
-        panel.set_yticks(range(len(difference)), [f"{value:g}°" for value in difference])
-        panel.tick_params(length=0)
-        if number >= len(panels) - len(columns):
-            panel.set_xlabel("amplitude $A$")
-        if number % len(columns) == 0:
-            panel.set_ylabel(f"inner amplitude {'0' if share == 0.0 else f'{share:g} $A$'}\nphase difference")
-        titles.append(f"{law}, $a={a:g}$")
-    figure.colorbar(image, ax=panels, label="fraction that synchronizes", aspect=40, pad=0.01)
-    label_panels(panels, titles)
+    figure = Figure(figsize=(PAGE, 4.6), layout="constrained")
+    upper, lower = figure.subplots(2, len(columns), sharey="row", squeeze=False)
+    for first, second, a in zip(upper, lower, columns, strict=True):
+        image = _fractions(first, shown.isel(law=0, inner_share=0).sel(a=a))
+        _means(second, shown.sel(a=a))
+    upper[0].set_ylabel("phase difference")
+    lower[0].set_ylabel("mean fraction")
+    figure.colorbar(image, ax=list(upper), label="fraction", aspect=15, pad=0.01)
+    legend_below(figure, legend_entries(lower)[0])
+    law = shown["law"].values[0]
+    label_panels([*upper, *lower], [*(f"{law}, $a={a:g}$" for a in columns), *(f"$a={a:g}$" for a in columns)])
     return figure
+
+
+def _fractions(panel: Axes, phases: xarray.Dataset) -> AxesImage:
+    """Draw a map of the fractions of one law, inner amplitude and a into a panel."""
+    amplitude, difference = phases["amplitude"].values, phases["phase_difference"].values
+    image = panel.imshow(
+        phases["synchronized_fraction"].transpose("phase_difference", "amplitude").values,
+        origin="lower",
+        aspect="auto",
+        cmap=LinearSegmentedColormap.from_list("fraction", ["white", COLORS[0]]),
+        vmin=0.0,
+        vmax=1.0,
+        interpolation="none",
+    )
+    limit = np.count_nonzero(amplitude <= phases["slipping_amplitude"].item()) - 0.5
+    panel.axvline(limit, color="black", linestyle="--", linewidth=0.8)
+    panel.set_xticks(range(len(amplitude)), [f"{value:g}" for value in amplitude], rotation=90)
+    panel.set_yticks(range(len(difference)), [f"{value:g}°" for value in difference])
+    panel.tick_params(length=0)
+    panel.set_xlabel("amplitude $A$")
+    return image
+
+
+def _means(panel: Axes, phases: xarray.Dataset) -> None:
+    """Draw the mean fraction at the amplitudes at which no block stops, for each law and inner amplitude."""
+    difference = phases["phase_difference"].values
+    for k, share in enumerate(phases["inner_share"].values):
+        one = phases.sel(inner_share=share)
+        small = one.isel(amplitude=one["amplitude"].values <= one["slipping_amplitude"].item())
+        for n, law in enumerate(one["law"].values):
+            mean = small["synchronized_fraction"].sel(law=law).mean("amplitude").values
+            name = f"{law}, inner amplitude {'0' if share == 0.0 else f'{share:g} $A$'}"
+            look: Any = {"color": color(k), "linestyle": dashes(n), "marker": marker(n), "markersize": 3.0}
+            panel.plot(difference, mean, **look, markerfacecolor="none", linewidth=0.8, label=name)
+    panel.set(ylim=(-0.05, 1.05), xlabel="phase difference")
+    panel.set_xticks([0.0, 90.0, 180.0], ["0°", "90°", "180°"])
 
 
 def _spread(count: int, most: int) -> list[int]:

@@ -24,7 +24,8 @@ Cycles of the first, the middle and the last block against a, for each initial s
 single runs: the time between two stops, with its standard error; in chains of more than two blocks the frequency of the
 end blocks over that of the middle block, by the peaks of the spectra of their velocities (bars: how finely the spectra
 resolve) and by their stops; the correlation of the velocities of the end blocks; and the share of time for which each
-block sticks. The band and the dotted lines are what the paper states for its chain.
+block sticks. The band and the dotted lines are what the paper states for its
+three blocks: a cycle of two to three units of time, and half the frequency of the middle block.
 """
 
 #: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -109,9 +110,9 @@ def _ratios(panels: Sequence[Axes], n: int, end: xarray.Dataset, middle: xarray.
 
 
 def _legend(shown: list[int]) -> list[Line2D | Patch]:
-    band = Patch(facecolor="0.88", label="2 to 3, the paper's chain")
+    band = Patch(facecolor="0.88", label="stated in the paper: 2 to 3")
     blocks = [Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)]
     if len(shown) < 3:
         return [*blocks, band]
-    half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="1/2, the paper's chain")
+    half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="stated in the paper: 1/2")
     return [*blocks, band, half]

@@ -149,8 +149,8 @@ def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
     for number, (panel, title) in enumerate(zip(panels, titles, strict=True)):
         letter = "(" + chr(ord("a") + number % 26) * (number // 26 + 1) + ") " if len(panels) > 1 else ""
         place, figure = panel.get_subplotspec(), panel.get_figure(root=True)
-        columns = place.get_gridspec().ncols if place is not None else 1
-        width = figure.get_figwidth() / columns if figure is not None else PAGE
+        share = len(place.colspan) / place.get_gridspec().ncols if place is not None else 1.0
+        width = share * figure.get_figwidth() if figure is not None else PAGE
         panel.set_title(_wrapped(f"{letter}{title}", round(LETTERS * width)), loc="left")
 
 

@@ -1,20 +1,26 @@
-"""Two blocks under each law: ⟨J⟩ against a from each initial state."""
+"""Two blocks under each law: ⟨J⟩ against a from each initial state, and for which states the laws disagree."""
 
 from __future__ import annotations
 
+import numpy as np
 import xarray
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.figures.style import (
     PAGE,
+    SHADE,
+    cells,
     color,
+    label_panels,
     legend_below,
     legend_entries,
     marker,
-    new_figure,
-    shade,
-    shade_entry,
+    show_all,
     styled,
 )
 
@@ -22,37 +28,49 @@ TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
-⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state. Shaded where one law disagrees
-with the first one for one of the states, in ⟨J⟩ or in the kind of motion; where the symbols coincide there, that state
-leads to another one of the same motions.
+(a) ⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state. (b) For which of these
+states the laws disagree, in ⟨J⟩ or in the kind of motion: each other law compared with the first one. Where the symbols
+of (a) coincide, the laws have the same motions, but a state that is marked in (b) leads to different ones.
 """
+
+# Of the states for which the laws disagree, or may.
+ANSWERS = {Answer.NO: ("0.25", "the laws disagree"), Answer.UNDETERMINED: (SHADE, "not known")}
 
 
 @styled
 def draw(two_blocks: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ of all laws from each state; shaded where any disagrees with the first one, for any of the states."""
-    figure, (panel,) = new_figure(PAGE, 2.8)
-    draw_panel(figure, panel, two_blocks)
+    """Draw ⟨J⟩ of all laws from each state over a strip for each state, dark where any law disagrees with the first."""
+    strip = 0.4 + 0.1 * two_blocks.sizes["state"]
+    figure = Figure(figsize=(PAGE, 3.0 + strip), layout="constrained")
+    panels = figure.subplots(2, 1, sharex=True, height_ratios=[2.3, strip])
+    legend_below(figure, draw_panels(*panels, two_blocks))
+    label_panels(panels, [r"$\langle J\rangle$ from each initial state", "states for which the laws disagree"])
     return figure
 
 
-def draw_panel(figure: Figure | SubFigure, panel: Axes, two_blocks: xarray.Dataset) -> None:
-    """Draw the same into the panel of a figure, with a legend below."""
+def draw_panels(upper: Axes, lower: Axes, two_blocks: xarray.Dataset) -> list[Artist]:
+    """Draw one chain of two blocks into two panels, and return the entries of its legend."""
     a = two_blocks["a"].values
-    disagree = (two_blocks["agrees"] == 0).any(("other_law", "state")).values
-    shade(panel, a, disagree)
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
         for number, state in enumerate(mean):
-            panel.plot(
+            upper.plot(
                 a, state, marker(index), markersize=(3.4, 2.4)[index % 2], markeredgewidth=0.6, fillstyle="none",
-                color=color(index), label=law if number == 0 else None,
+                color=color(index), label=f"{law} law" if number == 0 else None,
             )  # fmt: skip
-    panel.set_xlabel("$a$")
-    panel.set_ylabel(r"$\langle J\rangle$")
-    laws = two_blocks["law"].values
-    handles, _ = legend_entries([panel])
-    if disagree.any():
-        words = "the laws disagree" if len(laws) == 2 else f"one disagrees with the {laws[0]} law"
-        handles.append(shade_entry(words))
-    legend_below(figure, handles)
+    upper.set_ylabel(r"$\langle J\rangle$")
+    show_all(upper, a)
+    agrees = two_blocks["agrees"].transpose("other_law", "state", "a").values
+    states = agrees.shape[1]
+    picture, handles = np.ones((states, len(a), 3)), legend_entries([upper])[0]
+    # What is known to differ hides what is not known.
+    for answer, (shade, words) in reversed(ANSWERS.items()):
+        there = (agrees == answer).any(axis=0)
+        picture[there] = to_rgb(shade)
+        if there.any():
+            handles.append(Patch(facecolor=shade, edgecolor="0.6", label=words))
+    lower.pcolormesh(cells(a), np.arange(states + 1) + 0.5, picture, rasterized=True)
+    lower.set(xlabel="$a$", ylabel="initial state", ylim=(states + 0.5, 0.5))
+    lower.set_yticks(np.arange(1, states + 1), map(str, range(1, states + 1)), fontsize=6.5)
+    lower.tick_params(axis="y", length=0)
+    return handles

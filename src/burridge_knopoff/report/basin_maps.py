@@ -29,6 +29,7 @@ def basin_maps(
     names = branch_names(attractors)
     laws = basins["law"].attrs["flag_meanings"].split()
     return {
+        "blocks": basins.attrs["plane_position"].size,
         "first": rounded(basins["first_position"].values),
         "last": rounded(basins["last_position"].values),
         "marked": [{"name": name, "first": x, "last": y} for name, (x, y) in marked.items()],

@@ -16,15 +16,21 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
-from burridge_knopoff.report.numbers import text
 from burridge_knopoff.study.study import Study, all_points
-from burridge_knopoff.study.words import counted, friction_words
+from burridge_knopoff.study.words import counted, friction_words, text
 
 #: Distributions whose versions the report states.
 LIBRARIES = (
     *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
     *("pyyaml", "jinja2", "plotly", "pillow"),
 )
+
+
+def opening(study: Study) -> str:
+    """Return what the study is about, in a line."""
+    config, laws = study.config, study.laws
+    words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
+    return f"{counted(study.blocks, 'block')}, v = {text(config['v'])}, a = {_grid(config['a'])}, {words}"
 
 
 def what_was_run(study: Study) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.report import curves, overview, tables
 from burridge_knopoff.report.basin_maps import basin_maps
-from burridge_knopoff.report.numbers import embedded_json, text, with_error
+from burridge_knopoff.report.numbers import embedded_json
 from burridge_knopoff.report.pictures import read_picture
 from burridge_knopoff.report.prose import prose
 from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
@@ -23,6 +23,7 @@ from burridge_knopoff.report.section_points import section_counts
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.words import text, with_error
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.basins import undetermined_alike
 
@@ -94,6 +95,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     return environment.get_template("report.html.jinja").render(
         study=study.name,
         blocks=study.blocks,
+        opening=overview.opening(study),
         setting=verdicts.setting,
         verdicts=verdicts,
         signs=SIGNS,

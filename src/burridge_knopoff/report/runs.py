@@ -15,6 +15,7 @@ from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.words import with_error
 from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
 
 
@@ -73,6 +74,8 @@ def embedded_runs(
         "period": lyapunov["section_period"].values.tolist(),
         "exponents": _nested(exponent),
         "exponent_errors": _nested(error),
+        "mean_distance_text": _with_errors(*(mean_distance[f"mean_distance{end}"].values for end in ("", "_error"))),
+        "exponent_texts": _with_errors(exponent, error),
         "agrees": agreement["agrees"].values.tolist(),
         "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in study.laws],
         "arguments": shlex.join(commands.arguments),
@@ -84,6 +87,15 @@ def embedded_runs(
 
 def _nested(values: np.ndarray) -> Any:
     return exact(values.item()) if values.ndim == 0 else [_nested(np.asarray(item)) for item in values]
+
+
+def _with_errors(values: np.ndarray, errors: np.ndarray) -> Any:
+    """Return values with their errors as text, in nested lists."""
+    return (
+        np.array([with_error(*pair) for pair in zip(values.flat, errors.flat, strict=True)], dtype=object)
+        .reshape(values.shape)
+        .tolist()
+    )
 
 
 def _halves(commands: Commands, law: str, initial: str) -> list[str]:

@@ -9,9 +9,8 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
-from burridge_knopoff.report.numbers import text, with_error
 from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.study.words import span
+from burridge_knopoff.study.words import span, text, with_error
 from burridge_knopoff.summaries.slots import branch_names
 
 

@@ -7,6 +7,7 @@ import xarray
 
 from burridge_knopoff.show.words import table
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.study.words import plain, with_error
 from burridge_knopoff.summaries.slots import branch_names
 
 
@@ -28,7 +29,7 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
             (
                 called(found, one["branch"].item(), one["side"].item()),
                 f"{kind.words} {period}" if period else kind.words,
-                f"{one['mean_distance'].item():.6f} +- {one['mean_distance_error'].item():.1g}",
+                plain(with_error(one["mean_distance"].item(), one["mean_distance_error"].item())),
                 " ".join(f"{value:z7.4f}" for value in one["lyapunov_exponent"].values),
                 *(column[slot] for column in columns.values()),
             )

@@ -11,17 +11,13 @@ import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.description import Description, figure_descriptions
-from burridge_knopoff.figures.distance import FLOOR, settled_top
-from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks
+from burridge_knopoff.figures.distance import FLOOR, linear_top
+from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.summaries.bifurcation import ROUNDING
 
 FORMATS = (".png", ".pdf", ".svg")
-
-# Section points of a run that are drawn larger.
-FEW = 50
 
 #: What a figure takes from the study, for a file that belongs to none.
 WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
@@ -92,23 +88,10 @@ def draw_point(point: xarray.Dataset) -> Figure:
         panel.plot(time, np.maximum(distance, FLOOR) if logarithmic else distance, color=color(0), linewidth=0.5)
         panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
         panel.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$")
-    panels[0].set_ylim(0.0, settled_top(distance))
+    panels[0].set_ylim(0.0, linear_top(distance))
     panels[1].set(yscale="log", ylim=(FLOOR, max(10.0, np.nanmax(distance, initial=0.0))))
     panels[1].legend(loc="lower right", handlelength=1.2)
-    upward = point["crossing_velocity"].values[point["crossing_direction"].values > 0]
-    upward = upward[np.abs(upward) > ROUNDING]
-    if len(upward) > 1:
-        size = 2.5 if len(np.unique(upward.round(6))) > FEW else 5.0
-        panels[2].plot(
-            upward[:-1], upward[1:], ".", markersize=size, markeredgewidth=0, color=color(0), rasterized=True
-        )
-        # Of a closed orbit the points differ by rounding, which is no range to be shown.
-        middle, half = 0.5 * (upward.min() + upward.max()), 0.55 * max(np.ptp(upward), 0.02 * np.abs(upward).max())
-        limits = middle - half, middle + half
-        panels[2].set(xlabel="$W$′ at an upward crossing of $W=0$", ylabel="$W$′ at the next", xlim=limits, ylim=limits)
-        panels[2].locator_params(nbins=5)
-    else:
-        say_nothing(panels[2], "W crosses 0 upward less than twice in the window")
+    draw_section(panels[2], point)
     if np.isfinite(point["velocity"].values).any():
         draw_blocks(panels[3], point, "velocity")
         panels[3].set(xlabel=r"$\tau$", ylabel="$U_i$′")

@@ -15,7 +15,7 @@ from burridge_knopoff.show.result import Result
 from burridge_knopoff.show.words import listed, paragraph
 from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.settings import MotionSettings
-from burridge_knopoff.study.words import counted
+from burridge_knopoff.study.words import counted, plain, with_error
 
 
 def point_lines(result: Result) -> list[str]:
@@ -72,12 +72,11 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     chain = Chain(point.sizes["block"], **{key: _given(point.attrs[f"chain_{key}"]) for key in CHAIN_OPTIONS})
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
-    yield "<J>", f"{point['mean_distance'].item():.9g} +- {point['mean_distance_error'].item():.2g}"
+    yield "<J>", plain(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
     yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion.at_speed(point["v"].item())).words
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
-        words = (f"{value:z.6f} +- {error:.6f}" if np.isfinite(value) else "-infinity" for value, error in exponents)
-        yield "exponents", ", ".join(words)
+        yield "exponents", ", ".join(plain(with_error(*map(float, one))) for one in exponents)
         if run["lyapunov_infinite_count"] > 0:
             yield "", f"at least {run['lyapunov_infinite_count']} of all {2 * chain.blocks} are -infinity"
     else:

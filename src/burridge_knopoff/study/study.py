@@ -83,6 +83,11 @@ class Study:
         return self.config["laws"]
 
     @property
+    def chain_description(self) -> dict[str, Any]:
+        """The chain as `Chain` takes it."""
+        return {"blocks": self.blocks, **self.config["chain"]}
+
+    @property
     def has_several_laws(self) -> bool:
         """Whether there is a law to compare with the first one."""
         return len(self.laws) > 1

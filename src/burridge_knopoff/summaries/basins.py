@@ -17,6 +17,7 @@ from burridge_knopoff.stability.labels import UNDETERMINED, label_states
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
 from burridge_knopoff.stability.splitting import SEPARATIONS, follow_pairs
 from burridge_knopoff.stability.uncertainty import ExponentKind, uncertainty_exponent
+from burridge_knopoff.study.words import plain, with_error
 from burridge_knopoff.summaries.slots import NAMES, branch_names
 
 _PLANE = ("last_position", "first_position")
@@ -242,11 +243,11 @@ def _exponent_text(one: xarray.Dataset) -> str:
     if kind == ExponentKind.UNKNOWN:
         return "uncertainty exponent unknown: too few pairs differ"
     change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
-    changes = f"it changes by {change:.2f} +- {error:.2f} over the separations"
+    changes = f"it changes by {plain(with_error(change, error))} over the separations"
     if kind == ExponentKind.VARYING:
         return f"no single uncertainty exponent: {changes}"
     alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
-    return f"uncertainty exponent {alpha:.3f} +- {error:.3f} ({changes})"
+    return f"uncertainty exponent {plain(with_error(alpha, error))} ({changes})"
 
 
 def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:

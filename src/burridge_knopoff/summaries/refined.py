@@ -11,16 +11,27 @@ import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.settings import MotionSettings, Refine, SearchSettings
 from burridge_knopoff.summaries import attractors
-from burridge_knopoff.summaries.slots import slot_coordinates, slot_values, slot_variables
+from burridge_knopoff.summaries.slots import branch_order, slot_coordinates, slot_values, slot_variables
 
 VARIABLES = {
     "a": Variable(("value",), "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
     "in_grid": Variable(("value",), "i1", "whether a is in the grid of the study", YES_OR_NO),
     **slot_variables("value"),
+    "section_velocity": Variable(
+        ("value", "attractor", "crossing"),
+        "f8",
+        "W' at successive crossings of the section W = 0 on the attractor: upward above 0, downward below",
+        {"comment": "of mirror images those of one side: W is the same for both; NaN beyond the last crossing"},
+    ),
 }
+
+#: Crossings of the section that are kept of an attractor, at most.
+CROSSINGS = 300
 
 
 def one_law(
@@ -29,9 +40,26 @@ def one_law(
     """Return the attractors of one law at all values of a; arguments as in `attractors.one_law`."""
     count = len(found.models)
     values = slot_values(found, range(count), settings.lifetime, "value")
+    values["section_velocity"] = _sections(found, settings.window)
     values["a"] = np.array([model.a for model in found.models])
     values["in_grid"] = np.isin(np.arange(count), found.grid)
     model = found.models[0]
     about = {**attractors.search_attributes(model, settings, motion, start), "refine_resolution": refine.resolution}
     title = f"Attractors at refined values of a, {model.law.name} friction law"
     return summary(title, VARIABLES, values, slot_coordinates(model.blocks), about, module=__name__)
+
+
+def _sections(found: Continuation, window: float) -> np.ndarray:
+    """Return W' at the first crossings of W = 0 on each attractor, shape (value, attractor, crossing)."""
+    once = Settings(
+        transient=0.0, window=window, batches=2, sampling=window, trajectory=0.0, events="none", lyapunov_exponents=0
+    )
+    shape = len(found.models), max(1, *map(len, found.attractors)), CROSSINGS
+    velocity = np.full(shape, np.nan)
+    for place, model in enumerate(found.models):
+        for slot, index in enumerate(branch_order(found, place)):
+            if found.side[place][index] >= 0:
+                start = found.attractors[place][index].motion.instant()
+                crossings = run(model, start, once, section_only=True).crossing_velocity[:CROSSINGS]
+                velocity[place, slot, : len(crossings)] = crossings
+    return velocity

@@ -14,7 +14,7 @@ const runShape = (n) => runShapes[n % runShapes.length] + (n % 2 ? "-open" : "")
 legends.branches = () => [...groups.values()].map((group) => ({ ...group, color: hue(group.color) }));
 legends.runs = () => [
   ...runs.initial.map((name, n) => ({ name: `run from ${name}`, color: ink("text"), shape: runShape(n) })),
-  { name: "the run shown below", color: ink("focus"), shape: "circle-open" },
+  { name: "the run shown under One run", color: ink("focus"), shape: "circle-open" },
 ];
 
 builders.distance = (box) => {
@@ -33,11 +33,11 @@ builders.distance = (box) => {
   const curves = runs.initial.map((name, initial) => ({
     type: "scatter", mode: "lines+markers", meta: "run",
     x: runs.a, y: runs.mean_distance[law][initial].map(plain),
-    customdata: runs.a.map((_, n) => [initial, n, kindOf.get(runs.kind[law][initial][n]).name, short(runs.mean_distance_error[law][initial][n])]),
+    customdata: runs.a.map((_, n) => [initial, n, kindOf.get(runs.kind[law][initial][n]).name, runs.mean_distance_text[law][initial][n]]),
     error_y: { type: "data", array: runs.mean_distance_error[law][initial].map((error) => 3 * (plain(error) ?? 0)), thickness: 0.8, width: 0, color: ink("text") },
     line: { color: ink("text"), width: 0.8 },
     marker: { color: ink("text"), symbol: runShape(initial), size: 5 },
-    hovertemplate: `run from ${name}: %{customdata[2]}<br>a = %{x}<br>⟨J⟩ = %{y:.5g} ± %{customdata[3]}<extra></extra>`,
+    hovertemplate: `run from ${name}: %{customdata[2]}<br>a = %{x}<br>⟨J⟩ = %{customdata[3]}<extra></extra>`,
   }));
   const here = picked.law === law;
   const mark = {
@@ -75,7 +75,7 @@ builders.exponents = (box) => {
   const curves = exponents[0].slice(0, 3).map((_, n) => ({
     type: "scatter", mode: "lines+markers",
     x: runs.a, y: exponents.map((values) => plain(values[n])),
-    text: exponents.map((values, k) => withError(typeof values[n] === "number" ? Number(values[n].toPrecision(4)) : values[n], errors[k][n] === null ? null : Number(errors[k][n].toPrecision(2)))),
+    text: runs.exponent_texts[law][initial].map((texts) => texts[n]),
     error_y: { type: "data", array: errors.map((values) => 3 * (plain(values[n]) ?? 0)), thickness: 0.8, width: 0, color: grey(n) },
     line: { color: grey(n), width: 0.8 }, marker: { color: grey(n), size: 4 },
     hovertemplate: `a = %{x}<br>λ${subscript(n + 1)} = %{text}<extra></extra>`,

@@ -25,7 +25,7 @@ builders.sections = (box) => {
 legends.map = (list) => data.basins.maps[Number(list.dataset.map)].classes.map((item) => ({ name: `${item.name}: ${shown(item.percent.toFixed(2))} %`, color: item.color, shape: "patch", edge: ink("muted") }));
 
 builders.map = (box) => {
-  const { first, last, marked, maps } = data.basins;
+  const { blocks, first, last, marked, maps } = data.basins;
   const { classes, label, time } = maps[Number(box.dataset.map)];
   const labels = bytes(label);
   const view = new DataView(bytes(time).buffer);
@@ -36,20 +36,20 @@ builders.map = (box) => {
     z: rows.map((start) => Array.from(labels.subarray(start, start + first.length))),
     text: rows.map((start) => first.map((_, k) => classes[labels[start + k]].name + decided(start + k))),
     colorscale: steps(classes.map((item) => item.color)),
-    hovertemplate: "U<sub>1</sub>(0) = %{x:.4f}, U<sub>N</sub>(0) = %{y:.4f}<br>%{text}<extra></extra>",
+    hovertemplate: `U<sub>1</sub>(0) = %{x:.4f}, U<sub>${blocks}</sub>(0) = %{y:.4f}<br>%{text}<extra></extra>`,
   };
   const states = {
     type: "scatter", mode: "markers+text", x: marked.map((state) => state.first), y: marked.map((state) => state.last),
     text: marked.map((state) => `<b>${state.name}</b>`), textposition: marked.map((state) => (state.first > 0.5 * (first[0] + first.at(-1)) ? "top left" : "top right")),
     textfont: { color: "#000000", shadow: "0 0 3px #fff, 0 0 3px #fff, 0 0 3px #fff" },
     marker: { size: 9, color: "#ffffff", line: { color: "#000000", width: 1.5 } },
-    hovertemplate: "%{text}<br>U<sub>1</sub>(0) = %{x}, U<sub>N</sub>(0) = %{y}<extra></extra>",
+    hovertemplate: `%{text}<br>U<sub>1</sub>(0) = %{x}, U<sub>${blocks}</sub>(0) = %{y}<extra></extra>`,
   };
   const [x, y] = [cells(first), cells(last)];
   return {
     traces: [trace, states],
     xaxis: axis("<i>U</i><sub>1</sub>(0)", { range: [x[0], x.at(-1)], showgrid: false, constrain: "domain" }),
-    yaxis: axis("<i>U<sub>N</sub></i>(0)", { range: [y[0], y.at(-1)], showgrid: false, scaleanchor: "x", constrain: "domain" }),
+    yaxis: axis(`<i>U</i><sub>${blocks}</sub>(0)`, { range: [y[0], y.at(-1)], showgrid: false, scaleanchor: "x", constrain: "domain" }),
   };
 };
 

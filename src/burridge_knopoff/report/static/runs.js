@@ -22,10 +22,10 @@ function rowsOf({ law, initial, a }) {
   const at = (name) => runs[name][law][initial][a];
   const kind = runs.kinds[at("kind")];
   const period = at("period");
-  const exponents = at("exponents").map((value, n) => `λ${subscript(n + 1)} = ${withError(value, at("exponent_errors")[n])}`);
+  const exponents = at("exponent_texts").map((text, n) => `λ${subscript(n + 1)} = ${text}`);
   return [
     ["Run", `${runs.laws[law]} law, initial state ${runs.initial[initial]}, a = ${runs.texts[a]}`],
-    ["⟨J⟩", withError(at("mean_distance"), at("mean_distance_error"))],
+    ["⟨J⟩", at("mean_distance_text")],
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", kind + (period > 0 ? `, section points repeat after ${period}` : "")],
     ["Lyapunov exponents", exponents.length ? element("ul", {}, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
@@ -35,14 +35,6 @@ function rowsOf({ law, initial, a }) {
 }
 
 const subscript = (number) => String.fromCodePoint(...[...String(number)].map((digit) => 0x2080 + Number(digit)));
-// As many digits as the error leaves; the file has them all.
-const withError = (value, error) => {
-  if (typeof value !== "number" || typeof error !== "number") return shown(value);
-  if (!(error > 0)) return shown(value);
-  const digits = Math.max(0, 1 - Math.floor(Math.log10(error)));
-  if (digits > 9 || error >= 100) return `${shown(Number(value.toPrecision(6)))} ± ${shown(Number(error.toPrecision(2)))}`;
-  return `${shown(value.toFixed(digits))} ± ${shown(error.toFixed(digits))}`;
-};
 
 function pick(law, initial, a) {
   Object.assign(picked, { law, initial, a });

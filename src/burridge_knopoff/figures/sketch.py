@@ -1,0 +1,93 @@
+"""The chain of blocks, its springs and its driver: the paper's Fig. 1, drawn from the model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from burridge_knopoff.figures.style import PAGE, color, styled
+from burridge_knopoff.model.chain import Chain
+
+TITLE = "The chain of blocks"
+CATEGORY = "Model"
+PAPER = "Fig. 1"
+INPUTS = ()
+FROM_STUDY = ("chain_description",)
+CAPTION = """\
+The chain of the study. Springs join neighbouring blocks to each other (blue, strength above) and blocks to a driver
+that moves at the speed v (red, strength D_i beside); dry friction holds a block up to its static friction F. U_i is the
+position of block i. Strengths are in units of the spring constant k, friction in units of F(0), which it is where none
+is given. Of a long chain the first two blocks and the last are drawn.
+"""
+
+#: Blocks of a chain that is drawn whole, at most.
+WHOLE = 6
+
+# Places in units of half the distance between two blocks.
+SIDE, TOP, STEP = 0.8, 2.3, 2.2
+
+
+@styled
+def draw(chain_description: Mapping[str, Any]) -> Figure:
+    """Draw the chain that is described as `Chain` takes it: blocks, springs with their strengths, driver and ground."""
+    chain = Chain(**chain_description)
+    count = chain.blocks
+    shown = list(range(count)) if count <= WHOLE else [0, 1, count - 1]
+    # Where blocks are left out there is room for dots.
+    place = {block: STEP * (k + (count > WHOLE and k == 2)) for k, block in enumerate(shown)}
+    left, right = -1.5, max(place.values()) + 1.7
+    figure = Figure(figsize=(min(PAGE, 0.75 * (right - left) + 0.4), 2.4), layout="constrained")
+    panel = figure.subplots()
+    panel.add_patch(Rectangle((left, -0.3), right - left, 0.3, facecolor="none", edgecolor="0.5", hatch="////", lw=0))
+    panel.plot([left, right], [0.0, 0.0], color="black")
+    panel.add_patch(Rectangle((left, TOP), right - left, 0.18, facecolor="0.85", edgecolor="black", linewidth=0.7))
+    _arrow(panel, right - 1.1, TOP + 0.42, "$v$")
+    for block, x in place.items():
+        panel.add_patch(Rectangle((x - SIDE / 2, 0.0), SIDE, SIDE, facecolor="white", edgecolor="black"))
+        panel.text(x, SIDE / 2, str(block + 1), ha="center", va="center")
+        _arrow(panel, x - 0.65, SIDE + 0.2, f"$U_{{{block + 1}}}$")
+        if chain.driving[block] > 0.0:
+            # The driver is ahead.
+            _spring(panel, (x + 0.25, SIDE), (x + 0.8, TOP), color(1))
+            panel.text(x + 0.75, 1.4, f"${chain.driving[block]:g}$", color=color(1))
+        if len(set(chain.thresholds)) > 1:
+            panel.text(x, -0.38, f"$F={chain.thresholds[block]:g}$", ha="center", va="top")
+    for one, other in pairwise(shown):
+        start, end = place[one] + SIDE / 2, place[other] - SIDE / 2
+        if other != one + 1:
+            panel.text(0.5 * (start + end), SIDE / 2, "· · ·", ha="center", va="center", fontsize=14.0)
+            continue
+        _spring(panel, (start, SIDE / 2), (end, SIDE / 2), color(0))
+        panel.text(0.5 * (start + end), 0.62, f"${chain.after[one]:g}$", ha="center", color=color(0))
+    if chain.ends == "ring":
+        words = f"a spring of strength ${chain.after[-1]:g}$ joins block {count} to block 1"
+        panel.text(0.5 * (left + right), -0.75, words, ha="center", va="top", color=color(0))
+    panel.set(
+        xlim=(left - 0.05, right + 0.05),
+        ylim=(-1.1 if panel.texts[-1].get_position()[1] < 0.0 else -0.35, TOP + 0.7),
+        aspect="equal",
+    )
+    panel.set_axis_off()
+    return figure
+
+
+def _spring(panel: Axes, start: tuple[float, float], end: tuple[float, float], hue: str) -> None:
+    """Draw a spring as a zigzag with straight ends."""
+    along = np.array([0.0, 0.15, *np.linspace(0.2, 0.8, 9), 0.85, 1.0])
+    across = 0.1 * np.array([0.0, 0.0, *(1.0 - 2.0 * (np.arange(9) % 2)), 0.0, 0.0])
+    first, last = np.array(start), np.array(end)
+    direction = (last - first) / np.hypot(*(last - first))
+    points = first + along[:, None] * (last - first) + across[:, None] * [-direction[1], direction[0]]
+    panel.plot(*points.T, color=hue, solid_joinstyle="round")
+
+
+def _arrow(panel: Axes, x: float, y: float, words: str) -> None:
+    """Draw an arrow to the right with a symbol at its beginning."""
+    panel.annotate("", (x + 0.6, y), (x, y), arrowprops={"arrowstyle": "->", "linewidth": 0.8})
+    panel.text(x, y, words, ha="right", va="center")

@@ -1,0 +1,28 @@
+"""The sketch of the chain: blocks, springs with their strengths, and what has no room is left out."""
+
+import pytest
+
+from burridge_knopoff.figures.sketch import draw
+
+
+def words(**chain):
+    return [text.get_text() for text in draw(chain).axes[0].texts]
+
+
+def test_the_paper_s_chain_has_twice_as_strong_a_spring_at_its_middle_block():
+    assert [word for word in words(blocks=3) if word.strip("$").isdigit()] == ["1", "$1$", "2", "$2$", "3", "$1$"] + [
+        "$1$"
+    ] * 2
+
+
+@pytest.mark.parametrize(("blocks", "names"), [(2, ["1", "2"]), (6, list("123456")), (40, ["1", "2", "40"])])
+def test_long_chains_are_drawn_by_their_ends(blocks, names):
+    said = words(blocks=blocks, pulling=7.0)
+    assert [word for word in said if word.isdigit()] == names
+    assert said.count("$7$") == len(names)
+    assert ("· · ·" in said) == (blocks > 6)
+
+
+def test_what_differs_between_blocks_is_said():
+    said = words(blocks=3, coupling=[1.0, 1.5, 2.5], threshold=[1.0, 1.2, 1.0], ends="ring")
+    assert {"$1$", "$1.5$", "$F=1.2$", "a spring of strength $2.5$ joins block 3 to block 1"} <= set(said)
