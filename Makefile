@@ -65,7 +65,7 @@ types: .venv/test
 style: .venv/kernel .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/snakefmt --check workflow
+	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
 
 # The lock files hold the newest; between the two is what pyproject.toml states.

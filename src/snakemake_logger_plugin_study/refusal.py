@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import atexit
+import os
 import re
+import shutil
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 
 #: What Snakemake takes for the name of a key.
@@ -34,6 +38,25 @@ def reworded(message: str) -> str | None:
         if found := pattern.search(message):
             return found.expand(words)
     return None
+
+
+def provide_cache() -> None:
+    """Give Snakemake a folder for its cache of sources, where the user's cannot be made, as without a home."""
+    # Snakemake would end with a traceback. No study puts anything there, since all its sources are local.
+    from snakemake.common import get_appdirs
+
+    try:
+        folder = Path(get_appdirs().user_cache_dir, "snakemake")
+        folder.mkdir(parents=True, exist_ok=True)
+        check_folder(folder)
+    except OSError:
+        os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="snakemake-cache-")
+        atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
+
+
+def is_end_by_hand(message: str) -> bool:
+    """Tell whether a message of Snakemake says that Ctrl-C ends the run; no event does."""
+    return message.startswith("Terminating processes on user request")
 
 
 def several_files(paths: Sequence[str | Path]) -> str:

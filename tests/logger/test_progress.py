@@ -2,7 +2,9 @@
 
 import io
 import os
+import re
 import sys
+import time
 from inspect import getsource, signature
 from logging import ERROR, INFO, WARNING, makeLogRecord
 from types import SimpleNamespace
@@ -186,6 +188,22 @@ ROUTINE = (*BEGUN, end(1), record("None", LogEvent.PROGRESS, done=1, total=1))
 FAILURE = error("x.log")
 BEGIN = "2 jobs: points 2; a few seconds left"
 TOLD = f"failed: simulate a=0.0800: {SILENT} (log x.log)"
+
+
+def test_a_job_that_ctrl_c_ends_before_it_has_begun_is_interrupted(written, tmp_path):
+    """Its log is empty, and its failure may be told before Snakemake says that it was Ctrl-C."""
+    end = record("Terminating processes on user request, this might take some time.")
+    for last in ((FAILURE, end), (end, FAILURE)):
+        lines = written(*BEGUN, *last, results="results/x")
+        assert not [line for line in lines if line.startswith("failed")]
+        assert any("1 job interrupted" in line for line in lines)
+    assert TOLD in written(*BEGUN, FAILURE, results="results/x")
+
+
+def test_a_clock_that_jumps_back_makes_no_run_shorter_than_nothing(written, monkeypatch):
+    monkeypatch.setattr(time, "time", lambda: 1.0)
+    (line,) = [line for line in written(*BEGUN, FAILURE, results="results/x") if "stopped after" in line]
+    assert re.search(r"stopped after \d+ s:", line)
 
 
 def test_routine_is_replaced_and_all_else_is_written(written):

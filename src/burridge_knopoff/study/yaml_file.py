@@ -48,6 +48,17 @@ _Loader.add_implicit_resolver(f"{_TAG}int", re.compile(r"[-+]?(0|[1-9][0-9]*)$")
 _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("-+0123456789."))
 
 
+def plain_value(text: str) -> Any:
+    """Return what a text stands for that is written without quotes: a number, true, false, null, or the text."""
+    loader = _Loader("")
+    tag = loader.resolve(yaml.ScalarNode, text, (True, False))
+    try:
+        return loader.construct_object(yaml.ScalarNode(tag, text))
+    # A date that is none, as for `read_yaml`.
+    except (ValueError, yaml.YAMLError):
+        return text
+
+
 def read_config(path: str | Path) -> dict[str, Any]:
     """Return the content of the config file of a study, not yet validated; raises ConfigError as `read_yaml` does."""
     content = read_yaml(path)
