@@ -22,7 +22,13 @@ from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost
 from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import checked_cores, is_end_by_hand, provide_cache, reworded
+from snakemake_logger_plugin_study.refusal import (
+    checked_cores,
+    is_end_by_hand,
+    provide_cache,
+    reworded,
+    says_nothing_to_do,
+)
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
 #: Events that the display replaces; -p and --verbose bring them back.
@@ -117,6 +123,10 @@ class LogHandler(LogHandlerBase):
                 failed.state = FAILED
             case LogEvent.ERROR:
                 self._stopped = True
+        if says_nothing_to_do(record.getMessage()) and not self.common_settings.dryrun:
+            # No hook of the Snakefile runs then; `bk check` and `bk prune` would go by the config of an older run.
+            with suppress(OSError):
+                PLAN.record()
         self._run.stopping = self._run.stopping or is_end_by_hand(record.getMessage())
 
     def _expect(self) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
+from burridge_knopoff.values import shown
 
 #: What Snakemake takes for the name of a key.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
@@ -59,6 +60,11 @@ def is_end_by_hand(message: str) -> bool:
     return message.startswith("Terminating processes on user request")
 
 
+def says_nothing_to_do(message: str) -> bool:
+    """Tell whether a message of Snakemake says that a run has nothing to make."""
+    return message.startswith("Nothing to be done")
+
+
 def several_files(paths: Sequence[str | Path]) -> str:
     """Return what is said where --configfile has more than one file: Snakemake takes targets after it for files."""
     first, second = map(display_path, paths[:2])
@@ -87,5 +93,7 @@ def checked_cores(arguments: Sequence[str]) -> int:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):
             short = f"; {name} has its place in the config file" if len(name) == 1 else ""
-            raise ConfigError(f"--config: {entry!r} is not allowed: key=value, the key of two letters or more{short}")
+            raise ConfigError(
+                f"--config: {shown(entry)} is not allowed: key=value, the key of two letters or more{short}"
+            )
     return int(options.cores) if options.cores.isdecimal() else 0

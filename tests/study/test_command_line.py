@@ -40,8 +40,6 @@ def test_nested_values_are_those_of_a_file(tmp_path, text):
 
 NAMES = st.sampled_from(["series", "m"])
 PLAIN = st.integers(-99, 99) | st.floats(-1e6, 1e6) | st.booleans() | st.none() | NAMES
-    st.integers(-99, 99), st.floats(-1e6, 1e6), st.booleans(), st.none(), st.sampled_from(["series", "m"])
-)
 NESTED = st.recursive(PLAIN, lambda inside: st.lists(inside, max_size=3) | st.dictionaries(st.just("key"), inside))
 
 

@@ -95,7 +95,14 @@ if ROOT != Path.cwd():
     snakefile = workflow.main_snakefile if IMPORTED else SNAKEFILES[0]
     ARGUMENTS[:0] = ["-s", os.path.relpath(snakefile)]
 
+
+def record_study():
+    """Record in the folder of results what the study is, if there are any or some are to be made."""
+    write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
+
+
 PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
+PLAN.record = record_study
 
 
 # Jobs find the `bk` of this environment, activated or not.
@@ -122,7 +129,7 @@ def prepare_results():
     os.environ.update(BK_STUDY=f"{RESULTS} {identity(json.dumps(decides))}")
     try:
         check_folder(RESULTS, inside=True)
-        write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
+        record_study()
     except OSError as error:
         sys.exit(f"{error}")
     if "basins" not in STUDY.left_out and not STUDY.basin_maps and GIVEN.get("basins"):

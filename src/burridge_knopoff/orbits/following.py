@@ -12,6 +12,7 @@ from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit, begin_branch
 from burridge_knopoff.orbits.simpler import simpler_orbit, simplest
+from burridge_knopoff.values import shown
 
 # Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
 # comes back to itself in a mirror, or after half its period.
@@ -75,7 +76,7 @@ def follow(
     """
     low, high = a_range
     if not low <= high:
-        raise ValueError(f"a_range: {a_range!r} is not allowed: (low, high) with low ≤ high")
+        raise ValueError(f"a_range: {shown(a_range)} is not allowed: (low, high) with low ≤ high")
     if not low <= orbit.a <= high:
         raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
     points = [begin_branch(simpler_orbit(orbit) or orbit, upward)]
