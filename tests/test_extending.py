@@ -115,7 +115,9 @@ def extend(folder):
     """Make a copy of the tree with the edits of the page, and compile its kernel."""
     for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    shutil.copy(REPOSITORY / "pyproject.toml", folder)
+    for name in ("pyproject.toml", "Snakefile"):
+        shutil.copy(REPOSITORY / name, folder)
+    (folder / "profiles").symlink_to("workflow/profiles")
     assert len(apply(PAGE, folder)) == 11
     compiled = run(folder, sys.executable, "-c", COMPILE).split()
     assert "observe" in compiled
