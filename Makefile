@@ -8,7 +8,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd) \
-	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py sources.py)
+	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py processor.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip compiles one file after the other, and the packages' own tests as well. Where Python may write no bytecode, the
 # project's own would be compiled anew in every job.
@@ -65,7 +65,7 @@ types: .venv/test
 style: .venv/kernel .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/snakefmt --check workflow
+	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
 
 # The lock files hold the newest; between the two is what pyproject.toml states.

@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tempfile
 from pathlib import Path
 
 from Cython.Build import cythonize
@@ -9,13 +10,17 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 sys.path.insert(0, "src")
+# A build for another environment changes nothing in the tree, which may run a study meanwhile.
+sys.dont_write_bytecode = True
 
 from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
-from burridge_knopoff.provenance.kernel_build import RECORD, kernel_sources, recorded_sources, write_record
+from burridge_knopoff.provenance.kernel_build import RECORD, current_build, recorded_build, write_record
 
 KERNEL = Path("src/burridge_knopoff/kernel")
 #: What Cython puts beside every module, compiled once for all of them: half of the time.
 SHARED = "burridge_knopoff.kernel._shared"
+#: Where all is made before it goes to its place; removed when this process ends.
+WORK = tempfile.TemporaryDirectory(prefix="burridge-knopoff-", ignore_cleanup_errors=True)
 
 
 def extension(name: str, source: Path, *flags: str) -> Extension:
@@ -24,27 +29,31 @@ def extension(name: str, source: Path, *flags: str) -> Extension:
 
 
 class RecordedBuild(build_ext):
-    """Compiles the kernel, and records from what when all of it is compiled."""
+    """Compiles the kernel, and records beside it what it was compiled from."""
 
     def run(self) -> None:
-        """Compile all of it or, if nothing has changed, what is not there."""
-        # Times of files do not tell what was compiled from what.
-        self.force = self.force or recorded_sources() != kernel_sources()
+        """Compile all of it."""
         self.parallel = self.parallel or os.cpu_count()
-        (KERNEL / RECORD).unlink(missing_ok=True)
         # Only here: pip runs this file three times, and a source distribution needs no C.
         translated = cythonize(
             [extension(item.name, Path(item.sources[0])) for item in self.extensions],
             nthreads=os.cpu_count() or 1,
-            force=self.force,
-            build_dir="build/cython",
+            force=True,
+            build_dir=f"{WORK.name}/cython",
             shared_utility_qualified_name=SHARED,
             compiler_directives=DIRECTIVES,
         )
         for item, in_c in zip(self.extensions, translated, strict=True):
             item.sources = in_c.sources
         super().run()
-        write_record(Path(self.get_ext_fullpath("burridge_knopoff.kernel.series")).parent)
+        write_record(Path(self.get_ext_fullpath(SHARED)).parent)
+
+    def copy_extensions_to_source(self) -> None:
+        """Replace the kernel of the tree, in an editable installation."""
+        # What is killed on the way must not leave parts of two kernels that pass for one.
+        if recorded_build() != current_build():
+            (KERNEL / RECORD).unlink(missing_ok=True)
+        super().copy_extensions_to_source()
 
     def get_source_files(self) -> list[str]:
         """Return what a source distribution holds of the kernel: all but what Cython makes."""
@@ -53,6 +62,8 @@ class RecordedBuild(build_ext):
 
 setup(
     cmdclass={"build_ext": RecordedBuild},
+    # A source distribution has its metadata in the tree.
+    options={"build": {"build_base": WORK.name}, "egg_info": {} if "sdist" in sys.argv else {"egg_base": WORK.name}},
     ext_modules=[
         # It hands arrays over and computes nothing: the longest to compile would take twice as long.
         extension(SHARED, Path("_shared.c"), "-O1"),

@@ -13,7 +13,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parent.parent
 #: Beside the interpreter as it was called: a virtual environment's interpreter is a link out of it.
 BIN = Path(sys.executable).parent
-SNAKEFILE = REPOSITORY / "workflow/Snakefile"
+SNAKEFILE = REPOSITORY / "Snakefile"
 SNAKEMAKE = [str(BIN / "snakemake"), "-s", str(SNAKEFILE)]
 
 #: As typed at a prompt: importing NumPy starts a thread of the linear-algebra library for every core.

@@ -26,7 +26,7 @@ RATIO_LIMIT = 1.5
 #: All that the default study makes from its point files, but figures.
 TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
 POINT_RULE = "workflow/rules/simulate.smk"
-POINT_COMMAND = '"{params.command} --out {output} > /dev/null 2> {log}"'
+POINT_COMMAND = '"{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"'
 PLANNED = re.compile(r"^(\d+) jobs: ", re.MULTILINE)
 
 
@@ -35,6 +35,8 @@ def make_baseline(folder: Path, made: Path) -> Path:
 
     made : folder of a finished run of the study
     """
+    shutil.copy(REPOSITORY / "Snakefile", folder)
+    (folder / "profiles").symlink_to("workflow/profiles")
     shutil.copytree(REPOSITORY / "workflow", folder / "workflow")
     shutil.copytree(REPOSITORY / "config", folder / "config")
     rule = folder / POINT_RULE
@@ -44,7 +46,7 @@ def make_baseline(folder: Path, made: Path) -> Path:
     # A link costs next to nothing in the process that has imported already; `cp` would be one more process.
     script = f"{IMPORTS}, os; os.link('{made}/{{output}}', '{{output}}')"
     rule.write_text(text.replace(POINT_COMMAND, f'"python -c \\"{script}\\" 2> {{log}}"'), encoding="utf-8")
-    return folder / "workflow/Snakefile"
+    return folder / "Snakefile"
 
 
 def run_study(snakefile: Path, folder: Path, cores: int, environment: dict[str, str]) -> tuple[float, float, int]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 import venv
 from dataclasses import dataclass
+from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.metadata import Distribution, distribution
 from pathlib import Path
 
@@ -26,6 +28,11 @@ class Installation:
     def python(self) -> str:
         """Path of its Python."""
         return str(self.folder / "environment" / "bin" / "python")
+
+    @property
+    def touched(self) -> list[str]:
+        """Files of the tree that building the wheel has made, changed or deleted."""
+        return json.loads((self.folder / "touched.json").read_text())
 
     @property
     def source(self) -> Path:
@@ -61,6 +68,10 @@ def install(repository: Path, folder: Path) -> None:
     flags = unpacked / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
     assert '"-O3"' in flags.read_text()
     flags.write_text(flags.read_text().replace('"-O3"', '"-O0"'))
+    # As in a checkout that has a kernel of its own, which may be at work.
+    for name in ("build.json", f"series{EXTENSION_SUFFIXES[0]}"):
+        (unpacked / "src" / "burridge_knopoff" / "kernel" / name).write_text("of the tree\n")
+    before = content_of(unpacked)
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     offline = ["--no-index", "--no-deps"]
     subprocess.run(
@@ -68,6 +79,9 @@ def install(repository: Path, folder: Path) -> None:
         env={**os.environ, "BURRIDGE_KNOPOFF_LANES": "2"},
         check=True,
     )
+    after = content_of(unpacked)
+    touched = sorted(name for name in {**before, **after} if before.get(name) != after.get(name))
+    (folder / "touched.json").write_text(json.dumps(touched))
     shutil.rmtree(folder / "unpacked")
 
     environment = folder / "environment"
@@ -78,6 +92,14 @@ def install(repository: Path, folder: Path) -> None:
     for needed in _needs(Distribution.at(information)).values():
         for name in {file.parts[0] for file in needed.files or ()} - {"..", "__pycache__"}:
             (packages / name).symlink_to(str(needed.locate_file(name)))
+
+
+def content_of(tree: Path) -> dict[str, tuple[int, bytes]]:
+    """Return {name: time of the last change, content} of all files and folders in a tree."""
+    return {
+        str(path.relative_to(tree)): (path.stat().st_mtime_ns, path.read_bytes() if path.is_file() else b"")
+        for path in tree.rglob("*")
+    }
 
 
 def _needs(package: Distribution) -> dict[str, Distribution]:

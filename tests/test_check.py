@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import shutil
 from functools import reduce
 from operator import getitem
@@ -9,6 +10,8 @@ from operator import getitem
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from burridge_knopoff import open_study
 from burridge_knopoff.check.study import check_study
@@ -331,6 +334,66 @@ def test_a_study_whose_config_has_changed_is_not_pruned(results, capsys):
     words = "small.yaml has changed since the last run: run snakemake first"
     assert capsys.readouterr() == ("", f"bk prune: {results}: {words}\n")
     assert left.exists()
+
+
+def test_a_config_that_has_changed_is_counted(results, capsys):
+    (results.parent.parent / "small.yaml").write_text(CONFIG.replace("[0.05, 0.08]", "[0.08]"))
+    assert main(["check", str(results)]) == 1
+    said = capsys.readouterr().out
+    assert "stale    small.yaml: has changed since the last run" in said
+    assert "0 missing, 0 corrupt, 1 stale, 0 failed" in said
+
+
+def test_the_command_that_remakes_works_wherever_it_is_pasted(results, capsys, monkeypatch):
+    """Snakemake knows files by their paths from its own folder only, and a space ends a word of a shell."""
+    root = results.absolute().parents[1]
+    elsewhere = root.rename(root.with_name("my study"))
+    monkeypatch.chdir(root.parent)
+    bad = elsewhere / point(results)
+    bad.write_bytes(b"")
+    assert main(["show", str(bad)]) == 2
+    command = f"cd {shlex.quote(str(elsewhere))} && snakemake -c2 --configfile small.yaml -R {point(results)}"
+    assert capsys.readouterr().err.endswith(f"remake it: {command}\n")
+    assert main(["check", str(elsewhere / results)]) == 1
+    assert capsys.readouterr().out.splitlines()[-1] == f"remake: {command}"
+
+
+def parts(value, *path):
+    """Yield the path of every part of a record."""
+    yield path
+    inside = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in inside:
+        yield from parts(item, *path, key)
+
+
+@given(data=st.data())
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+def test_a_record_that_was_changed_by_hand_is_refused_in_a_line_that_names_it(results, data):
+    """Whatever part of it was replaced by whatever there is."""
+    record = results / "study.json"
+    text = record.read_text()
+    content = json.loads(text)
+    _, *paths = parts({key: content[key] for key in ("config", "grid")})
+    *place, name = data.draw(st.sampled_from(paths))
+    nested = reduce(lambda inside, _: [inside], range(50), [])
+    reduce(getitem, place, content)[name] = data.draw(
+        st.sampled_from([None, [], {}, "x\ny", -1, 1e300, nested, True, [[]]])
+    )
+    try:
+        record.write_text(json.dumps(content))
+        if content != json.loads(text):
+            with pytest.raises(ValueError, match="study.json: ") as caught:
+                recorded_study(results)
+            assert str(caught.value).isprintable()
+            assert len(str(caught.value)) < 1000
+    finally:
+        record.write_text(text)
+
+
+def test_a_record_nested_without_end_is_refused(results):
+    (results / "study.json").write_text("[" * 100_000)
+    with pytest.raises(ValueError, match="study.json: not the record of a study"):
+        recorded_study(results)
 
 
 @pytest.mark.parametrize("key", ["laws", "solvers", "figures.a", "motion.colour", "chains.two_blocks.a", "basins"])

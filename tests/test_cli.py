@@ -246,7 +246,7 @@ def test_bad_input(tmp_path, monkeypatch, capsys, arguments, words):
 def test_a_run_that_ends_early_says_so(tmp_path):
     longer = ["--transient", "0", "--window", "1000"]
     run = bk(*RUN[:4], "1.9", "--contact", "symmetric", *longer, "--out", "x.nc", cwd=tmp_path)
-    assert (run.returncode, run.stdout) == (0, "")
+    assert (run.returncode, run.stdout) == (3, "")
     assert run.stderr.count("\n") == 1
     assert "status diverged" in run.stderr
     with netCDF4.Dataset(tmp_path / "x.nc") as dataset:

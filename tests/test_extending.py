@@ -36,14 +36,14 @@ chains: {two_blocks: {a: [0.02], samples: 2}}
 """
 
 COMPILE = """
-import json, sys
+import sys
 sys.path.insert(0, "src")
 from Cython.Build import cythonize
 from setuptools import Extension, setup
 from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
-from burridge_knopoff.provenance.kernel_build import KERNEL, RECORD, kernel_sources, write_record
+from burridge_knopoff.provenance.kernel_build import KERNEL, kernel_sources, recorded_build, write_record
 from burridge_knopoff.provenance.sources import PACKAGE, sources_of
-before, now = json.loads((KERNEL / RECORD).read_text()), kernel_sources()
+before, now = recorded_build()["sources"], kernel_sources()
 changed = {PACKAGE / name for name in now if now[name] != before.get(name)}
 names = {path: f"burridge_knopoff.kernel.{path.stem}" for path in sorted(KERNEL.glob("*.py")) if "__" not in path.stem}
 stale = {path: name for path, name in names.items() if changed.intersection(sources_of(name))}
@@ -115,7 +115,9 @@ def extend(folder):
     """Make a copy of the tree with the edits of the page, and compile its kernel."""
     for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    shutil.copy(REPOSITORY / "pyproject.toml", folder)
+    for name in ("pyproject.toml", "Snakefile"):
+        shutil.copy(REPOSITORY / name, folder)
+    (folder / "profiles").symlink_to("workflow/profiles")
     assert len(apply(PAGE, folder)) == 11
     compiled = run(folder, sys.executable, "-c", COMPILE).split()
     assert "observe" in compiled

@@ -45,6 +45,11 @@ def run(installed, folder, *arguments):
     return done.stdout
 
 
+def test_building_for_another_environment_touches_nothing_in_the_tree(installed):
+    """Nor its kernel, with which a study may be at work, nor the record of it."""
+    assert installed.touched == []
+
+
 def test_everything_but_the_rooms_of_a_study_can_be_imported(installed, tmp_path):
     where, missing = json.loads(run(installed, tmp_path, "-c", MODULES))
     assert where.startswith(str(installed.folder / "environment"))

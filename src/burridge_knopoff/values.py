@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,6 +13,10 @@ _T = TypeVar("_T")
 
 #: Numbers that a run or a job keeps of one kind at most: 800 MB.
 MOST_NUMBERS = 1e8
+#: Characters of a value in a message.
+LONGEST = 60
+#: Of whole numbers that are written in decimals: Python refuses those of 4300 digits and more.
+MOST_BITS = 10_000
 
 
 def scalar(value: Any) -> Any:
@@ -65,10 +70,69 @@ def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
 
 def refusal(key: str, value: Any, allowed: object) -> ValueError:
     """Return the error of a value that is not allowed: key, value, what is."""
-    return ValueError(f"{key}{': ' if key else ''}{cut(repr(value))} is not allowed: {allowed}")
+    return ValueError(f"{key}{': ' if key else ''}{shown(value)} is not allowed: {allowed}")
 
 
-def cut(text: str) -> str:
-    """Return a text in one line, which arrays do not show themselves in, and cut if it is long."""
-    text = " ".join(text.split())
-    return text if len(text) <= 60 else f"{text[:57]}..."
+def cut(text: str, longest: int = LONGEST) -> str:
+    """Return a text in one line of letters that can be printed, cut if it is long."""
+    # What is left out is not looked at, however much it is.
+    head = " ".join(text[: 4 * longest].split())
+    head = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in head)
+    return head if len(head) <= longest and len(text) <= 4 * longest else f"{head[: longest - 3]}..."
+
+
+def shown(value: Any) -> str:
+    """Return any value as Python writes it, in one line and cut: no more of it is written than is shown.
+
+    A value of few bytes may be long when it is written whole, as YAML whose parts are named and repeated.
+    """
+    text = ""
+    for part in _parts(value):
+        if len(text) > LONGEST:
+            return cut(text + "." * LONGEST)
+        text += part
+    return cut(text)
+
+
+def joined(key: str, name: Any) -> str:
+    """Return the key of an entry: a name that is not plain words is quoted, in ASCII, and a long one is cut."""
+    plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", name)
+    words = cut(name) if plain else cut(ascii(name[: LONGEST + 1])) if isinstance(name, str) else shown(name)
+    return f"{key}.{words}" if key else words
+
+
+def _parts(value: Any) -> Iterator[str]:
+    """Yield a value piece by piece, as `repr` writes it; each level of nesting yields before it goes deeper."""
+    kind = type(value)
+    if isinstance(value, str | bytes | bytearray):
+        yield repr(value[: LONGEST + 1])
+    elif kind in (list, tuple, set, frozenset) and value:
+        brackets: dict[type, tuple[str, str]] = {list: ("[", "]"), tuple: ("(", ")"), set: ("{", "}")}
+        first, last = brackets.get(kind, ("frozenset({", "})"))
+        yield first
+        for position, item in enumerate(value):
+            yield ", " if position else ""
+            yield from _parts(item)
+        yield f",{last}" if kind is tuple and len(value) == 1 else last
+    elif isinstance(value, Mapping):
+        yield "{"
+        for position, (key, item) in enumerate(value.items()):
+            yield ", " if position else ""
+            yield from _parts(key)
+            yield ": "
+            yield from _parts(item)
+        yield "}"
+    elif isinstance(value, int) and value.bit_length() > MOST_BITS:
+        yield f"{'-' * (value < 0)}0x{abs(value) >> (abs(value).bit_length() - 4 * LONGEST):x}..."
+    elif getattr(getattr(value, "dtype", None), "kind", "") == "O":
+        yield f"{kind.__name__} of objects"
+    else:
+        yield _written(value)
+
+
+def _written(value: Any) -> str:
+    try:
+        return repr(value)
+    # Whatever is given may be what cannot write itself.
+    except Exception:
+        return f"a {type(value).__name__}"

@@ -22,7 +22,13 @@ from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost
 from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import checked_cores, reworded
+from snakemake_logger_plugin_study.refusal import (
+    checked_cores,
+    is_end_by_hand,
+    provide_cache,
+    reworded,
+    says_nothing_to_do,
+)
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
 #: Events that the display replaces; -p and --verbose bring them back.
@@ -44,6 +50,7 @@ class LogHandler(LogHandlerBase):
             self._given_cores = checked_cores(sys.argv[1:])
         except ConfigError as error:
             sys.exit(str(error))
+        provide_cache()
         from snakemake.logging import ColorizingTextHandler, is_quiet_about
 
         settings = self.common_settings
@@ -52,10 +59,12 @@ class LogHandler(LogHandlerBase):
         self.addFilter, self.setFormatter = self._text.addFilter, self._text.setFormatter  # type: ignore[method-assign]
         self._everything = settings.dryrun or settings.verbose or settings.printshellcmds or settings.debug_dag
         self._quiet = is_quiet_about(settings.quiet or set(), "progress")
-        self._begin, self._cores, self._run = time.time(), 1, Run()
+        self._begin, self._cores, self._run = time.monotonic(), 1, Run()
         #: Whether there is something to do, also in a dry run, and whether Snakemake ended with an error.
         self._begun = self._stopped = False
         self._display: Lines | Picture | None = None
+        #: Jobs that left no word, with their logs: of Ctrl-C jobs may tell before Snakemake does.
+        self._wordless: list[tuple[str, list[str]]] = []
 
     def emit(self, record: LogRecord) -> None:
         """Take a record of Snakemake's log."""
@@ -65,7 +74,15 @@ class LogHandler(LogHandlerBase):
         except Exception:
             # A defect of the display must neither end the thread of the log nor hide a message.
             self.handleError(record)
+        if getattr(record, "event", None) not in (LogEvent.JOB_ERROR, LogEvent.ERROR):
+            self._tell_wordless()
         self._say(words, record)
+
+    def _tell_wordless(self) -> None:
+        """Tell of the jobs that left no word as failed, unless it was Ctrl-C that ended them."""
+        for job, logs in [] if self._run.stopping else self._wordless:
+            self._say(failure(job, logs))
+        self._wordless.clear()
 
     def _instead(self, record: Any) -> str | None:
         """Return what is said instead of a record, "" for nothing; None if it is said as it is."""
@@ -74,8 +91,12 @@ class LogHandler(LogHandlerBase):
             # Snakemake's own block lists all input, which may be 10,000 files; version 9.22 tells of a failure twice.
             whole = self._everything or self.common_settings.show_failed_logs
             logs = record.log or []
-            told = None if whole else "" if interrupted(logs) else failure(job.name, logs)
-            return "" if job.state == FAILED else told
+            if job.state == FAILED or (not whole and interrupted(logs)):
+                return ""
+            if not whole and interrupted(logs, stopping=True):
+                self._wordless.append((job.name, logs))
+                return ""
+            return None if whole else failure(job.name, logs)
         words = "" if event in _ROUTINE else reworded(record.getMessage()) if event in (None, LogEvent.ERROR) else None
         return None if words == "" and self._everything else words
 
@@ -91,17 +112,22 @@ class LogHandler(LogHandlerBase):
                 self._expect()
             case LogEvent.JOB_INFO if record.output:
                 job = self._run.job(record.jobid, record.rule_name)
-                job.begin, job.message = record.created, record.rule_msg or ""
+                job.begin, job.message = time.monotonic(), record.rule_msg or ""
                 job.output, job.log = record.output, record.log or []
                 # Jobs of a group start and end together: that tells no duration of each.
                 job.timed = bool(job.kind) and not record.indent
                 job.state = RUNNING
             case LogEvent.JOB_FINISHED if done := self._run.jobs.get(record.job_id):
-                done.end, done.state = record.created, DONE
+                done.end, done.state = time.monotonic(), DONE
             case LogEvent.JOB_ERROR if failed := self._run.jobs.get(record.jobid):
                 failed.state = FAILED
             case LogEvent.ERROR:
                 self._stopped = True
+        if says_nothing_to_do(record.getMessage()) and not self.common_settings.dryrun:
+            # No hook of the Snakefile runs then; `bk check` and `bk prune` would go by the config of an older run.
+            with suppress(OSError):
+                PLAN.record()
+        self._run.stopping = self._run.stopping or is_end_by_hand(record.getMessage())
 
     def _expect(self) -> None:
         """Begin to show a run, whose first jobs start."""
@@ -112,7 +138,7 @@ class LogHandler(LogHandlerBase):
             # Without a plan, as without hooks, Snakemake's own messages are all there is.
             self._everything = True
             return
-        self._say(beginning(run, time.time()))
+        self._say(beginning(run, time.monotonic()))
         if self._quiet:
             return
         self._display = Picture(run, self._text) if self._text.can_color_tty() else Lines(run, self._say)
@@ -134,6 +160,7 @@ class LogHandler(LogHandlerBase):
         """Take the display away and say what the run left; Snakemake calls this at the end, also after Ctrl-C."""
         if self._display:
             self._display.close()
+        self._tell_wordless()
         for line in self._last_words() if self._begun else ():
             self._say(line)
         # Snakemake may close its handlers more than once.
@@ -156,7 +183,7 @@ class LogHandler(LogHandlerBase):
             # A folder that cannot be written to fails no run.
             with suppress(OSError):
                 write_past(run, self._begin)
-            return closing_lines(run, time.time() - self._begin, stopped=self._stopped)
+            return closing_lines(run, time.monotonic() - self._begin, stopped=self._stopped)
         except Exception as error:
             what = "the time of a run" if self.common_settings.dryrun else "what the run left"
             return [f"{what} cannot be told: {error}"]

@@ -27,7 +27,7 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
     """
     results, ended, done = Path(run.results), run.of(FAILED), run.of(DONE)
     missed = len(run.jobs) - len(ended) - len(done)
-    failed = [job for job in ended if not interrupted(job.log)]
+    failed = [job for job in ended if not interrupted(job.log, stopping=run.stopping)]
     made = _made(results, [path for job in done for path in job.output])
     if ended or missed or stopped:
         counts = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))

@@ -81,14 +81,14 @@ class Lines(threading.Thread):
     def __init__(self, run: Run, say: Callable[[str], None]) -> None:
         super().__init__(daemon=True)
         self._run, self._say = run, say
-        self._time, self._done = time.time(), 0
+        self._time, self._done = time.monotonic(), 0
         self._closed = threading.Event()
         self.start()
 
     def run(self) -> None:
         """Say a line whenever one is due."""
         while not self._closed.wait(1.0):
-            if self.is_due(now := time.time()):
+            if self.is_due(now := time.monotonic()):
                 self._say(progress(self._run, now))
 
     def is_due(self, now: float) -> bool:
@@ -111,7 +111,7 @@ class Picture:
     """Draws a line for each stage at the bottom of a terminal; what a handler of the log writes scrolls by over it."""
 
     def __init__(self, run: Run, text: Any) -> None:
-        self._run, self._text, self._stream, self._begin = run, text, text.stream, time.time()
+        self._run, self._text, self._stream, self._begin = run, text, text.stream, time.monotonic()
         # Long lines are left to the terminal: a command in a message can be copied.
         self._console = Console(file=text.stream, no_color=text.nocolor, highlight=False, soft_wrap=True)
         self._live = Live(
@@ -127,7 +127,7 @@ class Picture:
 
     def drawn(self) -> Group:
         """Return the picture of now: stages, all jobs with the time left, and the jobs that run long."""
-        now, table, counts = time.time(), Table.grid(padding=(0, 1)), self._run.counts()
+        now, table, counts = time.monotonic(), Table.grid(padding=(0, 1)), self._run.counts()
         for stage, states in counts:
             is_all = states is counts[-1][1]
             at_work = f"{states[RUNNING]} running" if states[RUNNING] and not is_all else ""

@@ -6,6 +6,7 @@ The next run is estimated from it, the shipped durations are made of it, and ben
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,10 @@ def read_past(results: str | Path) -> dict[str, dict[str, Any]]:
 
 
 def write_past(run: Run, begin: float) -> None:
-    """Record the jobs of a run that are done, given when it began, and keep what is known of others."""
+    """Record the jobs of a run that are done, and keep what is known of others.
+
+    begin : when it began, by the clock of its jobs, which need not be that of the day
+    """
     done = {number: job for number, job in run.jobs.items() if job.state == DONE and job.timed}
     places = {number: place for place, number in enumerate(done)}
     jobs = [
@@ -60,5 +64,6 @@ def write_past(run: Run, begin: float) -> None:
         names = {job.name for job in done.values()}
         earlier = {name: job for name, job in read_past(run.results).items() if name not in names}
         calibration = run.durations.speed * SHIPPED["calibration"]
-        record = {"cores": run.cores, "calibration": calibration, "begin": begin, "jobs": jobs, "earlier": earlier}
+        day = time.time() - (time.monotonic() - begin)
+        record = {"cores": run.cores, "calibration": calibration, "begin": day, "jobs": jobs, "earlier": earlier}
         write_text(Path(run.results, RECORD), json.dumps(record) + "\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,12 +19,14 @@ from snakemake_logger_plugin_study.run import Job, Run
 class Plan:
     """What the Snakefile says: of a study, whether it is to run or not, and of a run once it begins.
 
+    record : writes that the study was run with its config, also where nothing is to be done
     workflow : Snakemake's own. No event tells which jobs need which: this is the one place that looks inside Snakemake.
     """
 
     results: str = ""
     workflow: Any = None
     study: Any = None
+    record: Callable[[], None] = lambda: None
     run: Run = field(default_factory=Run)
 
     def announce(self) -> None:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import atexit
+import os
 import re
+import shutil
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
+from burridge_knopoff.values import shown
 
 #: What Snakemake takes for the name of a key.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
@@ -34,6 +39,30 @@ def reworded(message: str) -> str | None:
         if found := pattern.search(message):
             return found.expand(words)
     return None
+
+
+def provide_cache() -> None:
+    """Give Snakemake a folder for its cache of sources, where the user's cannot be made, as without a home."""
+    # Snakemake would end with a traceback. No study puts anything there, since all its sources are local.
+    from snakemake.common import get_appdirs
+
+    try:
+        folder = Path(get_appdirs().user_cache_dir, "snakemake")
+        folder.mkdir(parents=True, exist_ok=True)
+        check_folder(folder)
+    except OSError:
+        os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="snakemake-cache-")
+        atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
+
+
+def is_end_by_hand(message: str) -> bool:
+    """Tell whether a message of Snakemake says that Ctrl-C ends the run; no event does."""
+    return message.startswith("Terminating processes on user request")
+
+
+def says_nothing_to_do(message: str) -> bool:
+    """Tell whether a message of Snakemake says that a run has nothing to make."""
+    return message.startswith("Nothing to be done")
 
 
 def several_files(paths: Sequence[str | Path]) -> str:
@@ -64,5 +93,7 @@ def checked_cores(arguments: Sequence[str]) -> int:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):
             short = f"; {name} has its place in the config file" if len(name) == 1 else ""
-            raise ConfigError(f"--config: {entry!r} is not allowed: key=value, the key of two letters or more{short}")
+            raise ConfigError(
+                f"--config: {shown(entry)} is not allowed: key=value, the key of two letters or more{short}"
+            )
     return int(options.cores) if options.cores.isdecimal() else 0

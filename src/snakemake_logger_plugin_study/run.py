@@ -49,6 +49,7 @@ class Run:
     jobs : {number: job}, in the order of the stages
     wanted : rules of all files that the run is to make or has found up to date
     durations : what jobs take on this machine, as known before any has begun
+    stopping : whether Ctrl-C has ended it
     """
 
     results: str = ""
@@ -56,6 +57,7 @@ class Run:
     wanted: Collection[str] = ()
     durations: Durations = field(default_factory=Durations)
     cores: float = 1.0
+    stopping: bool = False
     _told: tuple[float, float] | None = None
 
     def job(self, number: int, rule: str) -> Job:

@@ -2,7 +2,9 @@
 
 import io
 import os
+import re
 import sys
+import time
 from inspect import getsource, signature
 from logging import ERROR, INFO, WARNING, makeLogRecord
 from types import SimpleNamespace
@@ -137,11 +139,11 @@ def written(monkeypatch):
     results, wanted, planned : of the run that the Snakefile announces, and the number of its jobs
     """
 
-    def write(*records, results="", wanted=(), planned=2, **settings):
+    def write(*records, results="", wanted=(), planned=2, recording=lambda: None, **settings):
         stream, settings = io.StringIO(), {**SETTINGS, **settings}
         monkeypatch.setattr(sys, "stderr", stream)
         jobs = {number: Job("simulate a=0.0800", "points", "simulate") for number in range(1, planned + 1)}
-        monkeypatch.setattr(plugin, "PLAN", Plan(run=Run(results, jobs, wanted)))
+        monkeypatch.setattr(plugin, "PLAN", Plan(run=Run(results, jobs, wanted), record=recording))
         handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
         # As Snakemake does it.
         handler.addFilter(DefaultFilter(**{name: settings[name] for name in signature(DefaultFilter).parameters}))
@@ -186,6 +188,31 @@ ROUTINE = (*BEGUN, end(1), record("None", LogEvent.PROGRESS, done=1, total=1))
 FAILURE = error("x.log")
 BEGIN = "2 jobs: points 2; a few seconds left"
 TOLD = f"failed: simulate a=0.0800: {SILENT} (log x.log)"
+
+
+def test_a_job_that_ctrl_c_ends_before_it_has_begun_is_interrupted(written, tmp_path):
+    """Its log is empty, and its failure may be told before Snakemake says that it was Ctrl-C."""
+    end = record("Terminating processes on user request, this might take some time.")
+    for last in ((FAILURE, end), (end, FAILURE)):
+        lines = written(*BEGUN, *last, results="results/x")
+        assert not [line for line in lines if line.startswith("failed")]
+        assert any("1 job interrupted" in line for line in lines)
+    assert TOLD in written(*BEGUN, FAILURE, results="results/x")
+
+
+@pytest.mark.parametrize("dryrun", [False, True])
+def test_a_run_with_nothing_to_do_is_recorded_too(written, dryrun):
+    """No hook of the Snakefile runs then, and `bk prune` goes by the config of the last run."""
+    recorded = []
+    nothing = record("Nothing to be done (all requested files are present and up to date).")
+    written(nothing, dryrun=dryrun, recording=lambda: recorded.append(True))
+    assert bool(recorded) is not dryrun
+
+
+def test_a_clock_that_jumps_back_makes_no_run_shorter_than_nothing(written, monkeypatch):
+    monkeypatch.setattr(time, "time", lambda: 1.0)
+    (line,) = [line for line in written(*BEGUN, FAILURE, results="results/x") if "stopped after" in line]
+    assert re.search(r"stopped after \d+ s:", line)
 
 
 def test_routine_is_replaced_and_all_else_is_written(written):

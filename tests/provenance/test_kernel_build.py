@@ -40,8 +40,8 @@ def refusal(package):
 def test_the_kernel_here_is_that_of_its_sources():
     kernel_build.check_kernel(compiled=True)
     recorded = json.loads((kernel_build.KERNEL / kernel_build.RECORD).read_text())
-    assert recorded == kernel_build.kernel_sources()
-    assert {"kernel/series.py", "kernel/series.pxd", "provenance/compilation.py"} <= recorded.keys()
+    assert recorded == kernel_build.current_build()
+    assert {"kernel/series.py", "kernel/series.pxd", "provenance/compilation.py"} <= recorded["sources"].keys()
 
 
 def test_as_it_was_built_it_runs(package):
@@ -72,7 +72,7 @@ def test_a_new_source_and_one_less_are_seen(package):
     assert "kernel/record.pxd: has changed" in refusal(package)
 
 
-@pytest.mark.parametrize("content", [None, "", "{", "[1]"])
+@pytest.mark.parametrize("content", [None, "", "{", "[1]", "[" * 9999, '{"sources": 1, "instructions": []}'])
 def test_a_build_that_was_not_finished_is_refused(package, content):
     path = package / "kernel" / kernel_build.RECORD
     path.unlink() if content is None else path.write_text(content)
@@ -86,3 +86,14 @@ def test_an_uncompiled_kernel_is_refused(package):
     assert done.stderr.strip().endswith(
         "KernelError: the kernel is not compiled: run `pip install --force-reinstall burridge-knopoff`"
     )
+
+
+def test_a_kernel_for_a_newer_processor_is_refused_before_it_is_loaded(package):
+    """Its first instruction that this machine lacks would end Python by a signal, without a word."""
+    path = package / "kernel" / kernel_build.RECORD
+    record = json.loads(path.read_text())
+    path.write_text(json.dumps({**record, "instructions": [*record["instructions"], "avx1024"]}))
+    reason = "the kernel was compiled for a processor with avx1024, which this one lacks: run `pip install"
+    assert reason in refusal(package)
+    path.write_text(json.dumps({**record, "instructions": []}))
+    assert run(package).stdout == "completed\n"

@@ -1,5 +1,6 @@
 """`bk show`: points and summaries in words and as pictures; what is no file of ours is refused in a line."""
 
+import shlex
 import shutil
 import subprocess
 import sys
@@ -127,6 +128,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
     with netCDF4.Dataset(tmp_path / "foreign.nc", "w") as dataset:
         dataset.title = "of another program"
     inside.write_bytes(whole[:-100])
+    root = study.parents[1]
     for path, words in (
         (tmp_path / "cut.nc", "has no seal at its end: it is cut off, or another program wrote it"),
         (tmp_path / "changed.nc", "has other bytes than were written"),
@@ -135,7 +137,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path / "none.nc", "is missing"),
         (tmp_path, "cannot be read"),
         (study / "study.json", "has no seal at its end: it is cut off, or another program wrote it (shown are points"),
-        (inside, f"remake it: snakemake -c2 -R {inside}"),
+        (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
         said = shown(capsys, path, code=2)
         assert said.startswith(f"bk show: {path}: ")

@@ -63,7 +63,7 @@ class Study:
         """Return the command line; arguments follow the usual ones."""
         snakemake = str(Path(sys.executable).parent / "snakemake")
         return [
-            *(snakemake, f"-c{cores}", "-s", str(self.repository / "workflow/Snakefile")),
+            *(snakemake, f"-c{cores}", "-s", str(self.repository / "Snakefile")),
             *("--configfile", str(self.config), "--nocolor", *arguments),
         ]
 

@@ -1,6 +1,7 @@
 """Broken configs and command lines: one line that says what is wrong, and nothing written."""
 
 import json
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -89,12 +90,12 @@ LINES = {
     "no_value": ([*CONFIG, "--config", "window"], ["--config: 'window' is not allowed: key=value"]),
     "no_key": ([*CONFIG, "--config", "=7000"], ["--config: '=7000' is not allowed"]),
     "short_key": ([*CONFIG, "--config", "a=0.1"], ["--config: 'a=0.1' is not allowed", "two letters"]),
-    "unknown_key": ([*CONFIG, "--config", "windows=7000"], ["windows: unknown key"]),
-    "bad_value": ([*CONFIG, "--config", "window=long"], ["window: 'long'", "a number"]),
+    "unknown_key": ([*CONFIG, "--config", "windows=7000"], ["--config: windows: unknown key"]),
+    "bad_value": ([*CONFIG, "--config", "window=long"], ["--config: window: 'long'", "a number"]),
     "not_finite": ([*CONFIG, "--config", "window=nan"], ["window: nan", "a number"]),
     "no_number": ([*CONFIG, "--config", "window="], ["window: None", "a number"]),
     "bad_name": ([*CONFIG, "--config", "study=../x"], ["study: '../x'"]),
-    "text_inside": ([*CONFIG, "--config", "basins={pixels: 8}"], ["basins.pixels: '8'", "a whole number"]),
+    "text_inside": ([*CONFIG, "--config", "basins={pixels: many}"], ["--config: basins.pixels: 'many'", "a whole"]),
     "unknown_rule": (["-R", "nothing", *CONFIG], ["nothing: neither a rule"]),
     "unknown_until": (["--until", "nothing", *CONFIG], ["nothing: neither a rule"]),
     "cores": ([*CONFIG, "--cores", "many"], ["--cores", "must be integer"]),
@@ -108,6 +109,18 @@ def test_a_bad_command_line(tmp_path, case):
     start, _, _ = " ".join(study.command()).partition(" --configfile")
     run = run_snakemake([*start.split(), *arguments], tmp_path, study.environment())
     check(run, tmp_path, ["study.yaml"], words)
+
+
+def test_the_folder_of_the_workflow_is_none_of_a_study(tmp_path, repository):
+    """It has a Snakefile, which Snakemake would find there, and plan a second study."""
+    shutil.copytree(repository / "workflow", tmp_path / "workflow")
+    (tmp_path / "config").symlink_to(repository / "config")
+    shutil.copy(repository / "Snakefile", tmp_path)
+    study = Study(tmp_path / "other")
+    run = run_snakemake([study.command()[0], "-c1"], tmp_path / "workflow", study.environment())
+    assert run.returncode == 1
+    assert run.stderr.splitlines()[-1] == f"no study is run in the folder workflow: cd {tmp_path}"
+    assert not (tmp_path / "workflow" / "results").exists()
 
 
 def test_a_folder_of_results_belongs_to_its_config(tmp_path):

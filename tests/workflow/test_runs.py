@@ -5,6 +5,8 @@ import re
 import shutil
 import subprocess
 
+import pytest
+
 from tests.workflow.conftest import LIMITS, TINY, Study
 from tests.workflow.snakemake import run_snakemake
 
@@ -15,10 +17,11 @@ def jobs(output):
     return {rule: int(count) for rule, count in (line.split() for line in table[1].splitlines())} if table else {}
 
 
-def test_nothing_to_do_with_the_snakefile_by_another_path(finished):
-    """As the commands of messages name it: relative to the current folder."""
-    snakefile = str(finished.repository / "workflow/Snakefile")
-    relative = os.path.relpath(snakefile, finished.folder)
+@pytest.mark.parametrize("other", ["Snakefile", "workflow/Snakefile"])
+def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
+    """As the commands of messages name it, relative to the current folder; and with that of the catalog."""
+    snakefile = str(finished.repository / "Snakefile")
+    relative = os.path.relpath(finished.repository / other, finished.folder)
     command = [relative if word == snakefile else word for word in finished.command("-n")]
     run = subprocess.run(command, cwd=finished.folder, capture_output=True, text=True, env=finished.environment())
     assert "Nothing to be done" in run.stdout + run.stderr

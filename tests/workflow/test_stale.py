@@ -47,7 +47,7 @@ def planned(study, *roots):
 def studied(finished, tmp_path_factory):
     """The finished study with a copy of the tree that is to be edited and mended again."""
     folder = tmp_path_factory.mktemp("studied")
-    for name in ("config", "src", "workflow", "pyproject.toml", "Makefile"):
+    for name in ("Snakefile", "profiles", "config", "src", "workflow", "pyproject.toml", "Makefile"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(folder)], check=True)
     study = copied(finished.folder, folder / "study", folder)
     # Neither where the sources lie nor where the results do makes a difference.

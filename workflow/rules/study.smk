@@ -33,13 +33,18 @@ from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import all_points, load_study
+from burridge_knopoff.study.command_line import config_entries, of_command_line
 from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import several_files
 
 # Another Snakefile may import this one as a module; then it is the other that Snakemake calls the main one.
-ROOT = Path(f"{workflow.current_basedir}").parents[1]
-IMPORTED = Path(workflow.main_snakefile).resolve() != ROOT / "workflow/Snakefile"
+ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
+SNAKEFILES = [ROOT / "Snakefile", ROOT / "workflow/Snakefile"]
+IMPORTED = Path(workflow.main_snakefile).resolve() not in SNAKEFILES
+# Results lie where `snakemake` is called: there it would find the second of them and begin another study.
+if Path.cwd() == ROOT / "workflow":
+    sys.exit(f"no study is run in the folder workflow: cd {shlex.quote(str(ROOT))}")
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Of what a job frees, what is large is given back: glibc would keep up to 64 MB for more, once as much has been freed.
@@ -54,14 +59,14 @@ if " " in sys.executable:
     )
 CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
 # What imports the study hands its config over, with all that was given on the command line.
-OVERRIDES = {} if IMPORTED else workflow.config_settings.config
+OVERRIDES = {} if IMPORTED else of_command_line(workflow.config_settings.config)
 
 try:
     # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
     WRITTEN = config if IMPORTED else read_config(CONFIG_FILE)
     GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
-    STUDY = load_study(GIVEN, display_path(CONFIG_FILE))
+    STUDY = load_study(GIVEN, display_path(CONFIG_FILE), WRITTEN)
     RESULTS = f"results/{STUDY.name}"
     CLAIMS_FILE = ROOT / "config/claims.yaml"
     CLAIMS = read_yaml(CLAIMS_FILE)
@@ -81,21 +86,23 @@ SHARED_CORES = max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws)
 
 # How the study is named to `snakemake`, by its config alone and from another folder.
 CONFIG_ARGUMENTS = []
-if (
-    not IMPORTED
-    and Path(CONFIG_FILE).resolve() != (ROOT / "config/paper.yaml").resolve()
-):
+if not IMPORTED and Path(CONFIG_FILE).resolve() != ROOT / "config/paper.yaml":
     CONFIG_ARGUMENTS += ["--configfile", os.path.relpath(CONFIG_FILE)]
 if OVERRIDES:
-    CONFIG_ARGUMENTS += [
-        "--config",
-        *(f"{key}={value}" for key, value in OVERRIDES.items()),
-    ]
+    CONFIG_ARGUMENTS += ["--config", *config_entries(OVERRIDES)]
 ARGUMENTS = [*CONFIG_ARGUMENTS]
-if ROOT.resolve() != Path.cwd():
-    ARGUMENTS[:0] = ["-s", os.path.relpath(workflow.main_snakefile)]
+if ROOT != Path.cwd():
+    snakefile = workflow.main_snakefile if IMPORTED else SNAKEFILES[0]
+    ARGUMENTS[:0] = ["-s", os.path.relpath(snakefile)]
+
+
+def record_study():
+    """Record in the folder of results what the study is, if there are any or some are to be made."""
+    write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
+
 
 PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
+PLAN.record = record_study
 
 
 # Jobs find the `bk` of this environment, activated or not.
@@ -117,12 +124,12 @@ def prepare_results():
     decides = [
         STUDY.config,
         CLAIMS,
-        [rule.params.get("sources") for rule in workflow.rules],
+        [rule.params.get("sources") for rule in workflow.rules if rule.output],
     ]
     os.environ.update(BK_STUDY=f"{RESULTS} {identity(json.dumps(decides))}")
     try:
         check_folder(RESULTS, inside=True)
-        write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
+        record_study()
     except OSError as error:
         sys.exit(f"{error}")
     if "basins" not in STUDY.left_out and not STUDY.basin_maps and GIVEN.get("basins"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections import Counter
 from dataclasses import dataclass
@@ -67,19 +68,14 @@ class Check:
 
     def lines(self) -> list[str]:
         """Return all findings and their sum, a line each, and the command that makes what is listed again."""
-        counts = Counter(finding.kind for finding in self.findings)
+        counts = Counter(finding.kind for finding in (*self.findings, *self.others))
         numbers = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
         lines = [*map(str, (*self.findings, *self.others)), f"{self.results}: {self.files}: {numbers}", *self.notes]
         return [*lines, f"remake: {self._remake()}"] if self.paths else lines
 
     def _remake(self) -> str:
-        # From wherever it is called.
-        root = root_of(self.results)
-        place = "" if root.resolve() == Path.cwd() else f"cd {shlex.quote(str(root))} && "
-        named = [str(Path(path).absolute().relative_to(root)) for path in self.paths]
-        if len(named) > MOST_IN_COMMAND:
-            named = [f"$(bk check --paths {self.results.absolute().relative_to(root)})"]
-        return place + remake_command(self.results / NAME, *named)
+        listed = shlex.join(["bk", "check", "--paths", os.path.relpath(self.results, root_of(self.results))])
+        return remake_command(self.results / NAME, *self.paths, listed=listed * (len(self.paths) > MOST_IN_COMMAND))
 
 
 def root_of(results: Path) -> Path:

@@ -19,6 +19,7 @@ from burridge_knopoff.cli.options import (
 )
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability.settings import BasinSettings, MotionSettings
+from burridge_knopoff.values import shown
 
 DESCRIPTION = """Map which attractor each state of a plane of initial states reaches, over U_1(0) and U_N(0).
 The initial state gives all other positions and velocities. Attractors are looked for first, as by `bk attractors`."""
@@ -53,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
 
     out, attractors_out = options.out, options.attractors_out
     if out and attractors_out and os.path.realpath(out) == os.path.realpath(attractors_out):
-        raise ValueError(f"--attractors-out: {attractors_out!r} is not allowed: --out writes the map there")
+        raise ValueError(f"--attractors-out: {shown(attractors_out)} is not allowed: --out writes the map there")
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)
     plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}

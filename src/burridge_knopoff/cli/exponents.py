@@ -7,6 +7,7 @@ import argparse
 from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.words import plain, with_error
 
@@ -59,4 +60,4 @@ def run(options: argparse.Namespace) -> int:
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")
-    return 0
+    return 0 if trajectory.status == "completed" else EXIT_CODE

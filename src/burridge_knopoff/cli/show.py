@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
     """Print what is in a file, and draw it."""
     from burridge_knopoff.show.result import open_result
 
-    if options.plot:
+    if options.plot is not None:
         from burridge_knopoff.show.picture import check_format, write_picture
 
         check_format(options.plot)
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
         from burridge_knopoff.show.point import point_lines as lines_of
     else:
         from burridge_knopoff.show.summary import summary_lines as lines_of
-    print("\n".join(lines_of(result)))
-    if options.plot:
-        print(f"\n{write_picture(result, options.plot)}")
+    # Before anything is said of the file: what cannot be drawn is refused in one line.
+    drawn = [] if options.plot is None else ["", write_picture(result, options.plot)]
+    print("\n".join([*lines_of(result), *drawn]))
     return 0

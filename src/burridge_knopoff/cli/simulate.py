@@ -11,13 +11,15 @@ from burridge_knopoff.cli.options import add, add_model, add_state, model_of, se
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.words import plain, with_error
 
 if TYPE_CHECKING:
     from burridge_knopoff.running.trajectory import Trajectory
 
 DESCRIPTION = """Run one simulation and write it as a netCDF point file.
-All quantities are dimensionless: times in 1/omega, U = k X / F(0), as in the paper."""
+All quantities are dimensionless: times in 1/omega, U = k X / F(0), as in the paper.
+Exit code: 3 if the run ended at a limit or diverged; its file is written all the same."""
 
 EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.nc
   bk simulate --law nonlinear --a 0.08 --initial minus --transient 0 --window 100 --events all --out start.nc
@@ -64,6 +66,7 @@ def run(options: argparse.Namespace) -> int:
             f"{trajectory.status}; its averages are NaN",
             file=sys.stderr,
         )
+        return EXIT_CODE
     return 0
 
 

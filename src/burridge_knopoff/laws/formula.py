@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping
 
 from burridge_knopoff.laws.tape import SPEED, Builder, Tape, Term, number
+from burridge_knopoff.values import cut
 
 FUNCTIONS = ("sqrt", "exp", "log", "tanh")
 SYNTAX = "numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
@@ -62,7 +63,9 @@ class _Reader:
             case ast.Name(id=name) if name in self.names:
                 return self.names[name]
             case ast.Name(id=name):
-                raise FormulaError(f"{name}: unknown name without a number; u is the slip speed U', a the parameter")
+                raise FormulaError(
+                    f"{cut(name)}: unknown name without a number; u is the slip speed U', a the parameter"
+                )
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.read(operand)
             case ast.UnaryOp(op=ast.USub(), operand=operand):

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.laws.formula import FormulaError, names_of, tape_of
 from burridge_knopoff.laws.tape import Tape
-from burridge_knopoff.values import instance_of, real_number, refusal
+from burridge_knopoff.values import instance_of, joined, real_number, refusal, shown
 
 #: Speeds up to which a law has to be analytic; no block of a chain with springs and thresholds of about 1 comes there.
 FASTEST = 10.0
@@ -63,7 +63,8 @@ class Law:
     def __init__(self, a: float, /, *, name: str = "", **numbers: float) -> None:
         self.name = name or type(self).__module__.rpartition(".")[2]
         for key in numbers.keys() - self.defaults.keys():
-            raise ValueError(f"{self.name}.{key}: not a number of this law: {' | '.join(self.defaults) or 'none'}")
+            allowed = " | ".join(self.defaults) or "none"
+            raise ValueError(f"{joined(self.name, key)}: not a number of this law: {allowed}")
         self._set(a, {**self.defaults, **numbers})
 
     def _set(self, a: float, numbers: Mapping[str, float]) -> None:
@@ -73,9 +74,10 @@ class Law:
         known = names_of(self.formula)
         for key in numbers:
             if key in ("a", "u"):
-                raise ValueError(f"{self.name}.{key}: not allowed as the name of a number: it has its meaning already")
+                place = joined(self.name, key)
+                raise ValueError(f"{place}: not allowed as the name of a number: it has its meaning already")
             if key not in known:
-                raise ValueError(f"{self.name}.{key}: not in the formula {self.formula!r}")
+                raise ValueError(f"{joined(self.name, key)}: not in the formula {shown(self.formula)}")
         for key, value in {"a": a, **numbers}.items():
             if not abs(real_number(value)) < 1e300:
                 raise refusal(key, value, "a finite number")
@@ -88,7 +90,7 @@ class Law:
             self._check()
         except FormulaError as error:
             raise ValueError(
-                f"{self.name}: {self.formula!r} is not allowed as friction at a = {self.a:g}: {error}"
+                f"{self.name}: {shown(self.formula)} is not allowed as friction at a = {self.a:g}: {error}"
             ) from None
 
     def _check(self) -> None:

@@ -12,6 +12,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.values import refusal, shown
 
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray
@@ -33,7 +34,7 @@ def given_state(given: Initial) -> InitialState:
     """
     state = given if isinstance(given, InitialState) else _state(given)
     if PAPER_STATES.get(state.name, state) != state:
-        raise ValueError(f"initial.name: {state.name!r} is not allowed: the paper's state of that name is another one")
+        raise refusal("initial.name", state.name, "the paper's state of that name is another one")
     return state
 
 
@@ -46,9 +47,7 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
         pair = _plain(given)
         lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
         if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(
-                f"initial: {' '.join(str(given).split())[:60]} is not allowed: {_FORMS}, each one number a block"
-            )
+            raise ValueError(f"initial: {shown(given)} is not allowed: {_FORMS}, each one number a block")
         numbers = dict(zip(("position", "velocity"), lists, strict=True))
     return InitialState(**_KEYS.form(numbers, "initial"))
 

@@ -17,6 +17,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.values import shown
 
 if TYPE_CHECKING:
     import xarray
@@ -70,7 +71,7 @@ def sweep(
         models = [given_model(law, value, len(state.position), chain, v, contact) for value in values]
     value, count = Counter(model.a for model in models).most_common(1)[0]
     if count > 1:
-        raise ValueError(f"a: {value!r} is not allowed twice")
+        raise ValueError(f"a: {shown(value)} is not allowed twice")
     for model in models:
         chosen.check_chain(model.chain)
         model.begin(state, chosen.start)

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
-from burridge_knopoff.model.ranges import Range, joined
+from burridge_knopoff.model.ranges import Range
+from burridge_knopoff.values import joined
 
 #: The default of a field that needs a value, and of one that follows from others if it is left out.
 REQUIRED, FOLLOWS = object(), object()

@@ -9,6 +9,7 @@ from typing import Annotated
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Number, Several, Text
+from burridge_knopoff.values import shown
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
@@ -65,7 +66,7 @@ def initial_state(
     if position is None or velocity is None:
         if known is None:
             raise ValueError(
-                f"initial: {name!r} is not known: {' | '.join(PAPER_STATES)}, or give both position and velocity"
+                f"initial: {shown(name)} is not known: {' | '.join(PAPER_STATES)}, or give both position and velocity"
             )
         position = known.position if position is None else position
         velocity = known.velocity if velocity is None else velocity

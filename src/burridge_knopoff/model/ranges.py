@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.values import cut, real_number, refusal, scalar
+from burridge_knopoff.values import joined, real_number, refusal, scalar
 
 #: A limit that is none: numbers have to be finite.
 HUGE = 1e300
@@ -163,9 +163,3 @@ class Either(Range):
 
     def __str__(self) -> str:
         return " or ".join(map(str, self.ranges))
-
-
-def joined(key: str, name: Any) -> str:
-    """Return the key of an entry: a name that is not plain words is quoted, in ASCII, and a long one is cut."""
-    shown = name if isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", name) else ascii(name)
-    return f"{key}.{cut(shown)}" if key else cut(shown)

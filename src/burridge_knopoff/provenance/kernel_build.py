@@ -1,14 +1,17 @@
-"""Whether the compiled kernel is that of the sources beside it: what was compiled is recorded when it is."""
+"""Whether the compiled kernel is that of the sources beside it, and runs on this processor: what a build records."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
+from burridge_knopoff.provenance.compilation import vector_flags
+from burridge_knopoff.provenance.processor import compiled_to, lacking
 from burridge_knopoff.provenance.sources import COMPILATION, PACKAGE, code_digest
 
 KERNEL = PACKAGE / "kernel"
-#: Beside the compiled modules: {name of a source: SHA-256 of its code} of what they were compiled from.
+#: Beside the compiled modules: what they were compiled from and to, see `current_build`.
 RECORD = "build.json"
 
 _CHECKOUT = PACKAGE.parent.parent
@@ -28,21 +31,27 @@ def kernel_sources() -> dict[str, str]:
     return {path.relative_to(PACKAGE).as_posix(): code_digest(path) for path in sorted(paths)}
 
 
+def current_build() -> dict[str, Any]:
+    """Return what a build here and now is made of: its sources, and the instructions that it may use."""
+    return {"sources": kernel_sources(), "instructions": compiled_to(vector_flags())}
+
+
 def write_record(folder: Path) -> None:
     """Record what has been compiled into the modules in this folder."""
-    (folder / RECORD).write_text(json.dumps(kernel_sources(), indent=1) + "\n", encoding="utf-8")
+    (folder / RECORD).write_text(json.dumps(current_build(), indent=1) + "\n", encoding="utf-8")
 
 
-def recorded_sources() -> dict[str, str] | None:
-    """Return what has been compiled, in the form of `kernel_sources`; None if that cannot be read."""
+def recorded_build() -> dict[str, Any] | None:
+    """Return what the kernel was made of, in the form of `current_build`; None if that cannot be read."""
     try:
-        return dict(json.loads((KERNEL / RECORD).read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):
+        record = json.loads((KERNEL / RECORD).read_text(encoding="utf-8"))
+        return {"sources": dict(record["sources"]), "instructions": list(record["instructions"])}
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
 
 
 def check_kernel(*, compiled: bool = False) -> None:
-    """Raise KernelError if the compiled kernel is not that of the sources on disk.
+    """Raise KernelError if the compiled kernel is not that of the sources on disk, or for another processor.
 
     compiled : whether a kernel that is not compiled at all, a hundred times slower as Python, is refused as well
     """
@@ -50,9 +59,12 @@ def check_kernel(*, compiled: bool = False) -> None:
         if compiled:
             raise KernelError("the kernel is not compiled")
         return
-    recorded = recorded_sources()
+    recorded = recorded_build()
     if recorded is None:
         raise KernelError(f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole")
-    changed = {name for name, _ in recorded.items() ^ kernel_sources().items()}
+    changed = {name for name, _ in recorded["sources"].items() ^ kernel_sources().items()}
     if changed:
         raise KernelError(f"{min(changed)}: has changed since the kernel was compiled")
+    # Its first such instruction would end Python by a signal (SIGILL), without a word.
+    if missing := lacking(recorded["instructions"]):
+        raise KernelError(f"the kernel was compiled for a processor with {missing[0]}, which this one lacks")

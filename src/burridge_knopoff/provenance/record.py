@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
+import shlex
 import subprocess
 from functools import cache
 from pathlib import Path
@@ -70,7 +72,7 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
-    except ValueError:
+    except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict) or {key: type(value) for key, value in record.items()} != _TYPES:
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
@@ -105,14 +107,19 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
     )
 
 
-def remake_command(study_file: str | Path, *paths: str | Path) -> str:
-    """Return the command that makes files again, and all that depends on them.
+def remake_command(study_file: str | Path, *paths: str | Path, listed: str = "") -> str:
+    """Return the command that makes files again, and all that depends on them, wherever it is pasted.
 
     study_file : a file in the results of their study
     paths : the files, if it is not that one
+    listed : a command that prints their paths, from where `snakemake` runs, if there are too many of them
     """
-    arguments = ""
+    place, arguments, named = "", "", [str(path) for path in paths or [study_file]]
     if folder := study_folder(study_file):
+        # Snakemake knows files by their paths from where it was called for results/<study>.
+        root = folder.parents[1]
+        named = [os.path.relpath(name, root) for name in named]
+        place = "" if root.resolve() == Path.cwd() else f"cd {shlex.quote(str(root))} && "
         with contextlib.suppress(ValueError):
             arguments = f"{read_study_record(folder)['arguments']} ".lstrip()
-    return f"snakemake -c2 {arguments}-R {' '.join(map(str, paths or [study_file]))}"
+    return f"{place}snakemake -c2 {arguments}-R {f'$({listed})' if listed else shlex.join(named)}"

@@ -16,3 +16,6 @@ class Status(IntEnum):
 
 #: How runs end, in words, by the number in files.
 ENDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}
+
+#: Of a command whose run did not complete, but whose results are written.
+EXIT_CODE = 3

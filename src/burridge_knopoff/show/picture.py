@@ -16,6 +16,7 @@ from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_sectio
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.values import cut, shown
 
 FORMATS = (".png", ".pdf", ".svg")
 
@@ -26,7 +27,7 @@ WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 def check_format(path: str | Path) -> None:
     """Raise ValueError, one line, if the name of a picture has no suffix that can be drawn."""
     if Path(path).suffix not in FORMATS:
-        raise ValueError(f"{path}: {Path(path).suffix!r} is not allowed: {' | '.join(FORMATS)}")
+        raise ValueError(f"{cut(str(path), 200)}: {shown(Path(path).suffix)} is not allowed: {' | '.join(FORMATS)}")
 
 
 def write_picture(result: Result, path: str | Path) -> str:

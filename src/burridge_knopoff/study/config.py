@@ -15,7 +15,7 @@ from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import HUGE, Either, Named, Number, OneOf, Range, Several, Text, Whole, joined
+from burridge_knopoff.model.ranges import HUGE, Either, Named, Number, OneOf, Range, Several, Text, Whole
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.stability.settings import (
     ERRORS,
@@ -32,6 +32,7 @@ from burridge_knopoff.stability.settings import (
 )
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 from burridge_knopoff.study.stages import OPTIONAL
+from burridge_knopoff.values import joined
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)

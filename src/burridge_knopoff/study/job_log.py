@@ -44,10 +44,14 @@ def last_words(log: str | Path) -> str:
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 
-def interrupted(logs: Sequence[str | Path]) -> bool:
-    """Tell whether a job was ended by Ctrl-C."""
+def interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
+    """Tell whether a job was ended by Ctrl-C.
+
+    stopping : whether the run was: a job that it ended before its program had begun left no word
+    """
     # `bk` has a line for it, and scripts have a traceback, as `bk` has before it has read its command.
-    return any(last_words(log).endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for log in logs)
+    said = [words for log in logs if (words := last_words(log))]
+    return any(words.endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for words in said) or (stopping and not said)
 
 
 def failure(job: str, logs: Sequence[str | Path]) -> str:

@@ -6,21 +6,27 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.model.fields import Keys
-from burridge_knopoff.model.ranges import joined
 from burridge_knopoff.provenance.record import NAME, read_study_record
 from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.study import Study, load_study
+from burridge_knopoff.values import joined
 
 
 def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
     """Return the record of a folder of results, and the study that it describes.
 
-    Raises ValueError, one line, if the folder holds no study, or one of a version whose configs have other keys.
+    Raises ValueError, one line that names the record, if the folder holds no study, one of a version whose configs have
+    other keys, or a record that was changed by hand.
     """
-    record = read_study_record(results)
+    record, path = read_study_record(results), Path(results, NAME)
     if key := _other_key(record["config"], CONFIG):
-        raise ValueError(f"{Path(results, NAME)}: not a study of this version ({key}); run snakemake again")
-    return record, Study(record["config"], record["grid"])
+        raise ValueError(f"{path}: not a study of this version ({key}); run snakemake again")
+    # A config with all defaults is its own; but a default may be what is refused to those who ask for it.
+    asked = {name: value for name, value in record["config"].items() if value != CONFIG.fields[name].default}
+    study = load_study(asked, str(path))
+    if (study.config, study.grid) != (record["config"], record["grid"]):
+        raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
+    return record, study
 
 
 def _other_key(config: Any, keys: Keys, place: str = "") -> str:

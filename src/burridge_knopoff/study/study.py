@@ -227,16 +227,26 @@ class Study:
         }
 
 
-def load_study(config: Mapping[str, Any], file: str) -> Study:
+def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] | None = None) -> Study:
     """Give a config its defaults, and hold it against its ranges and against the rules between its keys.
 
     file : name of the config file, for messages
+    written : what that file holds, if the command line changes it: a fault that the file has not is that of --config
     Raises ConfigError, one line: file, key, value, what is allowed.
     """
     try:
         return _study(config)
     except ValueError as error:
-        raise ConfigError(f"{file}: {error}") from error
+        place = file if written in (None, config) or _fault(written) == str(error) else "--config"
+        raise ConfigError(f"{place}: {error}") from error
+
+
+def _fault(config: Mapping[str, Any]) -> str:
+    try:
+        _study(config)
+    except ValueError as error:
+        return str(error)
+    return ""
 
 
 def _study(config: Mapping[str, Any]) -> Study:

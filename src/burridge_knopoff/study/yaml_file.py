@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from burridge_knopoff.model.ranges import joined
 from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.values import joined
 
 _TAG = "tag:yaml.org,2002:"
+
+
+#: Values of a file: a few aliases of aliases would make a file of 500 bytes fill any memory.
+MOST_VALUES = 10_000_000
 
 
 class ConfigError(ValueError):
@@ -48,6 +53,28 @@ _Loader.add_implicit_resolver(f"{_TAG}int", re.compile(r"[-+]?(0|[1-9][0-9]*)$")
 _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("-+0123456789."))
 
 
+def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:
+    """Return how many values a part of a file has with its aliases written out; known : of the parts before."""
+    if node not in known:
+        # Until it is known otherwise it is a part of itself.
+        known[node] = math.inf
+        inside = node.value if isinstance(node, yaml.CollectionNode) else ()
+        parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
+        known[node] = 1 + sum(_size(part, known) for part in parts)
+    return known[node]
+
+
+def plain_value(text: str) -> Any:
+    """Return what a text stands for that is written without quotes: a number, true, false, null, or the text."""
+    loader = _Loader("")
+    tag = loader.resolve(yaml.ScalarNode, text, (True, False))
+    try:
+        return loader.construct_object(yaml.ScalarNode(tag, text))
+    # A date that is none, as for `read_yaml`.
+    except (ValueError, yaml.YAMLError):
+        return text
+
+
 def read_config(path: str | Path) -> dict[str, Any]:
     """Return the content of the config file of a study, not yet validated; raises ConfigError as `read_yaml` does."""
     content = read_yaml(path)
@@ -65,7 +92,11 @@ def read_yaml(path: str | Path) -> Any:
     try:
         if Path(path).exists() and not Path(path).is_file():
             raise OSError("it is not a regular file")
-        return yaml.load(Path(path).read_text(encoding="utf-8-sig"), Loader=_Loader)
+        loader = _Loader(Path(path).read_text(encoding="utf-8-sig"))
+        node = loader.get_single_node()
+        if node is not None and _size(node, {}) > MOST_VALUES:
+            raise ConfigError(f"more than {MOST_VALUES} values, with its aliases written out")
+        return None if node is None else loader.construct_document(node)
     except ConfigError as error:
         reason = f"{error}"
     except OSError as error:

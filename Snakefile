@@ -1,0 +1,58 @@
+# The study: config -> points -> summaries -> figures -> report. `snakemake -c2` here runs it; README.md tells more.
+from snakemake.utils import min_version
+
+min_version("9.22")
+
+
+# A config given on the command line replaces the default one; Snakemake would merge the two.
+if not workflow.configfiles:
+
+    configfile: f"{workflow.current_basedir}/config/paper.yaml"
+
+
+# What `snakemake --report` says on its first page.
+report: "workflow/report/workflow.rst"
+
+
+# The least in which `make setup` works: Python, a C compiler and make. Used only if jobs are to run in containers.
+container: "docker://python:3.11"
+
+
+include: "workflow/rules/study.smk"
+include: "workflow/rules/simulate.smk"
+
+
+# Stages that the config can leave out, with all files that they make.
+for stage in ("attractors", "basins", "edges", "phases", "solvers", "proof"):
+    if stage not in STUDY.left_out:
+
+        include: f"workflow/rules/{stage}.smk"
+
+
+include: "workflow/rules/two_blocks.smk"
+include: "workflow/rules/summaries.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/chains.smk"
+
+
+if "claims" in STUDY.stages:
+
+    include: "workflow/rules/claims.smk"
+
+
+include: "workflow/rules/report.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        rules.points.input,
+        rules.summary.input,
+        rules.figures.input,
+        rules.report.output,
+    message:
+        f"study {STUDY.name}: all points, summaries, figures and the report are in {RESULTS}"
+
+
+onstart:
+    prepare_results()

@@ -1,0 +1,29 @@
+"""What `snakemake --config` changes of a config: as Snakemake has read it, and as it is written."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from burridge_knopoff.study.yaml_file import plain_value
+
+
+def of_command_line(value: Any) -> Any:
+    """Return what Snakemake has read from --config as a config file would have it.
+
+    Snakemake reads `basins={pixels: 16}` as YAML whose numbers are texts. What stood in quotes cannot be told from
+    what did not.
+    """
+    if isinstance(value, Mapping):
+        return {key: of_command_line(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [of_command_line(item) for item in value]
+    return plain_value(value) if isinstance(value, str) else value
+
+
+def config_entries(overrides: Mapping[str, Any]) -> Iterable[str]:
+    """Yield entries for --config from which Snakemake reads these values."""
+    for key, value in overrides.items():
+        text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+        yield f"{key}={'' if value is None else text}"

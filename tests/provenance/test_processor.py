@@ -1,0 +1,59 @@
+"""What a processor has, as Linux tells it, and what is compiled for it."""
+
+import pytest
+
+from burridge_knopoff.provenance import processor
+from burridge_knopoff.provenance.compilation import LEVELS
+
+OLD = "fpu sse sse2 pni ssse3 cx16 sse4_1 sse4_2 popcnt aes avx hypervisor"
+NEW = f"{OLD} fma f16c movbe abm bmi1 avx2 bmi2 avx512f avx512dq avx512cd avx512bw avx512vl avx512_vnni vaes"
+
+
+@pytest.fixture
+def machine(tmp_path, monkeypatch):
+    """A function that makes this machine one with these flags, or one that does not tell them."""
+
+    def becomes(flags):
+        path = tmp_path / "cpuinfo"
+        path.unlink(missing_ok=True)
+        if flags is not None:
+            one = f"processor\t: 0\nmodel name\t: Any\nflags\t\t: {flags}\n\n"
+            path.write_text(one + one)
+        monkeypatch.setattr(processor, "CPUINFO", path)
+
+    return becomes
+
+
+def test_native_code_moves_to_a_newer_processor_only(machine):
+    machine(OLD)
+    for_old = processor.compiled_to(["-O3", "-march=native"])
+    machine(NEW)
+    for_new = processor.compiled_to(["-O3", "-march=native"])
+    assert processor.lacking(for_old) == processor.lacking(for_new) == []
+    machine(OLD)
+    assert processor.lacking(for_old) == []
+    assert "avx512f" in processor.lacking(for_new)
+    assert "vaes" not in for_new
+
+
+@pytest.mark.parametrize(("lanes", "lacks"), [("2", ""), ("4", "avx2"), ("8", "avx512f")])
+def test_the_lanes_asked_for_decide_and_not_the_machine(machine, lanes, lacks):
+    """x86-64-v2, v3 and v4, wherever they are compiled."""
+    machine(NEW)
+    needed = processor.compiled_to([LEVELS[lanes]])
+    assert processor.lacking(needed) == []
+    machine(OLD)
+    assert processor.compiled_to([LEVELS[lanes]]) == needed
+    assert (lacks in processor.lacking(needed)) if lacks else (processor.lacking(needed) == [])
+
+
+@pytest.mark.parametrize("flags", [None, ""])
+def test_where_the_processor_is_not_told_nothing_is_refused(machine, flags):
+    machine(flags)
+    assert processor.compiled_to(["-march=native"]) == []
+    assert processor.lacking(["avx512f"]) == []
+
+
+def test_without_flags_for_a_processor_any_will_do(machine):
+    machine(NEW)
+    assert processor.compiled_to(["-O3", "-g0"]) == []

@@ -1,0 +1,131 @@
+"""Any value in a message: one line, short, and made with bounded work."""
+
+import time
+import tracemalloc
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from burridge_knopoff import FormulaLaw
+from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
+from burridge_knopoff.values import LONGEST, cut, joined, refusal, shown
+from tests.fuzzing import examples
+from tests.refused import refused
+
+SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text() | st.binary() | st.complex_numbers()
+VALUES = st.recursive(
+    SCALARS, lambda inside: st.lists(inside) | st.dictionaries(st.text(), inside) | st.lists(inside).map(tuple)
+)
+
+
+class Silent:
+    def __repr__(self):
+        raise RuntimeError("no words")
+
+
+def bomb(depth):
+    value = ["lol"] * 9
+    for _ in range(depth):
+        value = [value] * 9
+    return value
+
+
+def nested(depth):
+    value = []
+    for _ in range(depth):
+        value = [value]
+    return value
+
+
+def objects():
+    value = np.empty(2, dtype=object)
+    value[0] = bomb(60)
+    return value
+
+
+def endless():
+    value = []
+    value.append(value)
+    return value
+
+
+@given(VALUES)
+@examples(500)
+def test_a_short_value_is_as_python_writes_it_and_a_long_one_begins_so(value):
+    text, whole = shown(value), " ".join(repr(value).split())
+    assert text.isprintable()
+    assert len(text) <= LONGEST
+    assert text == whole if len(whole) <= LONGEST else whole.startswith(text[: LONGEST - 3])
+    assert text.endswith("...") or text == whole
+
+
+@given(st.text(), st.text())
+@examples(300)
+def test_a_key_is_one_line(key, name):
+    text = joined("laws", name)
+    assert text.isprintable()
+    assert len(text) <= LONGEST + 10
+    assert str(refusal("laws", name, "a number")).isprintable()
+    assert cut(key).isprintable()
+    assert len(cut(key)) <= LONGEST
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: "x" * 10_000_000,
+        lambda: b"x" * 10_000_000,
+        lambda: bomb(60),
+        lambda: {"a": bomb(60), "b": bomb(60)},
+        lambda: nested(100_000),
+        endless,
+        lambda: list(range(10**6)),
+        lambda: set(range(10**6)),
+        lambda: 10 ** (10**6),
+        lambda: -(10 ** (10**6)),
+        lambda: np.zeros(10**6),
+        objects,
+        Silent,
+        lambda: [Silent()],
+        lambda: "two\nlines\x1b[31m\u2028",
+    ],
+)
+def test_no_more_is_written_than_is_shown(make):
+    value = make()
+    tracemalloc.start()
+    begin = time.process_time()
+    text = shown(value)
+    assert time.process_time() - begin < 1.0
+    assert tracemalloc.get_traced_memory()[1] < 2_000_000
+    tracemalloc.stop()
+    assert text.isprintable()
+    assert 0 < len(text) <= LONGEST
+
+
+@pytest.mark.parametrize("number", ["b\nc", "b" * 10_000_000])
+def test_a_number_of_a_formula_with_an_odd_name(number):
+    with refused("not in the formula"):
+        FormulaLaw(0.1, "1 - a*u", **{number: 1.0})
+
+
+@pytest.mark.parametrize("formula", ["1 - a*u\n + b", "1 - " + "a*" * 5_000_000 + "u", "1 - " + "b" * 300 + "*u"])
+def test_an_odd_formula(formula):
+    with pytest.raises(ValueError, match="is not allowed as friction") as caught:
+        FormulaLaw(0.1, formula)
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize("form", ["[{}]", "{{<<: [{}]}}"])
+def test_aliases_that_fill_any_memory_when_they_are_written_out(tmp_path, form):
+    lines = ["x0: &x0 {lol: 1}"]
+    lines += [f"x{n}: &x{n} {form.format(', '.join([f'*x{n - 1}'] * 9))}" for n in range(1, 30)]
+    path = tmp_path / "bomb.yaml"
+    path.write_text("\n".join(lines))
+    with pytest.raises(ConfigError, match=r"bomb.yaml: more than \d+ values"):
+        read_yaml(path)
+    path.write_text("a: &a [*a]")
+    with pytest.raises(ConfigError, match=r"bomb.yaml: more than \d+ values"):
+        read_yaml(path)
