@@ -1,0 +1,73 @@
+"""Plateaux of a rotation number, and the share of a that is locked, from `rotation.nc`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.stability.sampling import fraction_interval
+
+if TYPE_CHECKING:
+    import xarray
+
+# Denominators of the fractions that rotation numbers of closed orbits are told by, at most.
+LARGEST_DENOMINATOR = 1000
+
+# What rounding leaves of a rotation number.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """A range of a in which the motion is locked: from the first to the last value that shows it.
+
+    ratio : the rotation number as a fraction, the simplest one within its error
+    """
+
+    first: float
+    last: float
+    ratio: Fraction
+
+
+def plateaux(rotation: xarray.Dataset) -> list[Plateau]:
+    """Return the plateaux of one law: runs of values of a that are locked and have one rotation number."""
+    number, error = rotation["rotation_number"].values, rotation["rotation_error"].values
+    locked, a = (rotation["locked"].values == 1) & np.isfinite(number), rotation["a"].values
+    runs: list[list[int]] = []
+    for k in np.flatnonzero(locked).tolist():
+        joined = runs and runs[-1][-1] == k - 1 and abs(number[k] - number[k - 1]) <= error[k] + error[k - 1] + ROUNDING
+        if joined:
+            runs[-1].append(k)
+        else:
+            runs.append([k])
+    return [Plateau(a[run[0]], a[run[-1]], _simplest(*_best(number[run], error[run]))) for run in runs]
+
+
+def _best(number: np.ndarray, error: np.ndarray) -> tuple[float, float]:
+    return number[error.argmin()], error.min()
+
+
+def _simplest(number: float, error: float) -> Fraction:
+    """Return the fraction with the least denominator within the error of a number."""
+    for denominator in range(1, LARGEST_DENOMINATOR + 1):
+        numerator = round(number * denominator)
+        if abs(numerator / denominator - number) <= error + ROUNDING:
+            return Fraction(numerator, denominator)
+    return Fraction(number).limit_denominator(LARGEST_DENOMINATOR)
+
+
+def locked_share(rotation: xarray.Dataset, inside: np.ndarray) -> tuple[float, float, float]:
+    """Return the share of a at which one law is locked, and the ends of its 95 % Wilson interval; NaN if none is known.
+
+    inside : which values of a are looked at, shape (value,)
+
+    By the values of the grid alone: those put in between lie where something changes.
+    """
+    locked = rotation["locked"].values[inside & (rotation["in_grid"].values == 1)]
+    locked = locked[locked >= 0]
+    if not len(locked):
+        return np.nan, np.nan, np.nan
+    return fraction_interval(int(np.count_nonzero(locked)), len(locked))
