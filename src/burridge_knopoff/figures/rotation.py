@@ -67,8 +67,9 @@ def _curve(panel: Axes, rotation: xarray.Dataset) -> None:
             panel.plot([one.first, one.last], [height, height], color=KIND_COLORS[MotionKind.PERIODIC], zorder=1)
             panel.annotate(
                 f"{one.ratio.numerator}/{one.ratio.denominator}",
-                (0.5 * (one.first + one.last), height),
-                xytext=(3, 4),
+                (one.first, height),
+                xytext=(-4, -4),
+                ha="right",
                 textcoords="offset points",
                 fontsize=8.0,
             )

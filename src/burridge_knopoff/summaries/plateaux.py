@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 # Denominators of the fractions that rotation numbers of closed orbits are told by, at most.
 LARGEST_DENOMINATOR = 1000
 
+# Only rotation numbers as exact as this can be seen to be the same.
+SHARP = 1e-6
+
 # What rounding leaves of a rotation number.
 ROUNDING = 1e-9
 
@@ -33,17 +36,23 @@ class Plateau:
 
 
 def plateaux(rotation: xarray.Dataset) -> list[Plateau]:
-    """Return the plateaux of one law: runs of values of a that are locked and have one rotation number."""
-    number, error = rotation["rotation_number"].values, rotation["rotation_error"].values
-    locked, a = (rotation["locked"].values == 1) & np.isfinite(number), rotation["a"].values
+    """Return the plateaux of one law: successive values of a that are locked and have one rotation number.
+
+    Values at which the motion was not looked at are passed over: between those of the grid only what changes is.
+    """
+    number, error, a = (rotation[name].values for name in ("rotation_number", "rotation_error", "a"))
+    locked = rotation["locked"].values
     runs: list[list[int]] = []
-    for k in np.flatnonzero(locked).tolist():
-        joined = runs and runs[-1][-1] == k - 1 and abs(number[k] - number[k - 1]) <= error[k] + error[k - 1] + ROUNDING
-        if joined:
-            runs[-1].append(k)
-        else:
-            runs.append([k])
-    return [Plateau(a[run[0]], a[run[-1]], _simplest(*_best(number[run], error[run]))) for run in runs]
+    last = -1
+    for k in np.flatnonzero((locked >= 0) & np.isfinite(number)).tolist():
+        if locked[k]:
+            sharp = max(error[k], error[last]) <= SHARP
+            if runs and runs[-1][-1] == last and sharp and abs(number[k] - number[last]) <= 2.0 * SHARP:
+                runs[-1].append(k)
+            else:
+                runs.append([k])
+        last = k
+    return [Plateau(float(a[run[0]]), float(a[run[-1]]), _simplest(*_best(number[run], error[run]))) for run in runs]
 
 
 def _best(number: np.ndarray, error: np.ndarray) -> tuple[float, float]:

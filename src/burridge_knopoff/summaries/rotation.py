@@ -1,7 +1,7 @@
 """The rotation number of branch 1 over (law, a), at all values of `refined`, and which part of a is locked.
 
-Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. It is its own mirror image, so that its end
-blocks have one frequency at every a; whether it is locked is shown by its rotation number (`stability.rotation`).
+Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. By mirror symmetry its end blocks have one
+frequency at every a; whether it is locked is shown by its rotation number (`stability.rotation`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.stability.rotation import rotation_number
 
@@ -50,7 +49,8 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         name: np.full(shape, -1 if item.dtype == "i1" else np.nan, item.dtype) for name, item in VARIABLES.items()
     }
     values["a"], values["in_grid"] = refined["a"].values, refined["in_grid"].values
-    slots = (refined["branch"].values == BRANCH) & (refined["symmetry"].values == Symmetry.SYMMETRIC)
+    # Mirror images have one rotation number; where the middle block makes an odd number of turns, there are two of them.
+    slots = (refined["branch"].values == BRANCH) & (refined["side"].values >= 0)
     slots &= np.isin(refined["kind"].values, REGULAR)
     for law, value, slot in np.argwhere(slots).tolist():
         at = law, value
