@@ -49,7 +49,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         name: np.full(shape, -1 if item.dtype == "i1" else np.nan, item.dtype) for name, item in VARIABLES.items()
     }
     values["a"], values["in_grid"] = refined["a"].values, refined["in_grid"].values
-    # Mirror images have one rotation number; where the middle block makes an odd number of turns, there are two of them.
+    # Of a mirror pair, into which the branch parts where the middle block makes an odd number of turns, one is enough.
     slots = (refined["branch"].values == BRANCH) & (refined["side"].values >= 0)
     slots &= np.isin(refined["kind"].values, REGULAR)
     for law, value, slot in np.argwhere(slots).tolist():
