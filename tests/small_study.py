@@ -29,6 +29,7 @@ from burridge_knopoff.summaries import (
     orbits,
     phases,
     refined,
+    rotation,
     solvers,
     stick_slip,
     two_blocks,
@@ -143,6 +144,8 @@ class SmallStudy:
         numbers = all_laws.branch_numbers(parts, self.models, self.search)
         attracting = all_laws.merge(parts, numbers)
         further = [refined.one_law(item, *options, refine, config["start"]) for item in found]
+        everywhere = all_laws.merge(further, all_laws.with_branches_between(numbers, further), refined.VARIABLES)
+        everywhere = all_laws.named_alike(everywhere, attracting)
         return {
             "mean_distance": mean_distance.summarize(grid, threshold),
             "bifurcation": bifurcation.summarize(grid),
@@ -152,9 +155,8 @@ class SmallStudy:
             ),
             "orbits": orbits.summarize(self.models, values),
             "attractors": attracting,
-            "refined": all_laws.named_alike(
-                all_laws.merge(further, all_laws.with_branches_between(numbers, further), refined.VARIABLES), attracting
-            ),
+            "refined": everywhere,
+            "rotation": rotation.summarize(everywhere, self.models),
         }
 
     def further_summaries(self, found: Mapping[str, xarray.Dataset]) -> dict[str, xarray.Dataset]:

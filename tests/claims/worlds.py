@@ -66,6 +66,7 @@ def paper_world() -> Summaries:
         ).assign_attrs(synchronization_threshold=1e-6),
         "attractors": _attractors(),
         "refined": _refined(),
+        "rotation": _rotation(),
         "edges": _edges(),
         "phases": _phases(),
         "orbits": _dataset(
@@ -186,6 +187,10 @@ def _attractors() -> xarray.Dataset:
             "undetermined_count": (slots[:2], np.int32(0)),
             "basin_fraction": (slots, 0.5),
             "stop_rate": ((*slots, "block"), [0.17, 0.34, 0.17]),
+            "section_count": (slots, np.array([1, 100, 1], "i4")),
+            "section_velocity_mean": (slots, [0.5, 0.3, 0.5]),
+            "velocity_correlation": (slots, [1.0, -0.9, -0.9]),
+            "velocity_frequency": ((*slots, "block"), [0.17, 0.34, 0.17]),
             "initial_branch": (conventions, np.array([np.select([SYNCHRONY, A < 0.1], [0, 2], 1), A * 0 + 1], "i2")),
             "initial_side": (conventions, np.int8(0)),
         },
@@ -208,6 +213,20 @@ def _refined() -> xarray.Dataset:
         "in_grid": (slots[:2], np.isin(a, A).astype("i1")),
         "branch": (slots, np.where(there, 1, -1).astype("i2")),
         "kind": (slots, np.where(there, np.where(a > 0.1, CHAOTIC, QUASIPERIODIC)[..., None], -1).astype("i1")),
+    }
+    return xarray.Dataset(data, {"law": list(LAWS)})
+
+
+def _rotation() -> xarray.Dataset:
+    """Return a plateau, 1/2, over all values of a of both laws."""
+    refined = _refined()
+    there = np.isfinite(refined["a"].values)
+    data = {
+        "a": refined["a"],
+        "in_grid": refined["in_grid"],
+        "rotation_number": (("law", "value"), np.where(there, 0.5, np.nan)),
+        "rotation_error": (("law", "value"), np.where(there, 1e-3, np.nan)),
+        "locked": (("law", "value"), np.where(there, 1, -1).astype("i1")),
     }
     return xarray.Dataset(data, {"law": list(LAWS)})
 

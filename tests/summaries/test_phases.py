@@ -1,6 +1,7 @@
 """What phases lead to: counted from labels that are known, and real ones of a few states."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -15,6 +16,7 @@ from burridge_knopoff.stability.phases import common_phases, inner_phases, oscil
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION, SEARCH, PhaseSettings
 from burridge_knopoff.summaries import phases
+from burridge_knopoff.summaries.along_attractor import AlongAttractor, along_attractor
 
 PHASES = PhaseSettings(
     amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
@@ -41,7 +43,10 @@ def ruled(monkeypatch):
     monkeypatch.setattr(phases, "label_states", label_states)
     monkeypatch.setattr(phases, "known_attractors", known)
     correlations = iter([1.0, -0.5, -0.7] * 100)
-    monkeypatch.setattr(phases, "velocity_correlation", lambda model, start: next(correlations))
+    followed = partial(AlongAttractor, np.empty(0), velocity=np.empty((0, 3)))
+    monkeypatch.setattr(
+        phases, "along_attractor", lambda model, start: followed(velocity_correlation=next(correlations))
+    )
 
 
 def test_states_are_counted_by_what_they_reach(ruled):
@@ -109,7 +114,7 @@ def test_velocities_go_together_or_against_each_other(difference, least, most):
     position, velocity, _ = oscillating_states(model, *(np.array([x]) for x in (0.03, difference, 100.0)))
     start = Instant(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
     end = Runner(model).after(start, 3000.0)
-    assert least <= phases.velocity_correlation(model, end) <= most
+    assert least <= along_attractor(model, end).velocity_correlation <= most
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(0.0, 1.0, 1.0), (0.7, 0.6, 0.99)])
@@ -141,4 +146,4 @@ def test_the_correlation_is_that_of_the_velocities_from_the_state_on():
         runner.run(0.05 * look)
         velocity.append(runner.instant().velocity)
     one, _, other = np.transpose(velocity)
-    assert phases.velocity_correlation(model, start) == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)
+    assert along_attractor(model, start).velocity_correlation == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)

@@ -55,6 +55,7 @@ rule attractors:
             labels={"result": "attractors in words", "paper": "none"},
         ),
         f"{SUMMARY}/refined.nc",
+        f"{SUMMARY}/rotation.nc",
     log:
         f"{RESULTS}/logs/attractors.log",
     benchmark:

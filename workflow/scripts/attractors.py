@@ -9,7 +9,7 @@ logging.basicConfig(level=logging.INFO, format="%(message)s")
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.study.model import models_of
-from burridge_knopoff.summaries import all_laws, refined
+from burridge_knopoff.summaries import all_laws, refined, rotation
 from burridge_knopoff.summaries.results import write_results
 
 params = snakemake.params
@@ -20,4 +20,6 @@ on_grid = all_laws.merge(parts, numbers)
 write_results(on_grid, all_laws, snakemake.output[:2])
 numbers = all_laws.with_branches_between(numbers, further)
 everywhere = all_laws.merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
-write_summary(all_laws.named_alike(everywhere, on_grid), snakemake.output[2])
+everywhere = all_laws.named_alike(everywhere, on_grid)
+write_summary(everywhere, snakemake.output[2])
+write_summary(rotation.summarize(everywhere, models), snakemake.output[3])

@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, synchronization
+from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, section, synchronization
 from burridge_knopoff.claims.verdict import Range, Verdict
 from burridge_knopoff.model import ranges
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, unknown_key
@@ -25,6 +25,7 @@ TOPICS = {
     "synchronization": synchronization,
     "history": history,
     "kinds": kinds,
+    "section": section,
     "locking": locking,
     "motion": motion,
     "model": model,

@@ -1,4 +1,4 @@
-"""Claims on the kind of motion: periodic, quasiperiodic or chaotic, and what the section W = 0 shows of it."""
+"""Claims on the kind of motion: periodic, quasiperiodic or chaotic."""
 
 from __future__ import annotations
 
@@ -24,18 +24,20 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.stability.motion import (
+    REGULAR,
     MotionKind,
     zero_exponents,
 )
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.plateaux import plateaux
 from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
     import xarray
 
-# Velocities on the section within which two of its points are one.
-SAME_VELOCITY = 1e-6
+
+CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
@@ -96,6 +98,10 @@ def all_of_kind(
 
     own, text = judge_shares(shares, loose_share)
     reason = f"The motion is {what} at {text} of the values of a with {a}."
+    # Both together are all regular motion, wherever the line between them is drawn.
+    if ("periodic" in kinds) != ("quasiperiodic" in kinds):
+        longest = evidence.config["motion"]["longest_period"]
+        reason += f" Periodic is what repeats within {longest:g} time units."
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
@@ -123,7 +129,8 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
     if not shares:
         raise NotTestableError(f"no run is periodic with {a}")
     verdict, text = judge_shares(shares, loose_share)
-    reason = f"Of the periodic runs with {a} these are synchronized: {text}."
+    longest = evidence.config["motion"]["longest_period"]
+    reason = f"Of the runs with {a} that repeat within {longest:g} time units these are synchronized: {text}."
     return Verdict(verdict, reason, measured, "; ".join(exceptions))
 
 
@@ -199,29 +206,45 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     changes = [f"not 0 {at_values(runs['a'].values, known & ~zero)}"] if share < 1.0 else []
     if not known.all():
         changes.append(f"not known {at_values(runs['a'].values, ~known)}")
-    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        # The largest exponent of regular motion is that of the flow, 0; that of chaos is positive.
+        there, kind = kinds_reached(evidence.choose(attractors, a), initial, law)
+        regular = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
+        if not is_decided(regular, there, loose_share):
+            return "", ""
+        return judge_shares({law: float(regular[there].mean())}, loose_share)
+
+    return under_conventions(evidence, by_share(share, loose_share), reason, measured, changes, labels)
 
 
 def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) -> Verdict:
-    """Judge whether the motion from a state at one a is aperiodic, under some laws."""
+    """Judge whether the motion from a state at one a is aperiodic, under some laws: chaotic, or quasiperiodic.
+
+    Quasiperiodic is regular motion that does not repeat within `motion.longest_period`, locked or not.
+    """
     verdicts, measured, texts, elsewhere = [], [], [], []
     runs = evidence.choose(evidence.of_state("lyapunov", initial), Range(above=0.0))
+    longest = evidence.config["motion"]["longest_period"]
     for law in laws:
         run = evidence.at(runs, at).sel(law=law)
         grid, kinds = _kinds(evidence, initial, law, Range(above=0.0))
         kind = int(kinds[grid == at].item())
         if kind == MotionKind.UNDETERMINED:
             raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is not known")
-        verdicts.append(HOLDS if kind in (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC) else FAILS)
+        verdicts.append(FAILS if kind in CLOSED else HOLDS)
         period = int(run["section_period"].item())
         measured.append(Measured(f"section points in a period, 0 if there is none, {law}", float(period)))
         if run.sizes.get("exponent", 0) > 1:
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
-        texts.append(f"{MotionKind(kind).words}{f' with {period} section points' if period else ''} ({law})")
-        others = np.isin(kinds, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
+        seen = f"after {period} section points" if period else f"within {longest:g} time units"
+        repeats = f"repeats {seen}" if kind in CLOSED else f"does not repeat {seen}"
+        texts.append(f"{MotionKind(kind).words}: it {repeats} ({law})")
+        others = ~np.isin(kinds, (*CLOSED, MotionKind.UNDETERMINED))
         if others.any():
             elsewhere.append(f"aperiodic {at_values(grid, others)} ({law})")
+        elsewhere += _neighbours(evidence, law, at, kind)
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {}
@@ -231,80 +254,16 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
                 found[law] = int(kind[0])
         if not found:
             return "", ""
-        verdict = worst(
-            HOLDS if kind in (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC) else FAILS for kind in found.values()
-        )
+        verdict = worst(FAILS if kind in CLOSED else HOLDS for kind in found.values())
         return verdict, ", ".join(f"{MotionKind(kind).words} {law}" for law, kind in found.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {' and '.join(texts)}."
     return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, labels)
 
 
-def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
-    """Judge whether the section W = 0, crossed upward, shows one point at each a of a range.
-
-    Closed motion whose section points do not repeat yet has not settled, and is left out.
-    """
-    grid, kind = _kinds(evidence, initial, law, a)
-    runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
-    period = runs["section_period"].values
-    known = (period > 0) | np.isin(kind, (MotionKind.QUASIPERIODIC, MotionKind.CHAOTIC))
-    one = period == 1
-    unknown = f"no section of the run from {initial} is known {at_values(grid, ~known)}"
-    share = known_share(one, known, loose_share, unknown)
-    measured = [Measured("share of a with one section point", share)]
-    reason = (
-        f"The section of runs from {initial} ({law}) is one point at {100 * share:.1f} % of the values of a with {a}."
-    )
-    changes = [f"more than one {at_values(grid, known & ~one)}"] if share < 1.0 else []
-    if not known.all():
-        changes.append(f"not known {at_values(grid, ~known)}")
-    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
-
-
-def cloud_at_lower_velocities(
-    evidence: Evidence, initial: tuple[str, str], law: str, a: Range, points: int, loose_share: float
-) -> Verdict:
-    """Judge whether one state has a cloud of section points where the other has one, and at lower velocities W'.
-
-    initial : the state with one point, the state with the cloud
-    points : a section of more points than these is a cloud
-    The cloud is lower where its mean W', crossed upward, is below that of the other state.
-    """
-    from burridge_knopoff.summaries.bifurcation import section_points
-
-    completed = [evidence.of_state("lyapunov", name).sel(law=law)["kind"].notnull() for name in initial]
-    bifurcation = evidence.summary("bifurcation")
-    line, cloud = (section_points(bifurcation, law, name, 1) for name in initial)
-    grid = np.intersect1d(np.concatenate([line[0], cloud[0]]), completed[0]["a"])
-    grid = np.array([one for one in grid[a.choose(grid)] if all(run.sel(a=one).item() for run in completed)])
-    if not len(grid):
-        raise NotTestableError(f"no run that completed crosses the section with {a}")
-    chosen = [[velocity[value == one] for value, velocity in (line, cloud)] for one in grid]
-    both = np.array([bool(len(one) and len(other)) for one, other in chosen])
-    many = np.array([_distinct(other) > points for _, other in chosen])
-    lower = np.array([len(one) and len(other) and other.mean() < one.mean() for one, other in chosen], dtype=bool)
-    if both.sum() < LEAST_VALUES:
-        raise NotTestableError(
-            f"a statement on all {a} needs {LEAST_VALUES} values of a at which runs from {' and '.join(initial)} both "
-            f"cross the section; there are {both.sum()}"
-        )
-    share = float((many & lower)[both].mean())
-    entirely = np.array([len(one) and len(other) and other.max() < one.min() for one, other in chosen], dtype=bool)
-    measured = [
-        Measured(f"share of a with more than {points} section points from {initial[1]}", float(many[both].mean())),
-        Measured("share of a with their mean W' below that of " + initial[0], float(lower[both].mean())),
-        Measured("share of a with all of them below it", float(entirely[both].mean())),
-    ]
-    reason = (
-        f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at "
-        f"{100 * share:.1f} % of the values of a with {a}."
-    )
-    changes = f"no cloud, or none lower, {at_values(grid, both & ~(many & lower))}" if share < 1.0 else ""
-    return Verdict(by_share(share, loose_share), reason, measured, changes)
-
-
-def _distinct(velocity: np.ndarray) -> int:
-    """Return how many section points differ by more than SAME_VELOCITY, in the second half of a run."""
-    settled = np.sort(velocity[len(velocity) // 2 :])
-    return int(np.count_nonzero(np.diff(settled) > SAME_VELOCITY)) + 1 if len(settled) else 0
+def _neighbours(evidence: Evidence, law: str, at: float, kind: int) -> list[str]:
+    """Return from where to where branch 1 is locked around one a, if its motion is locked there."""
+    if kind != MotionKind.PERIODIC or "rotation" not in evidence.summaries:
+        return []
+    found = [one for one in plateaux(evidence.summary("rotation").sel(law=law)) if one.first <= at <= one.last]
+    return [f"locked, {one.ratio}, only from a = {one.first:.5g} to {one.last:.5g} ({law})" for one in found]

@@ -1,15 +1,13 @@
-"""Claims on frequency locking: of the end blocks with each other, and of a branch of attractors before chaos."""
+"""Claims on frequency locking: of the motion without synchrony, and of a branch of attractors before chaos."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import judge_shares
-from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
@@ -17,7 +15,6 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_share,
-    known_share,
     share_is_decided,
     worst,
 )
@@ -25,6 +22,7 @@ from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.branch_changes import Change
+from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 
 if TYPE_CHECKING:
     import xarray
@@ -33,49 +31,50 @@ TORUS = "a torus, or chaos too weak to tell from one,"
 UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 
-def end_blocks_locked(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether the end blocks oscillate at one frequency, within the errors, in the runs of both laws.
+def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
+    """Judge whether the motion without synchrony, branch 1, is locked at all a of a range, under both laws.
 
-    The frequency of a block is that of the highest peak of the spectrum of its velocity; its error is half of what the
-    spectrum resolves. Numbers of stops are told as well: blocks that share a frequency need not stop equally often.
+    By its rotation number, since its end blocks have one frequency in any case: the motion is its own mirror image.
+    The share of a is that of the values of the grid; plateaux are known between the values put in besides. Where the
+    kind of motion is not known it counts as neither.
+
+    loose_share : share of a from which on the claim holds loosely
     """
-    shares, measured, apart, others = {}, [], [], []
-    for state in initial:
-        whole = evidence.of_state("stick_slip", state)
-        runs = evidence.choose(whole, a)
-        for law in PAPER_LAWS:
-            same, known = _same_frequency(runs.sel(law=law))
-            where = at_values(runs["a"].values, ~known)
-            unknown = f"no frequency of the end blocks is known from {state} under the {law} law {where}"
-            name = f"{law}, {state}"
-            shares[name] = known_share(same, known, loose_share, unknown)
-            measured.append(Measured(f"share of a at which the end blocks have one frequency, {name}", shares[name]))
-            stops = runs["stop_rate"].sel(law=law).values[known]
-            with np.errstate(divide="ignore", invalid="ignore"):
-                difference = np.abs(stops[:, 0] / stops[:, -1] - 1.0)
-            measured.append(Measured(f"largest difference of their numbers of stops, {name}", float(difference.max())))
-            elsewhere = whole.sel(law=law).isel(a=~a.choose(whole["a"].values) & (whole["a"].values > 0.0))
-            there, seen = _same_frequency(elsewhere)
-            if seen.any():
-                others.append(bool(there[seen].all()))
-                measured.append(Measured(f"share of all other a at which they have, {name}", float(there[seen].mean())))
-            if shares[name] < 1.0:
-                apart.append(f"two frequencies {at_values(runs['a'].values, known & ~same)} ({name})")
-            if not known.all():
-                apart.append(f"not known {where} ({name})")
-    verdict, text = judge_shares(shares, loose_share)
-    reason = f"With {a} both end blocks have one leading frequency, within its error, at {text} of the values of a."
-    if others and all(others):
-        reason += " They have one at all others as well."
-    return Verdict(verdict, reason, measured, "; ".join(apart))
-
-
-def _same_frequency(runs: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return where the end blocks have one frequency, and where both are known, shape (a,)."""
-    frequency, error = (runs[name].values[:, [0, -1]] for name in ("velocity_frequency", "velocity_frequency_error"))
-    known = np.isfinite(frequency).all(axis=1)
-    with np.errstate(invalid="ignore"):
-        return known & (np.abs(np.diff(frequency)[:, 0]) <= np.hypot(*error.T)), known
+    evidence.check_blocks()
+    rotation = evidence.summary("rotation")
+    verdicts, measured, shares, where = [], [], [], []
+    for law in PAPER_LAWS:
+        found = rotation.sel(law=law)
+        inside = a.choose(found["a"].values)
+        share, low, high = locked_share(found, inside)
+        known = inside & (found["in_grid"].values == 1) & (found["locked"].values >= 0)
+        if known.sum() < LEAST_VALUES:
+            raise NotTestableError(f"branch 1 is regular motion at fewer than {LEAST_VALUES} values of a ({law})")
+        verdicts.append(by_share(share, loose_share))
+        shares.append(f"{100 * share:.1f} % ({law}; 95 % Wilson interval {100 * low:.1f} to {100 * high:.1f} %)")
+        number = found["rotation_number"].values[inside]
+        measured += [
+            Measured(f"share of a at which branch 1 is locked, {law}", share),
+            Measured(f"least rotation number, {law}", float(np.nanmin(number))),
+            Measured(f"largest rotation number, {law}", float(np.nanmax(number))),
+        ]
+        met = [one for one in plateaux(found.isel(value=inside)) if one.last > one.first]
+        if met:
+            measured.append(
+                Measured(f"width in a of all plateaux that were met, {law}", sum(p.last - p.first for p in met))
+            )
+            widest = max(met, key=lambda one: one.last - one.first)
+            where.append(
+                f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
+            )
+        if share:
+            where.append(f"locked {at_values(found['a'].values[known], found['locked'].values[known] == 1)} ({law})")
+    reason = (
+        f"Branch 1 is locked at {', '.join(shares)} of the values of a with {a}: there its rotation number is a "
+        "ratio of whole numbers that does not change with a. That its end blocks have one frequency follows from its "
+        "mirror symmetry and shows no locking."
+    )
+    return Verdict(worst(verdicts), reason, measured, "; ".join(where))
 
 
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:

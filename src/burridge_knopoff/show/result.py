@@ -15,7 +15,7 @@ from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.stability.settings import MOTION, MotionSettings
 
 #: {variable that no other summary has: name of the summary}, where the module that made it does not tell.
-_BY_CONTENT = {"in_grid": "refined", "basin_fraction": "attractors"}
+_BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
 
 
 @dataclass(frozen=True, eq=False)

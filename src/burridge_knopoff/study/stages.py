@@ -13,7 +13,7 @@ OPTIONAL = {
 }
 
 #: Summaries of a stage, if they are not the one that has its name.
-SUMMARIES = {"attractors": ("attractors", "refined"), "claims": ()}
+SUMMARIES = {"attractors": ("attractors", "refined", "rotation"), "claims": ()}
 
 #: Summaries of longer chains, which have a target of their own.
 CHAIN_SUMMARIES = ("chains", "two_blocks")

@@ -22,6 +22,8 @@ from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
+from burridge_knopoff.summaries.along_attractor import along_attractor
+from burridge_knopoff.summaries.bifurcation import distinct
 from burridge_knopoff.summaries.equilibrium import sliding_attracts
 from burridge_knopoff.summaries.slots import (
     NOTHING,
@@ -37,6 +39,7 @@ _REACHED = ("contact", "start", "initial", "a")
 _SWEEP = ("direction", "sweep", "a")
 DIRECTIONS = ("upward", "downward")
 _V = Variable
+ALONG = {"comment": "of attractors that an initial state of the study reaches under some convention"}
 VARIABLES = {
     **slot_variables("a"),
     "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a of the grid", NOTHING),
@@ -59,6 +62,14 @@ VARIABLES = {
     ),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch"),
+    "section_count": _V(
+        _SLOT, "i4", "different points W' of the section W = 0, crossed upward, on an attractor that is followed", ALONG
+    ),
+    "section_velocity_mean": _V(_SLOT, "f8", "mean of W' over these crossings, NaN where there is none", ALONG),
+    "velocity_correlation": _V(_SLOT, "f8", "Pearson correlation of the velocities U' of the end blocks", ALONG),
+    "velocity_frequency": _V(
+        (*_SLOT, "block"), "f8", "frequency, in cycles per unit time, of the highest peak of the spectrum of U'", ALONG
+    ),
     "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
     "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor on which a sweep of a is"),
 }
@@ -83,6 +94,7 @@ def one_law(
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit))
+    values.update(_followed(found, values["initial_branch"], values["initial_side"]))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -151,6 +163,22 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
             at, index = (*where, k), reached[tuple(where)]
             values["initial_branch"][at] = found.branch[place][index]
             values["initial_side"][at] = found.side[place][index]
+    return values
+
+
+def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what a run along each attractor shows that an initial state reaches, shape of both (…, a)."""
+    sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
+    values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
+    for k, place in enumerate(found.grid):
+        wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
+        for slot, index in enumerate(branch_order(found, place)):
+            if (found.branch[place][index], found.side[place][index]) in wanted:
+                one = along_attractor(found.models[place], found.attractors[place][index].motion.instant())
+                values["section_count"][k, slot] = distinct(one.section)
+                values["section_velocity_mean"][k, slot] = one.section.mean() if len(one.section) else np.nan
+                values["velocity_correlation"][k, slot] = one.velocity_correlation
+                values["velocity_frequency"][k, slot] = one.velocity_frequency
     return values
 
 

@@ -12,19 +12,14 @@ import xarray
 
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import shared_out
-from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.basins import KnownAttractors, known_attractors
 from burridge_knopoff.stability.labels import UNDETERMINED, label_states
 from burridge_knopoff.stability.phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, PhaseSettings, SearchSettings
-from burridge_knopoff.summaries.correlation import correlation
-
-#: Time for which each attractor is followed for the correlation of the velocities on it.
-FOLLOWED = 1000.0
+from burridge_knopoff.summaries.along_attractor import along_attractor
 
 TITLE = "Initial phases of the blocks"
 
@@ -117,7 +112,7 @@ def _at(
     amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
     inner = model.chain.blocks - 2
     known = known_attractors(attractors, model, settings, motion)
-    correlations = [velocity_correlation(model, item.motion.instant()) for item in known.attractors]
+    correlations = [along_attractor(model, item.motion.instant()).velocity_correlation for item in known.attractors]
     common = common_phases(model.a, shape, phases.seed)
     of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
     told = amplitude.ravel(), difference.ravel(), common.ravel()
@@ -166,13 +161,3 @@ def _intervals(hits: np.ndarray, count: int) -> np.ndarray:
     """Return fractions and the ends of their Wilson intervals, shape (3, *hits.shape)."""
     found = [fraction_interval(int(number), count) for number in hits.ravel()]
     return np.reshape(np.transpose(found), (3, *hits.shape))
-
-
-def velocity_correlation(model: Model, start: Instant) -> float:
-    """Return the Pearson correlation of the velocities of the end blocks from a state on; NaN if one is constant."""
-    settings = Settings(
-        transient=0.0, window=FOLLOWED, batches=2, sampling=FOLLOWED, trajectory=FOLLOWED, events="none",
-        lyapunov_exponents=0,
-    )  # fmt: skip
-    velocity = run(model, start, settings).velocity
-    return correlation(velocity[:, 0], velocity[:, -1])

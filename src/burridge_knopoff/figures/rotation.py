@@ -1,0 +1,75 @@
+"""The rotation number of branch 1 against a, with the plateaux at which it is locked."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, say, styled
+from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.summaries.plateaux import locked_share, plateaux
+
+TITLE = "Rotation number"
+CATEGORY = "Attractors"
+INPUTS = ("rotation",)
+CAPTION = """\
+How often the end blocks oscillate against each other for one oscillation of the middle block, on branch 1, the motion
+without synchrony. By symmetry both end blocks have one frequency whether or not the motion is locked. On a torus this
+ratio changes with a; where the motion is locked, a closed orbit, it is a ratio of whole numbers and stays the same: a
+plateau, the widest of which have their ratio beside them. Above each panel: the share of a that is locked, by the
+values of the grid.
+"""
+
+# Plateaux that have their ratio written beside them, the widest ones, at most.
+NAMED = 4
+
+
+@styled
+def draw(rotation: xarray.Dataset) -> Figure:
+    """Draw the rotation number against a for each law, closed orbits and tori in the colours of their kinds."""
+    laws = [str(law) for law in rotation["law"].values]
+    figure, panels = new_figure(page_width(len(laws)), 3.2, columns=len(laws))
+    titles = []
+    for panel, law in zip(panels, laws, strict=True):
+        found = rotation.sel(law=law)
+        share, _, _ = locked_share(found, np.isfinite(found["a"].values))
+        titles.append(f"{law} law" + (f": {100 * share:.0f} % of $a$ locked" if np.isfinite(share) else ""))
+        _curve(panel, found)
+        panel.set_xlabel("$a$")
+    panels[0].set_ylabel("rotation number")
+    label_panels(panels, titles)
+    handles = {
+        label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
+    }
+    if handles:
+        legend_below(figure, list(handles.values()))
+    return figure
+
+
+def _curve(panel: Axes, rotation: xarray.Dataset) -> None:
+    a, number = rotation["a"].values, rotation["rotation_number"].values
+    if not np.isfinite(number).any():
+        say(panel, "branch 1 was not found, or has no rotation number")
+        return
+    for locked, kind, name in ((0, MotionKind.QUASIPERIODIC, "torus"), (1, MotionKind.PERIODIC, "locked")):
+        chosen = (rotation["locked"].values == locked) & np.isfinite(number)
+        if chosen.any():
+            panel.plot(
+                a[chosen], number[chosen], "o", markersize=2.0, color=KIND_COLORS[kind], label=name, zorder=locked
+            )
+    found = sorted(plateaux(rotation), key=lambda one: one.first - one.last)[:NAMED]
+    for one in found:
+        if one.last > one.first:
+            height = one.ratio.numerator / one.ratio.denominator
+            panel.plot([one.first, one.last], [height, height], color=KIND_COLORS[MotionKind.PERIODIC], zorder=1)
+            panel.annotate(
+                f"{one.ratio.numerator}/{one.ratio.denominator}",
+                (one.first, height),
+                xytext=(-4, -4),
+                ha="right",
+                textcoords="offset points",
+                fontsize=8.0,
+            )
