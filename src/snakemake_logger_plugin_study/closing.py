@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from burridge_knopoff.claims.formats import untestable
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
 from burridge_knopoff.study.job_log import failure, interrupted
 from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.display import elapsed
@@ -66,7 +66,7 @@ def _claims(path: Path) -> list[str]:
         return [f"claims of the paper: none is judged ({ledger})", f"  {next(iter(reasons))}"]
     counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
     lines = [f"claims of the paper: {counts} ({ledger})"]
-    for verdict in (FAILS, CONVENTION):
+    for verdict in (FAILS, CONVENTION, READING):
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
         lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{more}"] if names else []

@@ -36,6 +36,9 @@ _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
 _SWEEP = ("direction", "sweep", "a")
 DIRECTIONS = ("upward", "downward")
+#: Half of the last digit to which the paper gives initial positions: by so much its initial states may be rounded.
+ROUNDING = 5e-4
+CORNERS = 64
 _V = Variable
 VARIABLES = {
     **slot_variables("a"),
@@ -59,6 +62,13 @@ VARIABLES = {
     ),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch"),
+    "rounded_branch": _V(
+        ("initial", "a", "corner"),
+        "i2",
+        "branch reached by states whose numbers are all 0.0005 above or below those of an initial state, under the "
+        "study's own convention",
+        NOTHING,
+    ),
     "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
     "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor on which a sweep of a is"),
 }
@@ -83,6 +93,7 @@ def one_law(
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit))
+    values.update(_rounded(found, initial, settings.time_limit, start))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -152,6 +163,37 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
             values["initial_branch"][at] = found.branch[place][index]
             values["initial_side"][at] = found.side[place][index]
     return values
+
+
+def _rounded(
+    found: Continuation, states: Sequence[InitialState], time_limit: float, start: str
+) -> dict[str, np.ndarray]:
+    """Return which branch the corners of each initial state reach under the convention of the models and `start`."""
+    shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
+    values = empty(VARIABLES, shape, "rounded")
+    for k, place in enumerate(found.grid):
+        model = found.models[place]
+        for n, state in enumerate(states):
+            if model.contact == "symmetric" or min(state.velocity) >= 0.0:
+                starts = [model.begin(corner, start) for corner in corners(state, model.contact)]
+                reached, _ = label(model, found.attractors[place], starts, time_limit)
+                known = reached != UNDETERMINED
+                values["rounded_branch"][n, k, known] = found.branch[place][reached[known]]
+    return values
+
+
+def corners(state: InitialState, contact: str) -> list[InitialState]:
+    """Return CORNERS states, each number of which is ROUNDING above or below that of a state.
+
+    With three blocks these are all corners of the box around it; in longer chains numbers six apart move together.
+    contact : if one_sided, velocities are 0 at least
+    """
+    blocks = len(state.position)
+    above = np.arange(CORNERS)[:, None] >> (np.arange(2 * blocks) % 6) & 1
+    numbers = np.array([*state.position, *state.velocity]) + ROUNDING * (2 * above - 1)
+    if contact == "one_sided":
+        numbers[:, blocks:] = np.maximum(numbers[:, blocks:], 0.0)
+    return [InitialState(state.name, tuple(row[:blocks].tolist()), tuple(row[blocks:].tolist())) for row in numbers]
 
 
 def _labels_of_states(
