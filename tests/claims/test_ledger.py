@@ -179,7 +179,7 @@ def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     none = "holds loosely: 0; depends on convention: 0; depends on reading: 0; fails: 0; not testable: 0."
     assert text.startswith(
         f"{independent} independent statements: holds: {independent}; {none}\n\n"
-        f"All {len(CLAIMS)}, with those that repeat others or follow from them: holds: {len(CLAIMS)}; {none}\n\n### Sync"
+        f"All {len(CLAIMS)}, with those that repeat others or follow from them: holds: {len(CLAIMS)}; {none}\n\n###"
     )
     assert text.count("Depends on ") == len(CLAIMS) - independent
     claim = next(claim for claim in content["claims"] if claim["figure"])

@@ -30,8 +30,8 @@ def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
     agreement = summaries["agreement"].attrs if "agreement" in summaries else {}
     for factor in FACTORS:
         for name in AGREEMENT if agreement else ():
-            other = {**agreement, name: factor * agreement[name]}
-            yield _said(f"agreement.{name}", agreement[name], factor), _compared(evidence, other)
+            changed = {**agreement, name: factor * agreement[name]}
+            yield _said(f"agreement.{name}", agreement[name], factor), _compared(evidence, changed)
         if "lyapunov" not in summaries:
             continue
         for name in MOTION:
@@ -39,8 +39,8 @@ def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
             other = replace(evidence, config={**evidence.config, "motion": {**motion, name: factor * value}})
             yield _said(f"motion.{name}", value, factor), _with_kinds(other, evidence, agreement)
         if THRESHOLD in agreement:
-            other = {**agreement, THRESHOLD: factor * agreement[THRESHOLD]}
-            yield _said(THRESHOLD, agreement[THRESHOLD], factor), _with_kinds(evidence, evidence, other)
+            changed = {**agreement, THRESHOLD: factor * agreement[THRESHOLD]}
+            yield _said(THRESHOLD, agreement[THRESHOLD], factor), _with_kinds(evidence, evidence, changed)
 
 
 def _said(name: str, value: float, factor: float) -> str:
@@ -48,7 +48,7 @@ def _said(name: str, value: float, factor: float) -> str:
 
 
 def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
-    """Return evidence with the kinds of the runs, and who synchronizes, by other tolerances than those of `evidence`."""
+    """Return evidence with the kinds of the runs, and which synchronize, by other tolerances than `evidence` has."""
     lyapunov = evidence.summaries["lyapunov"]
     own = evidence.summaries.get("agreement")
     threshold = {} if own is None else own.attrs

@@ -63,11 +63,11 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
 
     figures : folder of the figures that a table links to, relative to the file that it goes into
     """
+    every, independent = content["counts"], content["independent_counts"]
     lines = [
-        f"{sum(content['independent_counts'].values())} independent statements: {_counts(content['independent_counts'])}.",
+        f"{sum(independent.values())} independent statements: {_counts(independent)}.",
         "",
-        f"All {sum(content['counts'].values())}, with those that repeat others or follow from them: "
-        f"{_counts(content['counts'])}.",
+        f"All {sum(every.values())}, with those that repeat others or follow from them: {_counts(every)}.",
     ]
     for topic, claims in by_topic(content["claims"]).items():
         lines += [

@@ -91,8 +91,8 @@ def near_equilibrium(
     """Judge whether the first block of one state begins close to its equilibrium, and that of another does not.
 
     initial : the state that is close, the state that is not
-    near, loose : close is at most this many amplitudes of the block in the motion that the first state comes to, loosely
-        at most that many
+    near, loose : close is up to this many amplitudes of the block in the motion that the first state comes to, loosely
+        up to that many
     """
     for name in initial:
         evidence.check_state(name)

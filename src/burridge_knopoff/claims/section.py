@@ -1,4 +1,4 @@
-"""Claims on the section W = 0 that compare values of a: where the line of one state begins in the section of another."""
+"""Claims on the section W = 0 along a: where the line of one state begins in the section of another."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def one_law(
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit))
-    values.update(_rounded(found, initial, settings.time_limit, start))
+    values.update(_rounded(found, initial, settings.label_limit, start))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -166,7 +166,7 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
 
 
 def _rounded(
-    found: Continuation, states: Sequence[InitialState], time_limit: float, start: str
+    found: Continuation, states: Sequence[InitialState], label_limit: float, start: str
 ) -> dict[str, np.ndarray]:
     """Return which branch the corners of each initial state reach under the convention of the models and `start`."""
     shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
@@ -176,7 +176,7 @@ def _rounded(
         for n, state in enumerate(states):
             if model.contact == "symmetric" or min(state.velocity) >= 0.0:
                 starts = [model.begin(corner, start) for corner in corners(state, model.contact)]
-                reached, _ = label(model, found.attractors[place], starts, time_limit)
+                reached, _ = label(model, found.attractors[place], starts, label_limit)
                 known = reached != UNDETERMINED
                 values["rounded_branch"][n, k, known] = found.branch[place][reached[known]]
     return values
