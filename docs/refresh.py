@@ -15,6 +15,7 @@ from burridge_knopoff.provenance.files import write_text
 DOCS = Path(__file__).parent
 PAGE = DOCS / "claims.md"
 LEDGER = DOCS / "claims.json"
+README = DOCS.parent / "README.md"
 BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
 # Enough for a page on a screen, and a third of the bytes of the figures for print.
@@ -29,6 +30,25 @@ def page(text: str, content: dict) -> str:
     return f"{before}{BEGIN}\n{as_markdown(content, 'figures')}{END}{after}"
 
 
+def headline(content: dict) -> str:
+    """Return the sentence of the README that counts the independent statements of a ledger."""
+    counts, every = content["independent_counts"], sum(content["counts"].values())
+    number = sum(counts.values())
+    return (
+        f"**Of {number} independent statements {counts['holds']} hold, {counts['holds loosely']} hold loosely,\n"
+        f"{counts['depends on convention']} depend on conventions that the paper leaves open, "
+        f"{counts['depends on reading']} on how they are read, {counts['fails']} fail, and\n"
+        f"{counts['not testable']} cannot be tested**; {every - number} more repeat these or follow from them. "
+        "[docs/claims.md](docs/claims.md) has each with its numbers.\n"
+    )
+
+
+def readme(text: str, content: dict) -> str:
+    """Return the text of the README with the headline of a ledger."""
+    before, rest = text.split(BEGIN)
+    return f"{before}{BEGIN}\n{headline(content)}{END}{rest.split(END)[1]}"
+
+
 def figure_names() -> set[str]:
     """Return the names of the study's figures that the pages of docs/ and the README show or link."""
     pages = [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
@@ -40,6 +60,7 @@ def main(results: Path) -> None:
     content = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
     write_text(LEDGER, as_json(content))
     write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content))
+    write_text(README, readme(README.read_text(encoding="utf-8"), content))
     for name in sorted(figure_names()):
         source = results / f"figures/{name}.png"
         if source.exists():

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from burridge_knopoff.claims.formats import untestable
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
 from burridge_knopoff.study.job_log import failure, interrupted
 from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.display import elapsed
@@ -64,9 +64,10 @@ def _claims(path: Path) -> list[str]:
     ledger, reasons = path.with_suffix(".md"), untestable(read["claims"])
     if list(reasons.values()) == [read["claims"]]:
         return [f"claims of the paper: none is judged ({ledger})", f"  {next(iter(reasons))}"]
-    counts = ", ".join(f"{verdict} {count}" for verdict, count in read["counts"].items())
-    lines = [f"claims of the paper: {counts} ({ledger})"]
-    for verdict in (FAILS, CONVENTION):
+    independent = read["independent_counts"]
+    counts = ", ".join(f"{verdict} {count}" for verdict, count in independent.items())
+    lines = [f"claims of the paper, {sum(independent.values())} independent ones: {counts} ({ledger})"]
+    for verdict in (FAILS, CONVENTION, READING):
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
         lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{more}"] if names else []

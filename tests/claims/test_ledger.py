@@ -27,7 +27,7 @@ edge:
   statement: Synchrony ends at 0.08.
   place: Fig. 3
   judge: synchronization.edge_of_synchrony
-  parameters: {initial: minus, upper: true, claimed: 0.08, tolerance: 0.005, loose: 0.01}
+  parameters: {initial: minus, claimed: 0.08, tolerance: 0.005, loose: 0.01}
   figure: orbits
 """
 RANGED = """
@@ -67,10 +67,9 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, "edge_of_synchrony", "worst", "judge: 'synchronization.worst' is not allowed: one of"),
         (EDGE, "synchronization.edge", "chaos.edge", "judge: 'chaos.edge_of_synchrony' is not allowed"),
         (EDGE, ", loose: 0.01", "", "parameters.loose: missing; needed by synchronization.edge_of_synchrony"),
-        (EDGE, "loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, upper"),
-        (EDGE, "upper:", "uper:", "parameters.uper: unknown key (did you mean upper?); allowed here: initial, upper"),
+        (EDGE, "loose: 0.01", "loose: 0.01, share: 1", "parameters.share: unknown key; allowed here: initial, claimed"),
+        (EDGE, "loose:", "lose:", "parameters.lose: unknown key (did you mean loose?); allowed here: initial, claimed"),
         (EDGE, "tolerance: 0.005", "tolerance: -1", "tolerance: -1 is not allowed"),
-        (EDGE, "upper: true", "upper: 1", "upper: 1 is not allowed"),
         (EDGE, "initial: minus", "initial: middle", "initial: middle is not allowed: minus | plus"),
         (EDGE, "initial: minus", "initial: [minus, plus]", "initial: ['minus', 'plus'] is not allowed: one name"),
         (EDGE, "claimed: 0.08", "claimed: true", "claimed: True is not allowed"),
@@ -93,6 +92,9 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, "figure: orbits", "figure: motion_middle", "'motion_middle' is not allowed"),
         (EDGE, "  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
         (EDGE, "  figure", "  place: Fig. 4\n  figure", "place: stands twice"),
+        (EDGE, "  figure", "  depends_on: [other]\n  figure", "edge.depends_on: 'other' is not allowed"),
+        (EDGE, "  figure", "  depends_on: [edge]\n  figure", "edge.depends_on: 'edge' is not allowed"),
+        (EDGE, "  figure", "  depends_on: edge\n  figure", "edge.depends_on: 'edge' is not allowed: a list"),
         (RANGED, "{above: 0}", "{}", "a: {} is not allowed: at least one end"),
         (RANGED, "{above: 0}", "{from: 0, above: 0}", "one of each side"),
         (RANGED, "{above: 0}", "{from: 1, to: 0}", "the first end below the last"),
@@ -167,16 +169,21 @@ def test_what_is_proved_is_told_beside_its_number() -> None:
 def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
     text = as_markdown(content, "figures")
     rows = [line for line in text.splitlines() if line.startswith("| ") and "claim | verdict" not in line]
-    assert len(rows) == len(content["claims"]) == 42
+    assert len(rows) == len(content["claims"]) == len(CLAIMS)
     assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
     # A bar inside a cell is escaped.
     assert all(row.replace("\\|", "").count("|") == 7 for row in rows)
+    independent = sum(not claim.depends_on for claim in CLAIMS.values())
+    assert 30 < independent < len(CLAIMS)
+    none = "holds loosely: 0; depends on convention: 0; depends on reading: 0; fails: 0; not testable: 0."
     assert text.startswith(
-        "holds: 42; holds loosely: 0; depends on convention: 0; fails: 0; not testable: 0.\n\n### Sync"
+        f"{independent} independent statements: holds: {independent}; {none}\n\n"
+        f"All {len(CLAIMS)}, with those that repeat others or follow from them: holds: {len(CLAIMS)}; {none}\n\n###"
     )
+    assert text.count("Depends on ") == len(CLAIMS) - independent
     claim = next(claim for claim in content["claims"] if claim["figure"])
     claim |= {"verdict": "fails", "reason": "a|b", "changes": "nowhere"}
-    claim |= {"turns": ["holds: near below 1 (2)", "holds: c"]}
+    claim |= {"turns": ["holds: near below 1 (2)", "holds: c"], "depends_on": []}
     text = as_markdown({**content, "claims": [claim]}, "figures")
     assert text.count("###") == 1
     assert (

@@ -7,7 +7,7 @@ import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.margins import turns
-from burridge_knopoff.claims.verdict import FAILS, HOLDS, NOT_TESTABLE, Verdict
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, Verdict
 
 NOTHING = Evidence({}, {})
 
@@ -124,6 +124,54 @@ def test_the_half_of_the_grid_that_turns_a_verdict_is_told(a, told):
         return Verdict(HOLDS if 0.1 in evidence.summaries["mean_distance"]["a"].values else FAILS, "")
 
     assert turns(judge, world, {}, judge(world, {})) == told
+
+
+def test_a_verdict_that_turns_beneath_another_is_told():
+    """Of what depends on convention the verdict stays, and that under a convention may not."""
+
+    def judge(_evidence, parameters):
+        under = {"own": FAILS, "other": HOLDS if parameters["tolerance"] < 1.5 else LOOSELY}
+        return Verdict(CONVENTION, "", conventions=under, own=FAILS)
+
+    parameters = {"tolerance": 1.0}
+    (text,) = turns(judge, NOTHING, parameters, judge(NOTHING, parameters))
+    assert text.startswith("depends on convention (other holds loosely): tolerance above 1.4")
+
+    def fewer(_evidence, parameters):
+        under = {"own": FAILS, "other": HOLDS, **({} if parameters["tolerance"] > 1.5 else {"third": HOLDS})}
+        return Verdict(CONVENTION, "", conventions=under, own=FAILS)
+
+    (text,) = turns(fewer, NOTHING, parameters, fewer(NOTHING, parameters))
+    assert text.startswith("depends on convention (third not testable): tolerance above ")
+
+
+def test_the_values_beside_the_one_that_a_claim_is_on_are_tried():
+    grids = {"runs": [0.0775, 0.08, 0.0825], "solvers": [0.079, 0.08]}
+    world = Evidence({name: xarray.Dataset(coords={"a": a}) for name, a in grids.items()}, {})
+
+    def judge(_evidence, parameters):
+        return Verdict(FAILS if parameters["at"] > 0.08 else HOLDS, "")
+
+    assert turns(judge, world, {"at": 0.08}, judge(world, {"at": 0.08})) == ["fails: at a = 0.0825 (0.08)"]
+    assert turns(judge, world, {"at": 0.5}, Verdict(FAILS, "")) == []
+
+
+def test_window_and_whole_run_are_tried():
+    def judge(_evidence, parameters):
+        return Verdict(HOLDS if parameters["part"] == "window" else FAILS, "")
+
+    assert turns(judge, NOTHING, {"part": "window"}, Verdict(HOLDS, "")) == ["fails: by the whole run"]
+    assert turns(judge, NOTHING, {"part": "run"}, Verdict(FAILS, "")) == ["holds: by the window"]
+
+
+def test_other_evidence_is_tried_by_its_name():
+    other = Evidence({}, {"motion": {}})
+
+    def judge(evidence, _parameters):
+        return Verdict(FAILS if evidence is other else HOLDS, "")
+
+    found = turns(judge, NOTHING, {}, Verdict(HOLDS, ""), [("zero = 2 (1)", other), ("zero = 0.5 (1)", NOTHING)])
+    assert found == ["fails: zero = 2 (1)"]
 
 
 def test_nothing_turns_what_cannot_be_tested():

@@ -38,8 +38,9 @@ def summaries(tmp_path, monkeypatch):
     verdicts = dict.fromkeys((f"claim_{n}" for n in range(10)), "fails")
     verdicts |= {"plus": "depends on convention", "x": "holds"}
     counts = {"holds": 1, "holds loosely": 0, "depends on convention": 1, "fails": 10, "not testable": 0}
+    independent = {**counts, "fails": 4}
     claims = [{"name": name, "verdict": verdict} for name, verdict in verdicts.items()]
-    write({"counts": counts, "claims": claims}, [0, 3, 0, 1, 3], [-1, 3, 0, -1, 2])
+    write({"counts": counts, "independent_counts": independent, "claims": claims}, [0, 3, 0, 1, 3], [-1, 3, 0, -1, 2])
 
 
 def lines(*jobs, wanted=tuple(RULES), seconds=1.0, stopped=False):
@@ -57,7 +58,8 @@ def test_a_whole_study():
     assert lines(*done(*made), wanted=(*RULES, "report"), seconds=312.0) == [
         "study paper: done in 5 min 12 s",
         "files made in results/paper: points 2, summary 1, report.html",
-        "claims of the paper: holds 1, holds loosely 0, depends on convention 1, fails 10, not testable 0 "
+        "claims of the paper, 6 independent ones: holds 1, holds loosely 0, depends on convention 1, fails 4, "
+        "not testable 0 "
         f"({FOLDER}/claims.md)",
         "  fails: claim_0, claim_1, claim_2, claim_3, claim_4, claim_5, claim_6, claim_7 and 2 more",
         "  depends on convention: plus",

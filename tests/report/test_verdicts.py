@@ -28,10 +28,11 @@ def test_verdicts_are_counted_and_put_by_topic():
     verdicts = read_verdicts(CLAIMS)
     assert list(verdicts.counts) == list(SIGNS)
     assert set(verdicts.counts.values()) == {1}
+    assert verdicts.independent == {**verdicts.counts, "fails": 0}
     assert [(topic, len(claims)) for topic, claims in verdicts.topics.items()] == [
         ("synchronization", 2),
         ("friction laws", 1),
-        ("motion", 1),
+        ("motion", 2),
     ]
     assert list(verdicts.untestable) == ["The study has no experiment."]
     assert verdicts.setting["contact"] == "one_sided"
@@ -45,7 +46,7 @@ def test_what_cannot_be_judged_is_put_by_its_reason(read):
 
     verdicts = read(judge_nothing)
     counts = {reason: len(claims) for reason, claims in verdicts.untestable.items()}
-    assert counts == {"Short runs.": 1, "Few values.": 4}
+    assert counts == {"Short runs.": 1, "Few values.": 5}
     assert verdicts.topics == {}
     assert sum(read_verdicts(None).counts.values()) == 0
 

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import MotionKind, Symmetry
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.stability.continuation import continue_attractors
 from burridge_knopoff.stability.lifetime import Lifetime
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MOTION, Refine
@@ -83,6 +85,37 @@ def test_what_initial_states_and_sweeps_reach(one_law):
     mean = found["sweep_mean_distance"]
     np.testing.assert_array_equal(mean.sel(direction="upward"), [[0.0, np.nan, np.nan], [0.14, 0.15, np.nan]])
     np.testing.assert_array_equal(mean.sel(direction="downward"), [[0.14, 0.15, np.nan]] * 2)
+
+
+def test_states_that_round_to_an_initial_state_are_all_corners_of_its_box():
+    state = PAPER_STATES["plus"]
+    numbers = np.array([*state.position, *state.velocity])
+    found = attractors.corners(state, "one_sided")
+    shifts = np.array([[*one.position, *one.velocity] for one in found]) - numbers
+    assert np.abs(shifts) == pytest.approx(5e-4)
+    assert len({tuple(row) for row in np.sign(shifts)}) == 64
+    # Blocks do not begin backward where they cannot slip so.
+    rest = InitialState("rest", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
+    assert min(velocity for one in attractors.corners(rest, "one_sided") for velocity in one.velocity) == 0.0
+    assert min(velocity for one in attractors.corners(rest, "symmetric") for velocity in one.velocity) == -5e-4
+    four = InitialState("four", (0.0,) * 4, (0.1,) * 4)
+    assert len({one.position + one.velocity for one in attractors.corners(four, "one_sided")}) == 64
+
+
+def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():
+    """Linearized: at 0.05 some states that round to plus synchronize, which plus does not."""
+    search = SearchSettings(samples=12, fraction_samples=0, transient=1000, window=1000, seed=3)
+    models = [Model(Chain(3), law_of("linearized", a)) for a in (0.05, 0.08)]
+    states = [PAPER_STATES["minus"], PAPER_STATES["plus"]]
+    found = continue_attractors(models, search, refine=Refine(1.0), starts=states)
+    one = attractors.one_law(found, states, search, MOTION, "moving")
+    own = one["initial_branch"].sel(contact="one_sided", start="moving").values
+    rounded = one["rounded_branch"].values
+    assert (rounded[0] == own[0][:, None]).all()
+    assert (rounded[1, 1] == own[1, 1]).all()
+    differing = rounded[1, 0][rounded[1, 0] != own[1, 0]]
+    assert 10 < len(differing) < 30
+    assert set(differing) == {0}
 
 
 def test_chaos_that_is_shown_to_last_is_chaos():

@@ -125,3 +125,22 @@ def test_strong_damping_has_modes_that_do_not_oscillate():
     drift, rate = simulate_sliding(model, sliding_position(model))
     assert rate == pytest.approx(2.0, abs=1e-9)
     assert drift < 1e-5
+
+
+@pytest.mark.parametrize("law", PAPER_LAWS)
+def test_the_energy_about_sliding_grows_until_a_block_stops(law):
+    """As it does whatever the motion, for a law that falls with velocity: so sticks are unavoidable."""
+    model = Model(Chain(3), law_of(law, 0.3))
+    for seed in range(4):
+        shift = 0.02 * np.random.default_rng(seed).uniform(-1.0, 1.0, 6)
+        state = InitialState("near", tuple(model.sliding_offset + shift[:3]), tuple(model.v + shift[3:]))
+        run = simulate(model, state, transient=0.0, window=60.0, batches=2, trajectory=60.0, events="all")
+        assert run.event_kind[0] == 0
+        before = run.trajectory_time < run.event_time[0]
+        assert before.sum() > 50
+        velocity = run.velocity[before] - model.v
+        position = run.position[before] - model.sliding_offset
+        energy = 0.5 * (velocity**2).sum(axis=1) + 0.5 * np.einsum(
+            "ti,ij,tj->t", position, model.chain.stiffness, position
+        )
+        assert (np.diff(energy) > 0.0).all()

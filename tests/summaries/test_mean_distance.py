@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import MotionKind, simulate
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, simulate
 from burridge_knopoff.summaries import bifurcation, lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
 from tests.grids import PAPER_MODELS, grid_of
@@ -41,10 +41,33 @@ def test_settling_times_of_runs(tmp_path):
     found = summarize(grid, 1e-6)["settling_time"]
     # J at synchrony dies out like the transverse multiplier to the power of the number of periods.
     settled = found.sel(law="linearized", initial="minus", a=0.08)
-    assert settled.values.tolist() == settling_time(run.time, run.distance, LEVELS)
+    np.testing.assert_array_equal(settled.values, settling_time(run.time, run.distance, LEVELS))
     assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
     assert settled.sel(level=1e-2) <= settled.sel(level=1e-3) < settled.sel(level=1e-6)
     assert np.isnan(found.sel(law="nonlinear")).all()
+
+
+def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path):
+    """From plus the first slips are eight times as fast as those of the attractor."""
+    grid = grid_of(tmp_path, ["plus"], {"0.0800": 0.08}, transient=500.0, window=100.0, batches=2)
+    write_points(grid)
+    found = summarize(grid, 1e-6).sel(initial="plus", a=0.08)
+    for law in ("linearized", "nonlinear"):
+        whole, window = (found[name].sel(law=law).item() for name in ("least_friction", "window_least_friction"))
+        assert whole < 0.9 < 0.97 < window < 1.0
+
+
+def test_slips_of_the_linearized_law_are_a_multiple_of_the_driver_at_one_a():
+    """By stronger springs at a fixed V, a falls and v grows: aU' is av times a function of a alone."""
+    speeds = []
+    for v in (0.1, 0.02):
+        model = Model(Chain(3), law_of("linearized", 0.08), v)
+        offset, size = model.sliding_offset, v / 0.1
+        state = {"position": tuple(offset + size * np.array([-0.02, 0.03, -0.01])), "velocity": (v, v, v)}
+        run = simulate(model, InitialState("near", **state), transient=1500.0, window=200.0, batches=2)
+        speeds.append((1.0 - run.window_least_friction) / (0.08 * v))
+    assert speeds[1] == pytest.approx(speeds[0], rel=1e-9)
+    assert 2.0 < speeds[0] < 2.5
 
 
 def with_section(trajectory, velocity, direction, **values):

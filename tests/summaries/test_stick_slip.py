@@ -121,6 +121,10 @@ def test_the_synchronized_orbit(tmp_path):
         assert run["velocity_frequency_error"].values == pytest.approx(0.5 / 400.0, rel=0.02)
         assert run["velocity_correlation"].item() == pytest.approx(1.0, abs=1e-12)
         assert run["least_velocity"].values.tolist() == [0.0, 0.0, 0.0]
+        # The end blocks swing alike; the middle one, which is held from both sides, less.
+        amplitude = run["position_amplitude"].values
+        assert amplitude[0] == pytest.approx(amplitude[2], rel=1e-6)
+        assert 0.07 < amplitude[1] < amplitude[0] < 0.12
 
 
 def test_events_before_those_with_states_count_as_well(tmp_path):

@@ -11,6 +11,7 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, section, synchronization
+from burridge_knopoff.claims.margins import PARTS
 from burridge_knopoff.claims.verdict import Range, Verdict
 from burridge_knopoff.model import ranges
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, unknown_key
@@ -61,6 +62,11 @@ CLAIMS = Named(
             "figure": Field(
                 Text("small letters, digits and _", "[a-z][a-z0-9_]*"), "the figure of the study that shows it"
             ),
+            "depends_on": Field(
+                Several(Text("one name"), distinct=True),
+                "the claims of which it is a case, a repetition or a consequence",
+                (),
+            ),
         }
     ),
     1,
@@ -71,6 +77,7 @@ _NUMBER, _NAME, _SHARE = Number(-ranges.HUGE, ranges.HUGE), Text("one name"), Nu
 _BY_NAME: Mapping[str, ranges.Range] = {
     "a": Keys({name: Field(_NUMBER, "one end", FOLLOWS) for name in _RANGE}),
     "laws": Several(OneOf(PAPER_LAWS), 1, distinct=True),
+    "part": OneOf(PARTS),
     "law": OneOf(PAPER_LAWS),
     "tolerance": Number(0.0, ranges.HUGE),
     **dict.fromkeys(("loose", "much"), Number(0.0, ranges.HUGE, above=True)),
@@ -95,6 +102,7 @@ class Claim:
 
     topic, judge, parameters : the function judge of the module topic, and its arguments
     figure : the figure of the study that shows it
+    depends_on : names of the claims of which it is a case, a repetition or a consequence; without any it is independent
     """
 
     name: str
@@ -104,6 +112,7 @@ class Claim:
     judge: Callable[..., Verdict]
     parameters: Mapping[str, Any]
     figure: str
+    depends_on: Sequence[str] = ()
 
 
 def read_claims(path: str | Path, figures: Collection[str]) -> list[Claim]:
@@ -128,7 +137,11 @@ def checked_claims(content: Mapping[str, Any], path: str | Path, figures: Collec
 
 def claims_of(content: Mapping[str, Any]) -> list[Claim]:
     """Return the claims in the content of such a file; raises ValueError, one line: key, value, what is allowed."""
-    return [_claim(name, item) for name, item in CLAIMS.form(content, "").items()]
+    claims = [_claim(name, item) for name, item in CLAIMS.form(content, "").items()]
+    for claim in claims:
+        for other in claim.depends_on:
+            OneOf(tuple(one.name for one in claims if one is not claim)).form(other, f"{claim.name}.depends_on")
+    return claims
 
 
 def _claim(name: str, item: Mapping[str, Any]) -> Claim:
@@ -153,7 +166,8 @@ def _claim(name: str, item: Mapping[str, Any]) -> Claim:
     if parameters.get("loose", np.inf) < parameters.get("tolerance", 0.0):
         raise refusal(f"{place}.loose", parameters["loose"], "at least tolerance")
     statement, where = (" ".join(item[key].split()) for key in ("statement", "place"))
-    return Claim(name, statement, where, topic, judges[function], parameters, item["figure"])
+    depends = tuple(item["depends_on"])
+    return Claim(name, statement, where, topic, judges[function], parameters, item["figure"], depends)
 
 
 def _parameter(key: str, value: Any, kind: Any, place: str) -> Any:

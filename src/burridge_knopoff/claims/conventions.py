@@ -9,7 +9,18 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, Measured, Verdict, by_share, shares_text, worst
+from burridge_knopoff.claims.verdict import (
+    CONVENTION,
+    FAILS,
+    READING,
+    Measured,
+    Range,
+    Verdict,
+    at_values,
+    by_share,
+    shares_text,
+    worst,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -47,13 +58,44 @@ def under_conventions(
     if unknown:
         others.append(f"not judged under {' and '.join(unknown)}")
     changes = "; ".join([*exceptions, *others])
-    return Verdict(by_readings(verdicts, own), reason, measured, changes, dict(sorted(verdicts.items())), own)
+    verdict = CONVENTION if _divided(verdicts) else own
+    return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
 
 
-def by_readings(verdicts: Mapping[str, str], own: str) -> str:
-    """Return the verdict of a claim: its own, but where it holds under one reading and fails under another."""
+def by_readings(verdicts: Mapping[str, str]) -> tuple[str, str]:
+    """Return (the verdict of a claim that can be read in more than one way, the verdict under the first reading).
+
+    It depends on reading if it holds, at least loosely, under one and fails under another.
+    """
+    own = next(iter(verdicts.values()))
+    return (READING if _divided(verdicts) else own), own
+
+
+def _divided(verdicts: Mapping[str, str]) -> bool:
     fails = [verdict == FAILS for verdict in verdicts.values()]
-    return CONVENTION if any(fails) and not all(fails) else own
+    return any(fails) and not all(fails)
+
+
+def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range) -> list[str]:
+    """Return in words where states that round to the paper's reach another attractor than these, under each law.
+
+    The paper gives positions to three decimals: see `rounded_branch` of attractors.nc.
+    """
+    if "attractors" not in evidence.summaries:
+        return []
+    attractors = evidence.own_attractors()
+    attractors = attractors.isel(a=a.choose(attractors["a"].values))
+    texts = []
+    for state in initial:
+        for law in laws:
+            own, others = (
+                attractors[name].sel(law=law, initial=state).values for name in ("initial_branch", "rounded_branch")
+            )
+            other = ((others != own[:, None]) & (others >= 0) & (own >= 0)[:, None]).any(axis=1)
+            if other.any():
+                where = at_values(attractors["a"].values, other)
+                texts.append(f"some states that round to {state} reach another attractor {where} ({law})")
+    return texts
 
 
 def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:

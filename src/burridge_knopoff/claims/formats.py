@@ -63,7 +63,12 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
 
     figures : folder of the figures that a table links to, relative to the file that it goes into
     """
-    lines = ["; ".join(f"{name}: {count}" for name, count in content["counts"].items()) + "."]
+    every, independent = content["counts"], content["independent_counts"]
+    lines = [
+        f"{sum(independent.values())} independent statements: {_counts(independent)}.",
+        "",
+        f"All {sum(every.values())}, with those that repeat others or follow from them: {_counts(every)}.",
+    ]
     for topic, claims in by_topic(content["claims"]).items():
         lines += [
             "",
@@ -77,13 +82,19 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
             own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
             judged = f"**{claim['verdict']}**{own}"
             turning = "; ".join(claim["turns"]) or "nothing that was tried"
-            cells = [f"{claim['statement']} *{claim['place']}*", judged, claim["reason"], claim["changes"], turning]
+            depends = f" Depends on {', '.join(claim['depends_on'])}." if claim["depends_on"] else ""
+            statement = f"{claim['statement']} *{claim['place']}*{depends}"
+            cells = [statement, judged, claim["reason"], claim["changes"], turning]
             lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
     if reasons := untestable(content["claims"]):
         lines += ["", "### Not testable", ""]
     for reason, claims in reasons.items():
         lines.append(f"- {reason} ({len(claims)}: {', '.join(claim['name'] for claim in claims)})")
     return "\n".join(lines) + "\n"
+
+
+def _counts(counts: Mapping[str, int]) -> str:
+    return "; ".join(f"{name}: {count}" for name, count in counts.items())
 
 
 def _text(value: float | None) -> str:

@@ -39,17 +39,11 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
     shares, measured, single = {}, [], []
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
-        reached = np.where(found["basin_count"].values > 0, found["branch"].values, -1)
-        started = found["initial_branch"].transpose("a", "initial").values
-        both = np.concatenate([reached, started], axis=1)
-        count = np.array([len(set(row[row >= 0])) for row in both])
-        sampled = found["basin_count"].values.sum(axis=1)
-        if ((count < 2) & (sampled < samples)).any():
-            raise NotTestableError(f"fewer than {samples} sampled states reach an attractor where one alone is seen")
+        count = _coexisting(found, samples)
         shares[law] = float((count > 1).mean())
         measured.append(Measured(f"share of a with more than one attractor, {law}", shares[law]))
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
-        fraction = found["basin_fraction"].values[reached == 0]
+        fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
             measured.append(Measured(f"least basin fraction of synchrony, {law}", float(fraction.min())))
             measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
@@ -58,6 +52,34 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
     verdict, text = judge_shares(shares, loose_share)
     reason = f"More than one attractor is reached at {text} of the values of a with {a}."
     return Verdict(verdict, reason, measured, "; ".join(single))
+
+
+def one_attractor(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
+    """Judge whether one attractor alone exists at each a of a range, so that history decides nothing, under both laws.
+
+    Attractors are counted as in `coexistence`.
+    """
+    attractors = evidence.choose(evidence.own_attractors(), a)
+    shares, measured, several = {}, [], []
+    for law in PAPER_LAWS:
+        count = _coexisting(attractors.sel(law=law), samples)
+        shares[law] = float((count == 1).mean())
+        measured.append(Measured(f"share of a with one attractor, {law}", shares[law]))
+        if (count > 1).any():
+            several.append(f"more than one {at_values(attractors['a'].values, count > 1)} ({law})")
+    verdict, text = judge_shares(shares, loose_share)
+    reason = f"One attractor alone is reached at {text} of the values of a with {a}."
+    return Verdict(verdict, reason, measured, "; ".join(several))
+
+
+def _coexisting(found: xarray.Dataset, samples: int) -> np.ndarray:
+    """Return how many attractors are reached at each a under one law; see `coexistence`."""
+    reached = np.where(found["basin_count"].values > 0, found["branch"].values, -1)
+    started = found["initial_branch"].transpose("a", "initial").values
+    count = np.array([len(set(row[row >= 0])) for row in np.concatenate([reached, started], axis=1)])
+    if ((count < 2) & (found["basin_count"].values.sum(axis=1) < samples)).any():
+        raise NotTestableError(f"fewer than {samples} sampled states reach an attractor where one alone is seen")
+    return count
 
 
 def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
@@ -232,8 +254,8 @@ def phases_decide(
         f"(A = {judged.amplitudes}), synchronize from phases within {close:g}° ({together}) and end in antiphase from "
         f"opposite ones ({against}), at {judged.shares} of the values of a with {a}."
     )
-    own = judged.verdict
-    return Verdict(by_readings(readings, own), reason, measured, "; ".join(changes), readings, own)
+    verdict, own = by_readings(readings)
+    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
 
 
 def _inner_block(share: float) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,42 +20,74 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_share,
+    by_value,
     known_share,
 )
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind, same_result
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.judgement import same_mean
 
 if TYPE_CHECKING:
     import xarray
 
 
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether both laws lead to the same kind of motion and ⟨J⟩ at all a of a range, by the study's criterion."""
-    shares, measured, apart = {}, [], []
+    """Judge whether both laws lead to the same ⟨J⟩ at all a of a range, by the study's tolerance of agreement."""
+    measured, answers = [], {}
     for state in initial:
-        whole = evidence.compared(evidence.of_state("agreement", state))
-        found = evidence.choose(whole, a)
-        agrees = found["agrees"].values
-        known = agrees >= 0
-        unknown = f"the laws could not be compared from {state} {at_values(found['a'].values, ~known)}"
-        shares[state] = known_share(agrees == 1, known, loose_share, unknown)
-        measured.append(Measured(f"share of a at which the laws agree, {state}", shares[state]))
-        parting = whole["parting_a"].item()
-        if np.isfinite(parting):
-            measured.append(Measured(f"least a at which they disagree, {state}", parting))
-        difference = np.abs(found["difference"].values)
-        if np.isfinite(difference[agrees == 1]).any():
-            measured.append(
-                Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference[agrees == 1])))
-            )
-        if shares[state] < 1.0:
-            apart.append(f"they disagree {at_values(found['a'].values, agrees == 0)} ({state})")
+        found = _compared(evidence, state, a)
+        about = found.attrs
+        same = same_mean(
+            {name: found[name].values for name in ("mean_distance", "kind", "difference", "difference_error")},
+            about["synchronization_threshold"],
+            about,
+        )
+        answers[state] = found["a"].values, same
+        difference = np.abs(found["difference"].values[same == Answer.YES])
+        if np.isfinite(difference).any():
+            measured.append(Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference))))
+    return _by_answers(answers, "in ⟨J⟩", measured, a, loose_share)
+
+
+def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
+    """Judge whether both laws lead to the same kind of motion at all a of a range.
+
+    A torus and a closed orbit without synchrony are one kind, see `judgement.compare`.
+    """
+    found = {state: _compared(evidence, state, a) for state in initial}
+    answers = {state: (one["a"].values, one["same_kind"].values) for state, one in found.items()}
+    return _by_answers(answers, "in the kind of motion", [], a, loose_share)
+
+
+def _compared(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
+    return evidence.choose(evidence.compared(evidence.of_state("agreement", state)), a)
+
+
+def _by_answers(
+    answers: Mapping[str, tuple[np.ndarray, np.ndarray]],
+    what: str,
+    measured: Sequence[Measured],
+    a: Range,
+    loose_share: float,
+) -> Verdict:
+    """Return the verdict of a claim that the laws agree; answers : {initial state: (a, an Answer each)}."""
+    shares, numbers, apart = {}, [], []
+    for state, (grid, same) in answers.items():
+        known = same != Answer.UNDETERMINED
+        unknown = f"the laws could not be compared from {state} {at_values(grid, ~known)}"
+        shares[state] = known_share(same == Answer.YES, known, loose_share, unknown)
+        numbers.append(Measured(f"share of a at which the laws agree {what}, {state}", shares[state]))
+        differ = same == Answer.NO
+        if differ.any():
+            numbers.append(Measured(f"least a at which they differ, {state}", float(grid[differ][0])))
+            apart.append(f"they differ {at_values(grid, differ)} ({state})")
         if not known.all():
-            apart.append(f"it is not known {at_values(found['a'].values, ~known)} ({state})")
+            apart.append(f"it is not known {at_values(grid, ~known)} ({state})")
     verdict, text = judge_shares(shares, loose_share)
-    reason = f"The laws agree in ⟨J⟩ and kind of motion at {text} of the values of a with {a}."
-    return Verdict(verdict, reason, measured, "; ".join(apart))
+    reason = f"The laws agree {what} at {text} of the values of a with {a}."
+    return Verdict(verdict, reason, [*numbers, *measured], "; ".join(apart))
 
 
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
@@ -152,38 +184,74 @@ def solutions_agree(
 
 
 def linearization_justified(
-    evidence: Evidence, initial: Sequence[str], law: str, a: Range, tolerance: float, loose: float
+    evidence: Evidence, initial: Sequence[str], law: str, a: Range, part: str, tolerance: float, loose: float
 ) -> Verdict:
     """Judge by how much the laws of friction differ at the fastest slips of the runs, as a share of static friction.
 
     law : the linearized one, whose friction is 1 − aU' and tells the speed; tolerance, loose : shares allowed
-    The laws differ by (aU')²/(1 + aU'): what counts is aU', the slip speeds being some multiple of the driver's, so av.
+    part : of the runs, window or run, the transient included
+    The laws differ by (aU')²/(1 + aU').
     """
-    fastest, where = 0.0, 0.0
-    speeds: list[float] = []
-    for state in initial:
-        runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
-        product = 1.0 - runs["least_friction"].values
-        known = np.isfinite(product)
-        if not known.any():
-            raise NotTestableError(f"no run from {state} completed with {a}")
-        speeds += (product[known] / (runs["a"].values[known] * evidence.config["v"])).tolist()
-        if np.nanmax(product) > fastest:
-            fastest, where = float(np.nanmax(product)), float(runs["a"].values[np.nanargmax(product)])
-    difference = fastest**2 / (1.0 + fastest)
+    grid, speed = _fastest_slips(evidence, initial, law, a, part)
+    product = grid * evidence.config["v"] * speed
+    top = int(np.argmax(product))
+    difference = float(product[top] ** 2 / (1.0 + product[top]))
     measured = [
         Measured("largest difference of the laws on a slipping block", difference),
-        Measured("largest aU'", fastest),
-        Measured("fastest slip over v, least", min(speeds)),
-        Measured("fastest slip over v, most", max(speeds)),
+        Measured("largest aU'", float(product[top])),
+        Measured("fastest slip over v, least", float(speed.min())),
+        Measured("fastest slip over v, most", float(speed.max())),
     ]
     verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
     reason = (
-        f"With {a} the laws differ by at most {difference:.3f} of the static friction on a slipping block (at a = "
-        f"{where:g}). What counts is not a but aU': slips are {min(speeds):.0f} to {max(speeds):.0f} times as fast as "
-        "the driver, so av."
+        f"With {a} the laws differ by at most {difference:.2g} of the static friction on a slipping block (at a = "
+        f"{grid[top]:g}), since slips are {speed.min():.2f} to {speed.max():.2f} times as fast as the driver "
+        f"({'in the window' if part == 'window' else 'in the whole run'})."
     )
     return Verdict(verdict, reason, measured)
+
+
+def springs_help(
+    evidence: Evidence, initial: Sequence[str], law: str, a: Range, claimed: float, tolerance: float, loose: float
+) -> Verdict:
+    """Judge whether stronger springs or larger masses bring the laws nearer to each other, the driver being the same.
+
+    claimed : power of a with which their difference falls: (aU')² would fall with the square of a if U' did not change
+
+    By stronger springs a falls and v grows, and av = cV stays, V being the velocity of the driver and F(0)/(1 + cV) the
+    friction. Linearized motion at one a is proportional to v: so is aU' to cV, times the speed of the slips over v,
+    which is a function of a alone and known from the windows of the runs.
+    """
+    grid, speed = _fastest_slips(evidence, initial, law, a, "window")
+    power = float(np.polyfit(np.log(grid), 2.0 * np.log(speed), 1)[0])
+    least, largest = int(np.argmin(grid)), int(np.argmax(grid))
+    ratio = float((speed[least] / speed[largest]) ** 2)
+    measured = [
+        Measured("power of a with which the difference of the laws falls at fixed V", power),
+        Measured(f"what is left of it from a = {grid[largest]:g} to {grid[least]:g}", ratio),
+    ]
+    reason = (
+        f"At a fixed V stronger springs or larger masses change a, but not av = cV. From a = {grid[largest]:g} down to "
+        f"{grid[least]:g} the difference of the laws on a slipping block only falls to {100 * ratio:.0f} %, as "
+        f"a^{power:.2f} against a^{claimed:g}."
+    )
+    return Verdict(by_value(power, claimed, tolerance, loose), reason, measured)
+
+
+def _fastest_slips(
+    evidence: Evidence, initial: Sequence[str], law: str, a: Range, part: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (a, fastest slip over v) of all runs that completed, from their least friction 1 − aU'."""
+    found = []
+    for state in initial:
+        runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
+        friction = runs["window_least_friction" if part == "window" else "least_friction"].values
+        known = np.isfinite(friction)
+        if not known.any():
+            raise NotTestableError(f"no run from {state} completed with {a}")
+        found.append((runs["a"].values[known], 1.0 - friction[known]))
+    grid, product = (np.concatenate(part) for part in zip(*found, strict=True))
+    return grid, product / (grid * evidence.config["v"])
 
 
 def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.claims.choices import other_tolerances
 from burridge_knopoff.claims.claim import Claim
+from burridge_knopoff.claims.conventions import of_rounded_states
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.margins import turns
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Verdict
+from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -26,10 +28,28 @@ def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None
     parameters = claim.parameters if parameters is None else parameters
     try:
         evidence.check_setting()
-        evidence.check_laws(np.atleast_1d(parameters.get("laws", parameters.get("law", PAPER_LAWS))))
+        evidence.check_laws(_laws(parameters))
         return claim.judge(evidence, **parameters)
     except NotTestableError as error:
         return Verdict(NOT_TESTABLE, f"Not testable here: {error}.")
+
+
+def _laws(parameters: Mapping[str, Any]) -> list[str]:
+    """Return the laws that a claim is on."""
+    return np.atleast_1d(parameters.get("laws", parameters.get("law", PAPER_LAWS))).tolist()
+
+
+def _told(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[tuple[str, Evidence]]) -> Verdict:
+    """Return a verdict with what would turn it, and where states that round to the paper's reach another attractor."""
+    changes = [verdict.changes] if verdict.changes else []
+    a = claim.parameters.get("a")
+    if at := claim.parameters.get("at"):
+        a = Range(first=at, last=at)
+    if verdict.verdict != NOT_TESTABLE and a and "initial" in claim.parameters and claim.topic != "model":
+        states = np.atleast_1d(claim.parameters["initial"]).tolist()
+        changes += of_rounded_states(evidence, states, _laws(claim.parameters), a)
+    found = turns(partial(judge, claim), evidence, claim.parameters, verdict, others)
+    return replace(verdict, changes="; ".join(changes), turns=found)
 
 
 def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collection[str]) -> dict[str, Any]:
@@ -40,14 +60,16 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
     verdicts: dict[str, Verdict] = {}
     # A claim on other claims finds in the evidence what has been judged before it.
     known = replace(evidence, verdicts=verdicts)
+    others = list(other_tolerances(known))
     for claim in claims:
-        verdict = judge(claim, known)
-        verdicts[claim.name] = replace(verdict, turns=turns(partial(judge, claim), known, claim.parameters, verdict))
+        verdicts[claim.name] = _told(claim, known, judge(claim, known), others)
+    independent = [verdicts[claim.name].verdict for claim in claims if not claim.depends_on]
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
         **provenance(__name__),
         "counts": {name: sum(verdict.verdict == name for verdict in verdicts.values()) for name in VERDICTS},
+        "independent_counts": {name: independent.count(name) for name in VERDICTS},
         "claims": [
             {
                 "name": claim.name,
@@ -70,6 +92,7 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                 "turns": list(verdict.turns),
                 "conventions": dict(verdict.conventions),
                 "figure": claim.figure if claim.figure in figures else "",
+                "depends_on": list(claim.depends_on),
             }
             for claim, verdict in zip(claims, verdicts.values(), strict=True)
         ],

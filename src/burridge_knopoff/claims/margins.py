@@ -1,19 +1,23 @@
 """How far a verdict is from turning: the claim is judged again with other tolerances and on other grids.
 
 A tolerance is a choice. Whoever reads a verdict should see which other sensible choice would change it, or leave too
-little to judge: a tolerance within a factor of two, every second value of the grid of a, a compared value of a less, or
-another motion of the inner blocks or level of J for which there are data.
+little to judge: a tolerance of the claim or of the study within a factor of two, every second value of the grid of a,
+the value of a beside the one that it names, a compared value of a less, or another motion of the inner blocks, level of
+J, or part of the runs for which there are data. The verdict under each convention or reading counts as well, where the
+claim depends on them.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, Verdict
+from burridge_knopoff.claims.verdict import CONVENTION, NOT_TESTABLE, READING, Verdict
 
 # Parameters of judges that are a choice of ours: by this factor others may choose them larger or smaller.
 CHOSEN = ("tolerance", "loose", "near", "relative", "much")
@@ -25,60 +29,95 @@ SHARES = ("share", "loose_share", "correlation")
 # Of these there are data for a few values only: the summary whose coordinate lists them.
 LISTED = {"inner_share": "phases", "level": "mean_distance"}
 
+#: The parts of a run that a claim may be judged by: the averaging window, or the whole run with its transient.
+PARTS = ("window", "run")
+
 # Halvings of the factor at which a verdict turns: it is then known to 2 %.
 HALVINGS = 5
 
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
 
 
-def turns(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: Verdict) -> list[str]:
+def turns(
+    judge: Judge,
+    evidence: Evidence,
+    parameters: Mapping[str, Any],
+    verdict: Verdict,
+    others: Iterable[tuple[str, Evidence]] = (),
+) -> list[str]:
     """Return what would turn a verdict, each as «verdict: what it takes»; empty if nothing that is tried does.
 
     judge : judges the claim from evidence and parameters; verdict : what it gives for these
+    others : the evidence by other tolerances of the study, each with its name, see `choices`
     """
     if verdict.verdict == NOT_TESTABLE:
         return []
+
+    def turned(evidence: Evidence, parameters: Mapping[str, Any]) -> str:
+        return difference(verdict, judge(evidence, parameters))
+
     return [
-        *_by_tolerance(judge, evidence, parameters, verdict.verdict),
-        *_by_grid(judge, evidence, parameters, verdict.verdict),
-        *_by_listed(judge, evidence, parameters, verdict.verdict),
+        *_by_tolerance(turned, evidence, parameters),
+        *_by_grid(turned, evidence, parameters),
+        *_by_neighbour(turned, evidence, parameters),
+        *_by_listed(turned, evidence, parameters),
+        *(f"{found}: {name}" for name, other in others if (found := turned(other, parameters))),
     ]
 
 
-def _by_tolerance(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+def difference(verdict: Verdict, other: Verdict) -> str:
+    """Return what another verdict has that a verdict has not: "" if it is the same, under each convention and reading.
+
+    The verdict; where it is the same, and depends on convention or reading, those under which it is another.
+    """
+    if other.verdict != verdict.verdict:
+        return other.verdict
+    if verdict.verdict not in (CONVENTION, READING):
+        return ""
+    known = verdict.conventions
+    changed = [f"{name} {found}" for name, found in other.conventions.items() if found != known.get(name)]
+    changed += [f"{name} {NOT_TESTABLE}" for name in known if name not in other.conventions]
+    return f"{verdict.verdict} ({', '.join(changed)})" if changed else ""
+
+
+# What another verdict than its own a claim would have, from evidence and parameters; "" if it would have the same.
+Turned = Callable[[Evidence, Mapping[str, Any]], str]
+
+
+def _by_tolerance(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
     for name in (*CHOSEN, *SHARES):
         if name not in parameters:
             continue
 
-        def judged(exponent: float, name: str = name) -> str:
-            return judge(evidence, {**parameters, name: _changed(parameters[name], name, exponent)}).verdict
+        def at(exponent: float, name: str = name) -> str:
+            return turned(evidence, {**parameters, name: _changed(parameters[name], name, exponent)})
 
-        found = [(side, *_nearest(judged, side, verdict)) for side in (-1.0, 1.0)]
-        if len({other for _, _, other in found if other != verdict}) == 1 and not any(same for _, same, _ in found):
+        found = [(side, *_nearest(at, side)) for side in (-1.0, 1.0)]
+        if len({other for _, _, other in found if other}) == 1 and not any(same for _, same, _ in found):
             yield f"{found[0][2]}: any other {name} ({parameters[name]:g})"
             continue
         for side, same, other in found:
-            if other != verdict:
+            if other:
                 last = _changed(parameters[name], name, same)
                 relation = "above" if _changed(parameters[name], name, side) > parameters[name] else "below"
                 yield f"{other}: {name} {relation} {last:.3g} ({parameters[name]:g})"
 
 
-def _nearest(judged: Callable[[float], str], side: float, verdict: str) -> tuple[float, str]:
-    """Return the farthest exponent towards a side at which a verdict is still seen, and the verdict beyond.
+def _nearest(turned: Callable[[float], str], side: float) -> tuple[float, str]:
+    """Return the farthest exponent towards a side at which a verdict is still seen, and what it turns to beyond.
 
-    The verdict itself if it is so at the side as well.
+    "" if it is seen at the side as well.
     """
-    same, turned, other = 0.0, side, judged(side)
-    if other == verdict:
-        return side, verdict
+    same, end, other = 0.0, side, turned(side)
+    if not other:
+        return side, ""
     for _ in range(HALVINGS):
-        middle = 0.5 * (same + turned)
-        found = judged(middle)
-        if found == verdict:
-            same = middle
+        middle = 0.5 * (same + end)
+        found = turned(middle)
+        if found:
+            end, other = middle, found
         else:
-            turned, other = middle, found
+            same = middle
     return same, other
 
 
@@ -90,46 +129,61 @@ def _changed(value: float, name: str, exponent: float) -> float:
     return math.copysign(min(max(1.0 - factor * (1.0 - abs(value)), 0.0), 1.0), value)
 
 
-def _by_grid(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+def _by_grid(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
     """Judge on both halves of the grid, or without each of the few values at which solvers are compared."""
     if "relative" in parameters:
         if "solvers" in evidence.summaries:
-            yield from _by_solved(judge, evidence, parameters, verdict)
+            yield from _by_solved(turned, evidence, parameters)
         return
     halves = {}
     for half, first in zip(evidence.halves, ("first", "second"), strict=True):
         # Of one value there is no second half.
         if not all(dataset.sizes.get("a", 1) for dataset in half.summaries.values()):
             continue
-        other = judge(half, parameters).verdict
+        other = turned(half, parameters)
         # One of the halves does not have the only value of a that a claim is on: that is no other choice.
         if other != NOT_TESTABLE or "at" not in parameters:
             halves[first] = other
     found = set(halves.values())
     if len(halves) == 2 and len(found) == 1:
-        yield from (f"{other}: every second value of a" for other in found if other != verdict)
+        yield from (f"{other}: every second value of a" for other in found if other)
     else:
         yield from (
-            f"{other}: every second value of a, from the {first} on"
-            for first, other in halves.items()
-            if other != verdict
+            f"{other}: every second value of a, from the {first} on" for first, other in halves.items() if other
         )
 
 
-def _by_solved(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+def _by_solved(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
     solvers = evidence.summaries["solvers"]
     for a in solvers["a"].values.tolist():
         without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
-        other = judge(replace(evidence, summaries=without), parameters).verdict
-        if other != verdict:
+        other = turned(replace(evidence, summaries=without), parameters)
+        if other:
             yield f"{other}: without a = {a:g}"
 
 
-def _by_listed(judge: Judge, evidence: Evidence, parameters: Mapping[str, Any], verdict: str) -> Iterator[str]:
+def _by_neighbour(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
+    """Judge a claim on one value of a at the values of the grid beside it."""
+    if "at" not in parameters:
+        return
+    grids = [dataset["a"].values for dataset in evidence.summaries.values() if "a" in dataset.dims]
+    grid = max((values for values in grids if parameters["at"] in values), key=len, default=np.array([]))
+    place = int(np.searchsorted(grid, parameters["at"]))
+    for value in grid[[k for k in (place - 1, place + 1) if 0 <= k < len(grid)]].tolist():
+        other = turned(evidence, {**parameters, "at": value})
+        if other and other != NOT_TESTABLE:
+            yield f"{other}: at a = {value:g} ({parameters['at']:g})"
+
+
+def _by_listed(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
     for name, summary in LISTED.items():
         if name not in parameters or summary not in evidence.summaries:
             continue
         for value in evidence.summaries[summary][name].values.tolist():
-            other = judge(evidence, {**parameters, name: value}).verdict
-            if other != verdict:
+            other = turned(evidence, {**parameters, name: value})
+            if other:
                 yield f"{other}: {name} = {value:g} ({parameters[name]:g})"
+    for part in PARTS if "part" in parameters else ():
+        other = turned(evidence, {**parameters, "part": part})
+        if other:
+            yield f"{other}: by the {'whole run' if part == 'run' else part}"

@@ -88,23 +88,30 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
 def near_equilibrium(
     evidence: Evidence, initial: tuple[str, str], law: str, at: float, near: float, loose: float
 ) -> Verdict:
-    """Judge whether the first block of one state begins close to the equilibrium, measured by where another begins.
+    """Judge whether the first block of one state begins close to its equilibrium, and that of another does not.
 
     initial : the state that is close, the state that is not
-    near, loose : it holds if the distance is at most this share of the other state's, loosely if at most that
+    near, loose : close is up to this many amplitudes of the block in the motion that the first state comes to, loosely
+        up to that many
     """
     for name in initial:
         evidence.check_state(name)
     position = evidence.at(evidence.summary("equilibrium").sel(law=law), at)["equilibrium_position"].values
+    run = evidence.at(evidence.of_state("stick_slip", initial[0]).sel(law=law), at)
+    amplitude = run["position_amplitude"].values[0]
+    if not np.isfinite(amplitude):
+        raise NotTestableError(f"the run from {initial[0]} at a = {at:g} under the {law} law did not complete")
     distances = [abs(PAPER_STATES[name].position[0] - position[0]) for name in initial]
-    share = distances[0] / distances[1]
-    verdict = HOLDS if share <= near else LOOSELY if share <= loose else FAILS
+    close, far = (distance / amplitude for distance in distances)
+    verdict = FAILS if close > loose or far <= near else HOLDS if close <= near else LOOSELY
     measured = [
         Measured(f"|U₁(0) − U₁ᵉ|, {name}", float(value)) for name, value in zip(initial, distances, strict=True)
     ]
+    measured.append(Measured(f"amplitude of block 1 in the motion from {initial[0]}", float(amplitude)))
     reason = (
         f"At a = {at:g} ({law}) the first block begins {distances[0]:.3f} from its equilibrium in {initial[0]} and "
-        f"{distances[1]:.3f} in {initial[1]}."
+        f"{distances[1]:.3f} in {initial[1]}; in the motion that {initial[0]} comes to it has an amplitude of "
+        f"{amplitude:.3f}."
     )
     return Verdict(verdict, reason, measured)
 

@@ -68,29 +68,25 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
-def edge_of_synchrony(
-    evidence: Evidence, initial: str, upper: bool, claimed: float, tolerance: float, loose: float
-) -> Verdict:
-    """Judge the least or the largest a at which an initial state synchronizes, under both laws.
+def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
+    """Judge the largest a at which an initial state synchronizes, under both laws.
 
-    It lies between two neighbours of the grid, a = 0 left out. Synchrony is judged by the attractor reached:
-    near its loss a run is too short to get there. Where the synchronized orbit loses stability between them, a_c is the
-    edge.
+    It lies between two neighbours of the grid. Synchrony is judged by the attractor reached: near its loss a run is too
+    short to get there. Where the synchronized orbit loses stability between them, a_c is the edge.
     """
     evidence.check_state(initial)
     attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
-    side = "largest" if upper else "least"
     verdicts, measured, texts = [], [], []
     for law in PAPER_LAWS:
         branch = attractors["initial_branch"].sel(law=law, initial=initial).values
-        low, high = _edge(attractors["a"].values[branch >= 0], branch[branch >= 0] == 0, upper)
+        low, high = _edge(attractors["a"].values[branch >= 0], branch[branch >= 0] == 0)
         if not np.isfinite(low + high):
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
-        measured.append(Measured(f"{side} a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
+        measured.append(Measured(f"largest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
         proved = evidence.proved_critical_a(law)
         critical, error = proved or evidence.critical_a(law)
-        if upper and low <= critical <= high:
+        if low <= critical <= high:
             name = f"a_c, at which the synchronized orbit loses stability, {law}"
             verdicts.append(by_value(critical, claimed, tolerance, loose))
             measured.append(Measured(name, critical, error, proved=proved is not None))
@@ -98,38 +94,14 @@ def edge_of_synchrony(
             texts[-1] = f"at a_c = {critical:.5g}, where the synchronized orbit loses stability ({law}{certain})"
         else:
             verdicts.append(by_interval(low, high, claimed, tolerance, loose))
-    reason = f"The {side} a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
-    if upper or "orbits" not in evidence.summaries:
-        return Verdict(worst(verdicts), reason, measured)
-    multipliers = _multipliers_near_zero(evidence)
-    attracts = multipliers and all(abs(item.value) < 1.0 for item in multipliers)
-    more = (
-        " The synchronized orbit attracts down to the least a of the grid: there is no lower edge." if attracts else ""
-    )
-    return Verdict(worst(verdicts), reason + more, [*measured, *multipliers])
+    reason = f"The largest a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
+    return Verdict(worst(verdicts), reason, measured)
 
 
-def _edge(grid: np.ndarray, synchronized: np.ndarray, upper: bool) -> tuple[float, float]:
-    """Return the neighbours of the grid between which synchrony begins or ends; NaN if the grid does not hold them."""
+def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
+    """Return the neighbours of the grid between which synchrony ends; NaN if the grid does not hold them."""
     index = np.flatnonzero(synchronized)
-    if not len(index):
-        return np.nan, np.nan
-    if upper:
-        return (grid[index[-1]], grid[index[-1] + 1]) if index[-1] + 1 < len(grid) else (np.nan, np.nan)
-    # There is no a below 0.
-    return (grid[index[0] - 1] if index[0] else 0.0), grid[index[0]]
-
-
-def _multipliers_near_zero(evidence: Evidence) -> list[Measured]:
-    """Return the transverse multipliers of synchrony at the least positive a of the grid, if there is an orbit."""
-    orbits = evidence.summary("orbits")
-    orbits = orbits.isel(a=orbits["a"].values > 0.0)
-    if not orbits.sizes["a"]:
-        return []
-    orbits = orbits.isel(a=0)
-    name = f"transverse multiplier at a = {orbits['a'].item():g}"
-    values = {law: orbits["transverse_multiplier"].sel(law=law).item() for law in PAPER_LAWS}
-    return [Measured(f"{name}, {law}", value) for law, value in values.items() if np.isfinite(value)]
+    return (grid[index[-1]], grid[index[-1] + 1]) if len(index) and index[-1] + 1 < len(grid) else (np.nan, np.nan)
 
 
 def mean_distance_at(
@@ -174,8 +146,33 @@ def distance_vanishes(
     settled = float(runs["settling_time"].sel(level=level).item())
     text = f"is below {level:g} from τ = {settled:g} on" if np.isfinite(settled) else f"does not stay below {level:g}"
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
+    rate, expected = _decay(runs, level), _transverse_rate(evidence, law, at)
+    decay = ""
+    if np.isfinite(rate):
+        measured.append(Measured("rate at which J falls", rate))
+        decay = f", falling as exp(−{rate:.3g} τ)"
+    if np.isfinite(expected):
+        measured.append(Measured("rate by the transverse multiplier of synchrony", expected))
+        decay += f"; the transverse multiplier of synchrony gives a rate of {expected:.3g}"
     return Verdict(
-        verdict,
-        f"J from {initial} at a = {at:g} ({law}) {text}; the claim says τ = {by:g}.",
-        measured,
+        verdict, f"J from {initial} at a = {at:g} ({law}) {text}{decay}. The claim says τ = {by:g}.", measured
     )
+
+
+def _decay(runs: xarray.Dataset, least: float) -> float:
+    """Return the rate at which J falls between the two lowest levels above the least; NaN if it reaches only one."""
+    levels = runs["level"].values
+    times = runs["settling_time"].values
+    above = np.flatnonzero((levels > least) & np.isfinite(times))
+    first, last = above[np.argsort(-levels[above])][-2:] if len(above) > 1 else (0, 0)
+    time = times[last] - times[first]
+    return float(np.log(levels[first] / levels[last]) / time) if time > 0.0 else np.nan
+
+
+def _transverse_rate(evidence: Evidence, law: str, at: float) -> float:
+    """Return the rate at which the end blocks of synchronized motion approach each other; NaN if no orbit is known."""
+    orbits = evidence.summaries.get("orbits")
+    if orbits is None or at not in orbits["a"].values:
+        return np.nan
+    orbit = orbits.sel(law=law, a=at)
+    return float(-np.log(abs(orbit["transverse_multiplier"].item())) / orbit["period"].item())

@@ -11,11 +11,12 @@ import numpy as np
 HOLDS = "holds"
 LOOSELY = "holds loosely"
 CONVENTION = "depends on convention"
+READING = "depends on reading"
 FAILS = "fails"
 NOT_TESTABLE = "not testable"
 
 #: All verdicts, in the order in which they are counted.
-VERDICTS = (HOLDS, LOOSELY, CONVENTION, FAILS, NOT_TESTABLE)
+VERDICTS = (HOLDS, LOOSELY, CONVENTION, READING, FAILS, NOT_TESTABLE)
 
 # More spans of a than these are counted instead of listed.
 MOST_SPANS = 8
@@ -45,11 +46,11 @@ class Measured:
 class Verdict:
     """What a claim is worth: the verdict, why, the measured numbers, and where the verdict would be another.
 
-    changes : ranges of a, conventions, or motions of the inner block, for which the verdict changes or may; empty where
-        there is none
-    conventions : verdict under each convention «contact, start», or for each motion of the inner block, where the claim
+    changes : ranges of a, conventions, readings, or states that round to the paper's, for which the verdict changes or
+        may; empty where there is none
+    conventions : verdict under each convention «contact, start», or under each reading of the claim's words, where it
         can be judged under each
-    own : verdict under the study's own convention, or for the motion of the inner block that the claim names
+    own : verdict under the study's own convention, or under the first reading
     turns : other choices of judgement that would turn it, see `margins`
     """
 

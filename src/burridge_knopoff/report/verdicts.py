@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.claims.formats import by_topic, content_digest, untestable
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
 from burridge_knopoff.provenance.seal import BadFile
 
 #: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
-SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", FAILS: "✗", NOT_TESTABLE: "–"}
+SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", NOT_TESTABLE: "–"}
 
 
 @dataclass(frozen=True)
@@ -20,12 +20,14 @@ class Verdicts:
     """The judged statements of the paper.
 
     counts : {verdict: number of statements}, every verdict in the order of SIGNS
+    independent : the same of the statements that neither repeat others nor follow from them
     topics : {topic: its claims}, each claim a mapping as in the file, without those that cannot be judged
     untestable : {reason: claims that cannot be judged for it}
     setting : v, contact and start for which they were judged, with the provenance
     """
 
     counts: dict[str, int]
+    independent: dict[str, int]
     topics: dict[str, list[dict[str, Any]]]
     untestable: dict[str, list[dict[str, Any]]]
     setting: dict[str, Any]
@@ -37,7 +39,7 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
     Raises BadFile if it is not what the rule `claims` wrote.
     """
     if path is None:
-        return Verdicts({}, {}, {}, {})
+        return Verdicts({}, {}, {}, {}, {})
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         written = content.pop("digest") == content_digest(content)
@@ -46,4 +48,5 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
     if not written:
         raise BadFile(path, "has other content than was written")
     claims = content.pop("claims")
-    return Verdicts(content.pop("counts"), by_topic(claims), untestable(claims), content)
+    counts, independent = content.pop("counts"), content.pop("independent_counts")
+    return Verdicts(counts, independent, by_topic(claims), untestable(claims), content)

@@ -38,6 +38,9 @@ _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
 _SWEEP = ("direction", "sweep", "a")
 DIRECTIONS = ("upward", "downward")
+#: Half of the last digit to which the paper gives initial positions: by so much its initial states may be rounded.
+ROUNDING = 5e-4
+CORNERS = 64
 _V = Variable
 ALONG = {"comment": "of attractors that an initial state of the study reaches under some convention"}
 VARIABLES = {
@@ -70,6 +73,13 @@ VARIABLES = {
     "velocity_frequency": _V(
         (*_SLOT, "block"), "f8", "frequency, in cycles per unit time, of the highest peak of the spectrum of U'", ALONG
     ),
+    "rounded_branch": _V(
+        ("initial", "a", "corner"),
+        "i2",
+        "branch reached by states whose numbers are all 0.0005 above or below those of an initial state, under the "
+        "study's own convention",
+        NOTHING,
+    ),
     "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
     "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor on which a sweep of a is"),
 }
@@ -95,6 +105,7 @@ def one_law(
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit))
     values.update(_followed(found, values["initial_branch"], values["initial_side"]))
+    values.update(_rounded(found, initial, settings.label_limit, start))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -180,6 +191,37 @@ def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray) -> dict
                 values["velocity_correlation"][k, slot] = one.velocity_correlation
                 values["velocity_frequency"][k, slot] = one.velocity_frequency
     return values
+
+
+def _rounded(
+    found: Continuation, states: Sequence[InitialState], label_limit: float, start: str
+) -> dict[str, np.ndarray]:
+    """Return which branch the corners of each initial state reach under the convention of the models and `start`."""
+    shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
+    values = empty(VARIABLES, shape, "rounded")
+    for k, place in enumerate(found.grid):
+        model = found.models[place]
+        for n, state in enumerate(states):
+            if model.contact == "symmetric" or min(state.velocity) >= 0.0:
+                starts = [model.begin(corner, start) for corner in corners(state, model.contact)]
+                reached, _ = label(model, found.attractors[place], starts, label_limit)
+                known = reached != UNDETERMINED
+                values["rounded_branch"][n, k, known] = found.branch[place][reached[known]]
+    return values
+
+
+def corners(state: InitialState, contact: str) -> list[InitialState]:
+    """Return CORNERS states, each number of which is ROUNDING above or below that of a state.
+
+    With three blocks these are all corners of the box around it; in longer chains numbers six apart move together.
+    contact : if one_sided, velocities are 0 at least
+    """
+    blocks = len(state.position)
+    above = np.arange(CORNERS)[:, None] >> (np.arange(2 * blocks) % 6) & 1
+    numbers = np.array([*state.position, *state.velocity]) + ROUNDING * (2 * above - 1)
+    if contact == "one_sided":
+        numbers[:, blocks:] = np.maximum(numbers[:, blocks:], 0.0)
+    return [InitialState(state.name, tuple(row[:blocks].tolist()), tuple(row[blocks:].tolist())) for row in numbers]
 
 
 def _labels_of_states(

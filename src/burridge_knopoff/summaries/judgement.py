@@ -33,13 +33,23 @@ def compare(
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
     determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
     values["same_kind"][...] = np.where(determined, same_result(*kind), Answer.UNDETERMINED)
-    beyond, margin = excess(values, threshold, agreement), agreement["standard_errors"] * values["difference_error"]
-    apart = (values["same_kind"] == Answer.NO) | (beyond > margin)
-    together = determined & ((beyond <= -margin) | (kind == MotionKind.SYNCHRONIZED).all(axis=0))
+    same = same_mean(values, threshold, agreement)
+    apart = (values["same_kind"] == Answer.NO) | (same == Answer.NO)
+    together = determined & (same == Answer.YES)
     values["agrees"][...] = np.select([apart, together], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
     for j, agrees in enumerate(values["agrees"]):
         parted = a[agrees == Answer.NO]
         values["parting_a"][j] = parted[0] if len(parted) else np.nan
+
+
+def same_mean(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
+    """Return whether ⟨J⟩ agrees, an Answer each, shape (…, a); values as in `compare`, with difference and its error.
+
+    Of two motions that are synchronized it does. Within its errors of the tolerance it is undetermined.
+    """
+    beyond, margin = excess(values, threshold, agreement), agreement["standard_errors"] * values["difference_error"]
+    within = (beyond <= -margin) | (values["kind"] == MotionKind.SYNCHRONIZED).all(axis=0)
+    return np.select([beyond > margin, within], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
 
 
 def excess(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:

@@ -14,8 +14,8 @@ from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
 
-#: Levels of J below which a run has to stay to have settled: the eye's, that of a figure, and synchrony.
-LEVELS = (1.0e-2, 1.0e-3, 1.0e-6)
+#: Levels of J below which a run has to stay to have settled: the eye's, that of a figure, synchrony, and rounding.
+LEVELS = (1.0e-2, 1.0e-3, 1.0e-6, 2.0e-15)
 LEVEL = Variable(("level",), "f8", "level of J", coordinate=True)
 
 _AXES = ("law", "initial", "a")
@@ -29,6 +29,7 @@ VARIABLES = {
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
     "synchronized": Variable(_AXES, "i1", "whether <J> is below the threshold", YES_OR_NO),
     "least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the whole run"),
+    "window_least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the window"),
     "window_least_spring_force": Variable(_AXES, "f8", "least spring force s on a stuck block in the window"),
     "event_count": Variable(_AXES, "i8", "number of stops and starts in the whole run"),
     "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),

@@ -54,9 +54,12 @@ VARIABLES = {
         {"comment": AGAIN},
     ),
     "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
+    "position_amplitude": Variable(
+        _BLOCK, "f8", "half of the range of the position relative to the driver, of the samples of the kept trajectory"
+    ),
 }
 BLOCK = Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True)
-_READ = ["status", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
+_READ = ["status", "position", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
 
 
 def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarray.Dataset:
@@ -89,6 +92,7 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
             values["velocity_frequency_error"][index][n] = 0.5 / duration if math.isfinite(frequency) else np.nan
         values["velocity_correlation"][index] = correlation(record[:, 0], record[:, -1])
         values["least_velocity"][index] = velocity.min(axis=0)
+        values["position_amplitude"][index] = 0.5 * np.ptp(read["position"], axis=0)
     return summary(
         "Stick-slip cycles of each block, and how the velocities of the blocks go together",
         VARIABLES,

@@ -1,0 +1,104 @@
+"""The evidence of a study if its own tolerances were others: those of agreement, and those of the kinds of motion.
+
+A kind of motion is changed where the rule that gives it says another one for the exponents, section points and ⟨J⟩ of
+the run. Kinds of attractors, which longer windows have shown, stay as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.stability.motion import MotionKind, motion_kind
+from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.summaries.judgement import compare
+
+FACTORS = (0.5, 2.0)
+AGREEMENT = ("relative_tolerance", "standard_errors")
+MOTION = ("zero_exponent", "chaotic_exponent", "standard_errors")
+THRESHOLD = "synchronization_threshold"
+
+
+def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
+    """Yield («tolerance = another value (its own)», the evidence with it), each half and twice as large."""
+    summaries, motion = evidence.summaries, dict(evidence.config["motion"])
+    agreement = summaries["agreement"].attrs if "agreement" in summaries else {}
+    for factor in FACTORS:
+        for name in AGREEMENT if agreement else ():
+            changed = {**agreement, name: factor * agreement[name]}
+            yield _said(f"agreement.{name}", agreement[name], factor), _compared(evidence, changed)
+        if "lyapunov" not in summaries:
+            continue
+        for name in MOTION:
+            value = motion.get(name, getattr(MotionSettings(), name))
+            other = replace(evidence, config={**evidence.config, "motion": {**motion, name: factor * value}})
+            yield _said(f"motion.{name}", value, factor), _with_kinds(other, evidence, agreement)
+        if THRESHOLD in agreement:
+            changed = {**agreement, THRESHOLD: factor * agreement[THRESHOLD]}
+            yield _said(THRESHOLD, agreement[THRESHOLD], factor), _with_kinds(evidence, evidence, changed)
+
+
+def _said(name: str, value: float, factor: float) -> str:
+    return f"{name} = {factor * value:g} ({value:g})"
+
+
+def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
+    """Return evidence with the kinds of the runs, and which synchronize, by other tolerances than `evidence` has."""
+    lyapunov = evidence.summaries["lyapunov"]
+    own = evidence.summaries.get("agreement")
+    threshold = {} if own is None else own.attrs
+    before, after = (_kinds(lyapunov, one.config, about) for one, about in ((evidence, threshold), (other, agreement)))
+    kind = lyapunov["kind"]
+    changed = {"lyapunov": lyapunov.assign(kind=kind.copy(data=np.where(after != before, after, kind.values)))}
+    if own is not None:
+        runs = own["kind"]
+        same = runs.values == kind.sel(law=runs["law"], initial=runs["initial"], a=runs["a"]).values
+        moved = changed["lyapunov"]["kind"].sel(law=runs["law"], initial=runs["initial"], a=runs["a"]).values
+        changed["agreement"] = own.assign(kind=runs.copy(data=np.where(same, moved, runs.values)))
+    if THRESHOLD in agreement and "mean_distance" in evidence.summaries:
+        means = evidence.summaries["mean_distance"]
+        below = (means["mean_distance"] < agreement[THRESHOLD]).astype(means["synchronized"].dtype)
+        told = agreement[THRESHOLD] != threshold.get(THRESHOLD)
+        changed["mean_distance"] = means.assign(synchronized=below) if told else means
+    result = replace(other, summaries={**evidence.summaries, **changed})
+    return _compared(result, agreement) if agreement else result
+
+
+def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[str, Any]) -> np.ndarray:
+    """Return the kind of motion of each run by the tolerances of a config and a threshold of synchrony."""
+    threshold = {THRESHOLD: about[THRESHOLD]} if THRESHOLD in about else {}
+    settings = MotionSettings(**{**config["motion"], **threshold}).at_speed(config["v"])
+    mean, period, exponent, error = (
+        lyapunov[name].values for name in ("mean_distance", "section_period", "lyapunov_exponent", "lyapunov_error")
+    )
+    kinds = np.full(mean.shape, int(MotionKind.UNDETERMINED))
+    for at in np.argwhere(np.isfinite(mean)):
+        run = tuple(at)
+        kinds[run] = motion_kind(float(mean[run]), int(period[run]), exponent[run], error[run], settings)
+    return kinds
+
+
+def _compared(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
+    """Return evidence in which the laws are compared by other tolerances, for three blocks and for two."""
+    changed = {}
+    for name in ("agreement", "two_blocks"):
+        if name not in evidence.summaries:
+            continue
+        dataset = evidence.summaries[name].copy(deep=True)
+        told = {key: dataset[key].values for key in ("difference", "difference_error", "same_kind", "agrees")}
+        told["parting_a"] = dataset["parting_a"].values
+        for i in range(dataset.sizes["other_law"]):
+            pair = {key: dataset[key].values[[0, i + 1]] for key in ("mean_distance", "mean_distance_error", "kind")}
+            compare(
+                {**pair, **{key: value[i] for key, value in told.items()}},
+                dataset["a"].values,
+                agreement[THRESHOLD],
+                agreement,
+            )
+        changed[name] = dataset.assign_attrs({key: agreement[key] for key in (*AGREEMENT, THRESHOLD)})
+    return replace(evidence, summaries={**evidence.summaries, **changed})
