@@ -5,7 +5,8 @@ The library is what is imported from here; `help` of each name has its shapes, u
 The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built in, `FormulaLaw` for one of one's own);
 an `InitialState` to begin from, an `Instant` on the way.
 
-Runs: `simulate` makes a `Trajectory` by `Settings`, `sweep` many of them along a; `open_study` reads those of a study.
+Runs: `simulate` makes a `Trajectory` by `Settings`, seen on a `Section`; `sweep` makes many of them along a;
+`open_study` reads those of a study.
 
 Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
 `SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
@@ -44,6 +45,7 @@ __all__ = [
     "OrbitError",
     "PeriodicOrbit",
     "SearchSettings",
+    "Section",
     "Settings",
     "SteadyMotion",
     "Symmetry",
@@ -84,6 +86,7 @@ if TYPE_CHECKING:
     from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
     from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
     from burridge_knopoff.orbits.symmetry import Symmetry
+    from burridge_knopoff.running.section import Section
     from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.trajectory import Trajectory
     from burridge_knopoff.stability.attractor import Attractor
@@ -113,6 +116,7 @@ _HOME = {
     "OrbitError": "orbits.orbit",
     "PeriodicOrbit": "orbits.periodic",
     "SearchSettings": "stability.settings",
+    "Section": "running.section",
     "Settings": "running.settings",
     "SteadyMotion": "stability.steady",
     "Symmetry": "orbits.symmetry",

@@ -115,7 +115,7 @@ def units_of(study: Study) -> dict[str, float]:
         "simulate": study.blocks * time,
         "simulate_solver": study.blocks * time,
         "attractors_of_law": study.blocks * states * (search["transient"] + search["window"]) * searched,
-        "two_blocks": pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,
+        "two_blocks": 2 * pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,
         "watch_chain": samples * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
         "phases_of_law": phases["samples"]
         * prod(len(phases[name]) for name in ("a", "inner_share", "amplitude", "phase_difference")),

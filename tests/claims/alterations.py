@@ -481,6 +481,17 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     ("two_blocks_agree", HOLDS, alter("two_blocks", "margin", 7.0, a=0.1, state=2)),
     ("two_blocks_agree", NOT_TESTABLE, alter("two_blocks", "agrees", -1, state=1, a=lambda a: a > 0.05)),
+    ("two_blocks_agree", HOLDS, alter("two_blocks", "agrees", 0, chain="both_pulled")),
+    ("periodic_for_one_block", FAILS, alter("two_blocks", "one_block_kind", QUASIPERIODIC, law="nonlinear")),
+    ("periodic_for_one_block", FAILS, alter("two_blocks", "one_block_stop_rate", 0.0)),
+    ("periodic_for_one_block", LOOSELY, alter("two_blocks", "one_block_kind", CHAOTIC, a=0.1)),
+    ("periodic_for_one_block", FAILS, alter("lyapunov", "kind", PERIODIC)),
+    (
+        "periodic_for_one_block",
+        HOLDS,
+        both(alter("lyapunov", "kind", PERIODIC), alter("two_blocks", "kind", CHAOTIC, chain="train", a=0.3)),
+    ),
+    ("periodic_for_one_block", NOT_TESTABLE, alter("two_blocks", "one_block_kind", -1, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, alter("solvers", "difference", 0.05, solver="rk4")),
     ("solutions_agree", FAILS, alter("solvers", "difference", 0.001, solver="rk4")),
     # What is granted is a thousandth of ⟨J⟩, three standard errors, or the threshold of synchrony.

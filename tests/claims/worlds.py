@@ -21,7 +21,7 @@ A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in 
 STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
 PAIR = ("other_law", "initial", "a")
-PAIR_OF_STATES = ("other_law", "state", "a")
+PAIR_OF_STATES = ("chain", "other_law", "state", "a")
 BLOCK = (*POINT, "block")
 STATE = ("position", "velocity")
 BLOCKS = np.array([1, 2, 3])
@@ -95,10 +95,13 @@ def paper_world() -> Summaries:
             {
                 **_compared(PAIR_OF_STATES, 1e-5),
                 "margin": (PAIR_OF_STATES, -40.0),
-                "mean_distance": (("law", "state", "a"), 0.14),
-                "mean_distance_error": (("law", "state", "a"), 1e-5),
-                "kind": (("law", "state", "a"), np.int8(QUASIPERIODIC)),
+                "mean_distance": (("chain", "law", "state", "a"), 0.14),
+                "mean_distance_error": (("chain", "law", "state", "a"), 1e-5),
+                "kind": (("chain", "law", "state", "a"), np.int8(QUASIPERIODIC)),
+                "one_block_kind": (("law", "a"), np.int8(PERIODIC)),
+                "one_block_stop_rate": (("law", "a"), 0.15),
             },
+            chain=["train", "both_pulled"],
             other_law=["nonlinear"],
             state=np.arange(4),
             a=np.linspace(0.02, 0.4, 20).round(2),

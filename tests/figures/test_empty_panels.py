@@ -31,6 +31,11 @@ def test_fractions_of_no_states_and_sweeps_of_no_attractors():
     assert words(basin_fractions.draw(attractors)) == [["no states were sampled"], ["no attractor to follow"]]
 
 
+def down(points: xr.Dataset) -> xr.Dataset:
+    """Return the same points, of which the first crosses downward as well."""
+    return points.assign(crossing_direction=("crossing", [-1, -1]), crossing_velocity=-abs(points["crossing_velocity"]))
+
+
 def test_all_values_of_a_stay_on_the_axis_of_section_points():
     flag = {"flag_meanings": "linearized"}
     points = xr.Dataset(
@@ -45,8 +50,10 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
     assert panel.get_xlim() == pytest.approx((1.94, 5.06))
     # Rounding of uniform sliding is no crossing.
     assert words(bifurcation.draw(points.assign(crossing_velocity=1e-10 * points["crossing_velocity"]))) == [
-        ["no crossings"]
+        [bifurcation.STAYS]
     ]
+    for nothing in (points.isel(crossing=[]).assign(crossing_count=0 * points["crossing_count"]), down(points)):
+        assert words(bifurcation.draw(nothing)) == [["W never crosses 0 upward: the section is never reached"]]
     assert words(bifurcation.draw(points)) == [[]]
 
 

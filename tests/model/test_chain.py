@@ -13,13 +13,16 @@ strength = st.floats(0.1, 5.0)
 
 @st.composite
 def chains(draw):
-    blocks, ends = draw(st.integers(2, 9)), draw(st.sampled_from(["open", "ring"]))
+    blocks = draw(st.integers(1, 9))
+    ends = draw(st.sampled_from(["open", "ring"])) if blocks > 1 else "open"
 
     def numbers(count):
         return draw(st.one_of(strength, st.lists(strength, min_size=count, max_size=count)))
 
     coupling, threshold = numbers(blocks - (ends == "open")), numbers(blocks)
-    return Chain(blocks, coupling, numbers(blocks) if draw(st.booleans()) else "neighbours", threshold, ends)
+    some = st.lists(st.one_of(st.just(0.0), strength), min_size=blocks, max_size=blocks).filter(any)
+    pulling = draw(st.one_of(strength, some, st.just("neighbours")))
+    return Chain(blocks, coupling, pulling, threshold, ends)
 
 
 @given(chains())
@@ -47,7 +50,7 @@ def test_the_algebra_of_the_papers_chains(blocks):
 def test_mirror_symmetry(chain):
     matrix, threshold = chain.stiffness, chain.thresholds
     mirrored = (matrix == matrix[::-1, ::-1]).all() and (threshold == threshold[::-1]).all()
-    assert chain.is_mirror_symmetric == mirrored
+    assert chain.is_mirror_symmetric == (mirrored and chain.blocks > 1)
     if mirrored:
         offset = chain.sliding_offset(0.9)
         assert (offset == offset[::-1]).all()
@@ -79,17 +82,21 @@ def test_the_chain_of_the_paper():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        *(({"blocks": blocks}, f"blocks: {blocks} is not allowed") for blocks in (1, 0, -3, 5000)),
+        *(({"blocks": blocks}, f"blocks: {blocks} is not allowed") for blocks in (0, -3, 5000)),
         *(({"blocks": blocks}, f"blocks: {blocks} is not allowed: a whole number") for blocks in (2.0, True)),
         ({"ends": "loose"}, "chain.ends: 'loose'"),
         ({"coupling": [1.0]}, "chain.coupling: 1 numbers for 2 springs"),
         ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: 2 numbers for 3 springs"),
         ({"threshold": [1.0, 2.0]}, "chain.threshold: 2 numbers for 3 blocks"),
-        ({"pulling": "all"}, "chain.pulling: 'all' is not allowed: neighbours or a number"),
+        ({"pulling": "all"}, "chain.pulling: 'all' is not allowed: neighbours or 0 or a number"),
         ({"threshold": 0.0}, "chain.threshold: 0.0 is not allowed"),
         ({"coupling": -1.0}, "chain.coupling: -1.0 is not allowed"),
         ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling[1]: nan is not allowed"),
         ({"coupling": True}, "chain.coupling: True is not allowed"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": [0, 0, 0]}, "chain.pulling: got (0.0, 0.0, 0.0), expected"),
+        ({"pulling": 1e-7}, "chain.pulling: 1e-07 is not allowed: neighbours or 0 or a number ≥ 1e-06"),
+        ({"blocks": 1, "ends": "ring"}, "chain.ends: got ring, expected open for one block"),
     ],
 )
 def test_refused(options, message):

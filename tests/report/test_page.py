@@ -55,7 +55,7 @@ def test_what_is_missing_is_said_in_a_line(page):
     for line in (
         "No synchronized orbit was computed",
         "This study has no maps of basins.",
-        "No run crossed the section W = 0 in its window;",
+        "W never crosses 0 upward: the section is never reached, in the window of any run;",
         "Longer chains were not part of this study",
         "Snakemake left no benchmark files",
     ):

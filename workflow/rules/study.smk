@@ -132,7 +132,16 @@ def prepare_results():
         record_study()
     except OSError as error:
         sys.exit(f"{error}")
-    if "basins" not in STUDY.left_out and not STUDY.basin_maps and GIVEN.get("basins"):
+    if STUDY.blocks == 1:
+        print(
+            "one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks",
+            file=sys.stderr,
+        )
+    elif (
+        "basins" not in STUDY.left_out
+        and not STUDY.basin_maps
+        and GIVEN.get("basins")
+    ):
         print(
             "basins: no map: give basins.a; none of its usual values is in the grid",
             file=sys.stderr,
@@ -235,7 +244,10 @@ def proved_config():
 
 def motion_config():
     """Return how kinds of motion are told."""
-    return {**STUDY.config["motion"], **keys("synchronization_threshold")}
+    return {
+        **STUDY.config["motion"],
+        **keys("synchronization_threshold", "section"),
+    }
 
 
 def kept_folder(what, *decides):

@@ -25,7 +25,8 @@ rule two_blocks:
         two_blocks=CHAINS["two_blocks"],
         settings=keys("start", "transient", "window"),
         search={key: STUDY.config["attractors"][key] for key in OF_GIVEN_STATES},
-        motion=motion_config(),
+        # A block of the study's section need not be there: the sum always is.
+        motion={key: value for key, value in motion_config().items() if key != "section"},
         sources=sources("two_blocks"),
     message:
         "two blocks: each law against the first one"

@@ -90,15 +90,13 @@ def _compared(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
         if name not in evidence.summaries:
             continue
         dataset = evidence.summaries[name].copy(deep=True)
-        told = {key: dataset[key].values for key in ("difference", "difference_error", "same_kind", "agrees")}
-        told["parting_a"] = dataset["parting_a"].values
-        for i in range(dataset.sizes["other_law"]):
-            pair = {key: dataset[key].values[[0, i + 1]] for key in ("mean_distance", "mean_distance_error", "kind")}
-            compare(
-                {**pair, **{key: value[i] for key, value in told.items()}},
-                dataset["a"].values,
-                agreement[THRESHOLD],
-                agreement,
-            )
+        for one in [dataset.sel(chain=chain) for chain in dataset["chain"]] if "chain" in dataset.dims else [dataset]:
+            told = {
+                key: one[key].values for key in ("difference", "difference_error", "same_kind", "agrees", "parting_a")
+            }
+            for i in range(one.sizes["other_law"]):
+                pair = {key: one[key].values[[0, i + 1]] for key in ("mean_distance", "mean_distance_error", "kind")}
+                both = {**pair, **{key: value[i] for key, value in told.items()}}
+                compare(both, one["a"].values, agreement[THRESHOLD], agreement)
         changed[name] = dataset.assign_attrs({key: agreement[key] for key in (*AGREEMENT, THRESHOLD)})
     return replace(evidence, summaries={**evidence.summaries, **changed})

@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from burridge_knopoff.claims import history, kinds, laws, locking, model, motion, section, synchronization
+from burridge_knopoff.claims import blocks, history, kinds, laws, locking, model, motion, section, synchronization
 from burridge_knopoff.claims.margins import PARTS
 from burridge_knopoff.claims.verdict import Range, Verdict
 from burridge_knopoff.model import ranges
@@ -31,6 +31,7 @@ TOPICS = {
     "motion": motion,
     "model": model,
     "laws": laws,
+    "blocks": blocks,
 }
 
 _RANGE = {"from": "first", "to": "last", "above": "above", "below": "below"}

@@ -90,38 +90,6 @@ def _by_answers(
     return Verdict(verdict, reason, [*numbers, *measured], "; ".join(apart))
 
 
-def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether two blocks end on like motion under both laws, from all sampled states, at all a of a range."""
-    found = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
-    agrees, same_kind, margin = (
-        found[name].transpose("state", "a").values for name in ("agrees", "same_kind", "margin")
-    )
-    # One state that parts them is enough; to say that none does, all have to be known.
-    known = (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0)
-    right, grid = (agrees == 1).all(axis=0), found["a"].values
-    share = known_share(
-        right, known, loose_share, f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
-    )
-    measured = [Measured("share of a at which the laws agree from all states", share)]
-    measured.append(Measured("share of states and a at which they agree", float((agrees == 1)[agrees >= 0].mean())))
-    wrong = grid[known & ~right]
-    if len(wrong):
-        measured += [
-            Measured("least a at which they disagree", wrong[0]),
-            Measured("largest a at which they disagree", wrong[-1]),
-        ]
-    by_distance = (same_kind == 1) & (agrees >= 0) & np.isfinite(margin)
-    if by_distance.any():
-        nearest = float(np.abs(margin[by_distance]).min())
-        measured.append(Measured("least distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
-    states = found.sizes["state"]
-    reason = f"From all {states} sampled states the laws agree at {100 * share:.1f} % of the values of a with {a}."
-    changes = [f"they disagree {at_values(grid, known & ~right)}"] if len(wrong) else []
-    if not known.all():
-        changes.append(f"it is not known {at_values(grid, ~known)}")
-    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
-
-
 def solutions_agree(
     evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose_share: float
 ) -> Verdict:

@@ -38,7 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
     add(run, Settings, "start", "solver", "step", "transient", "window", "batches")
-    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
+    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment", "section")
     kept = parser.add_argument_group("what is kept")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
     add(kept, Settings, "sampling", "events", "event_window", "trajectory", "trajectory_sampling")

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     import xarray
 
 STATUS_FLAG = flag("i1", ENDS)
+SECTION = {"comment": "the attribute `section` says of what W consists: the sum of all x_i, or x_n of block n"}
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 _V = Variable
@@ -93,7 +94,7 @@ POINT_VARIABLES: dict[str, Variable] = {
     "event_position": _V(("event", "block"), "f8", "positions of all blocks at an event", RELATIVE),
     "event_velocity": _V(("event", "block"), "f8", "velocities U' of all blocks at an event"),
     "crossing_time": _V(("crossing",), "f8", "time tau of a crossing of the section W = 0"),
-    "crossing_velocity": _V(("crossing",), "f8", "W' at a crossing of the section W = 0"),
+    "crossing_velocity": _V(("crossing",), "f8", "W' at a crossing of the section W = 0", SECTION),
     "crossing_direction": _V(("crossing",), "i1", "direction in which W crosses 0", DIRECTION),
     "trajectory_time": _V(("trajectory_time",), "f8", "time tau in the last part of the run", coordinate=True),
     "position": _V(("trajectory_time", "block"), "f8", "positions of the blocks", RELATIVE),
@@ -144,6 +145,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
         "contact": model.contact,
         "start": settings.start,
         "events": settings.events,
+        "section": str(settings.section),
         "transient": settings.transient,
         "window": settings.window,
     }

@@ -20,7 +20,7 @@ from burridge_knopoff.figures.style import (
     show_all,
     styled,
 )
-from burridge_knopoff.summaries.bifurcation import ROUNDING, section_points
+from burridge_knopoff.summaries.bifurcation import NEVER_UPWARD, ROUNDING, STAYS, section_points
 from burridge_knopoff.summaries.refined import CROSSINGS
 
 TITLE = "Bifurcation diagrams"
@@ -29,7 +29,8 @@ PAPER = "Figs. 4a, 4b"
 INPUTS = ("bifurcation",)
 CAPTION = """\
 Section points W' at W = 0 against a, for each law and initial state; upward crossings above 0, downward crossings
-below. W is the sum of the positions relative to uniform sliding. Crossings slower than 10⁻⁹ are not shown: they are
+below. W is the sum of the positions relative to uniform sliding, or one of them if the config's `section` says so;
+what it is stands in `bifurcation.nc`. Crossings slower than 10⁻⁹ are not shown: they are
 uniform sliding itself, by rounding.
 """
 OPTIONAL = {
@@ -79,8 +80,10 @@ def draw(
                 label=_LABELS[direction],
             )
         show_all(panel, grid)
-        if not any(line.get_xdata().size for line in panel.get_lines()):
-            say(panel, "no crossings")
+        if not panel.get_lines()[0].get_xdata().size:
+            # Of uniform sliding rounding alone crosses.
+            slow = section_points(bifurcation, law, state, _DIRECTIONS[0])[0].size
+            say(panel, STAYS if slow else NEVER_UPWARD)
         titles.append(f"{state}, {law} law")
     _, shown = legend_entries(panels)
     look: Any = {"linestyle": "none", "marker": "o", "markersize": 4}

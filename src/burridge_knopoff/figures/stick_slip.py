@@ -43,8 +43,8 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
 
     A column for each initial state. Of the blocks the first, the middle and the last one are shown; ratios are those of
-    the end blocks to the middle one, which two blocks do not have. Gaps are blocks that do not stop, and runs that did
-    not complete.
+    the end blocks to the middle one, which two blocks do not have; one block has no correlation either. Gaps are
+    blocks that do not stop, and runs that did not complete.
     """
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
@@ -52,11 +52,17 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     # Two blocks have none in the middle.
     over_middle = [f"{what} frequency\nover that of block {middle}" for what in ("velocity", "stop")]
     together_label = f"correlation of\n$U_1$′ with $U_{{{count}}}$′"
-    labels = ("time between stops", *(over_middle if count > 2 else []), together_label, "share of time stuck")
+    labels = [
+        "time between stops",
+        *(over_middle if count > 2 else []),
+        *([together_label] if count > 1 else []),
+        "share of time stuck",
+    ]
     figure, panels = new_figure(PAGE, 0.4 + 1.65 * len(labels), rows=len(labels), columns=len(states))
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
-        cycles, *ratios, together, sticks = panels[column :: len(states)]
+        cycles, *others, sticks = panels[column :: len(states)]
+        *ratios, together = others or [None]
         for n, block in enumerate(shown):
             one = run.sel(block=block)
             _points(cycles, n, one["cycle_time"], one["cycle_time_error"])
@@ -64,12 +70,13 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
             if ratios and block != middle:
                 _ratios(ratios, n, one, run.sel(block=middle))
         _say_why(cycles, run, "cycle_time", "no stops")
-        _say_why(together, run, "velocity_correlation", "the velocities do not change")
         _say_why(sticks, run, "stick_fraction", "")
         cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
-        together.plot(run["a"], run["velocity_correlation"], "o", color="black", markersize=2.0)
-        together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
-        together.set_ylim(-1.1, 1.1)
+        if together is not None:
+            _say_why(together, run, "velocity_correlation", "the velocities do not change")
+            together.plot(run["a"], run["velocity_correlation"], "o", color="black", markersize=2.0)
+            together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
+            together.set_ylim(-1.1, 1.1)
         sticks.set_xlabel("$a$")
         if ratios:
             _say_why(ratios[0], run, "velocity_frequency", "the velocities do not change")

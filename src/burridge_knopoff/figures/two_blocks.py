@@ -23,28 +23,44 @@ from burridge_knopoff.figures.style import (
     show_all,
     styled,
 )
+from burridge_knopoff.summaries.two_blocks import CHAINS
 
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
-(a) ⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state. (b) For which of these
-states the laws disagree, in ⟨J⟩ or in the kind of motion: each other law compared with the first one. Where the symbols
-of (a) coincide, the laws have the same motions, but a state that is marked in (b) leads to different ones.
+⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state, and below it for which of
+these states the laws disagree, in ⟨J⟩ or in the kind of motion: each other law compared with the first one. (a, b) The
+train model, pulled at its first block only, of which the paper speaks. (c, d) Both blocks are pulled, which is not the
+paper's chain. Where symbols coincide, the laws have the same motions, but a marked state leads to different ones.
 """
 
 # Of the states for which the laws disagree, or may.
 ANSWERS = {Answer.NO: ("0.25", "the laws disagree"), Answer.UNDETERMINED: (SHADE, "not known")}
 
 
+TITLES = {
+    "train": "train model: only the first block is pulled",
+    "both_pulled": "both blocks are pulled (not the paper's chain)",
+}
+
+
 @styled
 def draw(two_blocks: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ of all laws from each state over a strip for each state, dark where any law disagrees with the first."""
+    """Draw ⟨J⟩ under all laws from each state over a strip for each state, dark where any law disagrees with the first.
+
+    Two panels for each chain of two blocks.
+    """
     strip = 0.4 + 0.1 * two_blocks.sizes["state"]
-    figure = Figure(figsize=(PAGE, 3.0 + strip), layout="constrained")
-    panels = figure.subplots(2, 1, sharex=True, height_ratios=[2.3, strip])
-    legend_below(figure, draw_panels(*panels, two_blocks))
-    label_panels(panels, [r"$\langle J\rangle$ from each initial state", "states for which the laws disagree"])
+    figure = Figure(figsize=(PAGE, 0.6 + len(CHAINS) * (2.1 + strip)), layout="constrained")
+    panels = figure.subplots(2 * len(CHAINS), 1, sharex=True, height_ratios=len(CHAINS) * [2.1, strip])
+    entries = {}
+    for n, chain in enumerate(CHAINS):
+        for handle in draw_panels(*panels[2 * n : 2 * n + 2], two_blocks.sel(chain=chain)):
+            entries.setdefault(handle.get_label(), handle)
+    legend_below(figure, list(entries.values()))
+    below = "initial states for which the laws disagree"
+    label_panels(panels, [title for chain in CHAINS for title in (TITLES[chain], below)])
     return figure
 
 

@@ -83,7 +83,7 @@ class EventDriven:
         self.end = observer.end
         log.carry(self.tangent)
         self.series = Series(state.springs.columns)
-        self.piece = Piece(state.blocks, ORDER)
+        self.piece = Piece(state.blocks, ORDER, observer.section)
         self.search = EventSearch(state.blocks)
         self.modes = Modes(state.blocks)
         self.closed_form = closed_form

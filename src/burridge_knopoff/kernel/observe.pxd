@@ -13,6 +13,7 @@ cdef double NOTHING
 cdef class Observer:
     cdef readonly bint section_only
     cdef public double begin
+    cdef readonly Py_ssize_t section
     cdef readonly double transient
     cdef readonly double end
     cdef double[::1] edge

@@ -27,9 +27,11 @@ class Observer:
     distance_time : times at which J is sampled, shape (samples,)
     trajectory_time : times at which positions and velocities are sampled, shape (m,)
     section_only : whether J is not averaged, nor extremes followed
+    section : block whose x_i is W, from 1 on; 0 if W is the sum of all x_i
     """
 
     section_only: cython.bint
+    section: cython.Py_ssize_t
 
     begin: cython.double
     transient: cython.double
@@ -63,9 +65,11 @@ class Observer:
         distance_time: Sequence[float] | np.ndarray,
         trajectory_time: Sequence[float] | np.ndarray,
         section_only: bool,
+        section: int,
     ) -> None:
         self.section_only = section_only
         self.begin = 0.0
+        self.section = section
         self.transient = edge[0]
         self.end = edge[len(edge) - 1]
         self.edge = np.array(edge, dtype=float)
@@ -159,14 +163,12 @@ class Observer:
     def _cross(
         self, state: State, piece: Piece, clock: cython.double, clock_rest: cython.double, length: cython.double
     ) -> None:
-        """Record where W = Σ x_i changes its sign, with W' and the direction.
+        """Record where W changes its sign, with W' and the direction.
 
         The side on which W lies is remembered from piece to piece, so that rounding at a seam can neither hide a
         crossing nor make one.
         """
-        i: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        total: cython.double
         t: cython.double
         start: cython.double = 0.0
         until_window: cython.double = (self.transient - clock) - clock_rest
@@ -177,10 +179,7 @@ class Observer:
             return
         self.polynomial.degree = piece.degree
         for k in range(piece.degree + 1):
-            total = 0.0
-            for i in range(piece.blocks):
-                total += piece.position[k, i]
-            self.polynomial.coefficient[k] = total
+            self.polynomial.coefficient[k] = piece.section_row(k)
         if self.side == 0:
             self.side = DOWNWARD if self.polynomial.value(max(0.0, until_window)) < 0.0 else UPWARD
             if until_window > 0.0:
@@ -218,7 +217,7 @@ class Observer:
         if t <= (self.begin - clock) - clock_rest:
             return
         row = self.crossings.append(clock + (clock_rest + t))
-        self.crossings.value[row, 0] = piece.sliding_rate(state.v, t)
+        self.crossings.value[row, 0] = piece.section_rate(state.v, t)
         self.crossings.value[row, 1] = self.side
 
     def _extreme(

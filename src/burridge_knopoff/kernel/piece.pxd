@@ -28,9 +28,12 @@ cdef class Piece:
 
     cdef double[::1] highest
     cdef double crossing
+    cdef Py_ssize_t section_begin
+    cdef Py_ssize_t section_end
 
     cdef void fill_force(self, Springs springs, Py_ssize_t n) noexcept nogil
     cdef void move(self, State state, double t) noexcept nogil
-    cdef double sliding_rate(self, double v, double t) noexcept nogil
+    cdef double section_row(self, Py_ssize_t k) noexcept nogil
+    cdef double section_rate(self, double v, double t) noexcept nogil
     cdef void load_speed(self, State state, Py_ssize_t i, Polynomial polynomial) noexcept nogil
     cdef void load_gap(self, State state, Py_ssize_t i, int side, Polynomial polynomial) noexcept nogil

@@ -22,7 +22,10 @@ class Piece:
 
     `direction` (0 where a block sticks) and `stuck` (1 there, and in lanes without a block) hold for the whole piece.
     `highest` holds, for each block, a bound on what `load_speed` or `load_gap` loads, over the time the piece is used;
-    `crossing` when W = Σ x_i changes its sign in that time, −1.0 if it does not, UNCERTAIN if it has to be looked for.
+    `crossing` when W changes its sign in that time, −1.0 if it does not, UNCERTAIN if it has to be looked for. W is the
+    sum of x_i over the blocks from `section_begin` to `section_end` − 1: over all, or one block.
+
+    section : number of that block, from 1 on, 0 for all
     """
 
     blocks: cython.Py_ssize_t
@@ -41,9 +44,13 @@ class Piece:
     force: cython.double[:, ::1]
     highest: cython.double[::1]
     crossing: cython.double
+    section_begin: cython.Py_ssize_t
+    section_end: cython.Py_ssize_t
 
-    def __init__(self, blocks: int, order: int) -> None:
+    def __init__(self, blocks: int, order: int, section: int) -> None:
         self.blocks = blocks
+        self.section_begin = section - 1 if section else 0
+        self.section_end = section if section else blocks
         self.order = order
         self.degree = order
         self.columns = (blocks + LANES - 1) // LANES
@@ -77,13 +84,21 @@ class Piece:
             state.positions.at[c] = value_at(self.positions.at + c, self.columns, ORDER, t)
             state.velocities.at[c] = value_at(self.velocities.at + c, self.columns, ORDER, t)
 
-    def sliding_rate(self, v: cython.double, t: cython.double) -> cython.double:
+    def section_row(self, k: cython.Py_ssize_t) -> cython.double:
+        """Return the coefficient of t^k of W."""
+        i: cython.Py_ssize_t
+        total: cython.double = 0.0
+        for i in range(self.section_begin, self.section_end):
+            total += self.position[k, i]
+        return total
+
+    def section_rate(self, v: cython.double, t: cython.double) -> cython.double:
         """Return the rate Σ (U_i' − v) of W at time t."""
         i: cython.Py_ssize_t
         speed: vec = splat(0.0)
         total: cython.double = 0.0
-        for i in range(self.blocks):
-            if i % LANES == 0:
+        for i in range(self.section_begin, self.section_end):
+            if i % LANES == 0 or i == self.section_begin:
                 speed = value_at(self.velocities.at + i // LANES, self.columns, self.degree, t)
             total += lane_of(speed, i % LANES) - v
         return total

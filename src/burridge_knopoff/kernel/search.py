@@ -6,8 +6,8 @@ then it is proved that no g has one before: over [0, t*] each g, or the quotient
 bounded from below (see `bounds`). Where the proof fails the exhaustive search of `bernstein` decides. So an event is
 found late only by as much as rounding hides.
 
-Where the sum of all positions W changes its sign is found on the way, in a lane behind those of the blocks: it moves no
-event, and costs next to nothing.
+Where W, which makes the section, changes its sign is found on the way, in a lane behind those of the blocks: it moves
+no event, and costs next to nothing.
 """
 
 import cython
@@ -133,7 +133,6 @@ class EventSearch:
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        total: cython.double
         direction: vec
         stuck: vec
         columns: cython.Py_ssize_t = self.columns
@@ -154,10 +153,7 @@ class EventSearch:
                 g[k * columns + last] = splat(1.0 if k == 0 else 0.0)
         if side != 0:
             for k in range(ORDER + 1):
-                total = 0.0
-                for i in range(piece.blocks):
-                    total += piece.position[k, i]
-                g[k * columns + last] = select(section, splat(side * total), g[k * columns + last])
+                g[k * columns + last] = select(section, splat(side * piece.section_row(k)), g[k * columns + last])
         for i in range(state.blocks):
             self.zeros[i] = 0
             # At its threshold by construction: what rounding leaves there must not start the block a second time.

@@ -41,7 +41,7 @@ class TimeStepping:
         self.state = state
         self.log = log
         self.observer = observer
-        self.piece = Piece(n, CUBIC)
+        self.piece = Piece(n, CUBIC, observer.section)
         self.step = step
         self.steps = 0
         self.earlier_steps = 0

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, TypedDict, TypeVar
 
 from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.running.section import Section
 from burridge_knopoff.values import instance_of
 
 _F = TypeVar("_F", bound=Callable[..., Any])
@@ -28,6 +29,7 @@ class RunSettings(TypedDict, total=False):
     trajectory_sampling: float
     events: str
     event_window: float
+    section: Section
     lyapunov_exponents: int
     lyapunov_alignment: float
 

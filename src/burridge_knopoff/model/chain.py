@@ -22,6 +22,7 @@ NEIGHBOURS = "neighbours"
 Numbers = float | Sequence[float]
 _STRENGTH = Number(1e-6, 1e6)
 _STRENGTHS = Either((_STRENGTH, Several(_STRENGTH)))
+_PULLING = Number(1e-6, 1e6, or_zero=True)
 
 
 @settings
@@ -33,9 +34,11 @@ class Chain:
     block slips against threshold · Φ.
 
     The spring force on block i is s_i = D_i vτ − (K U)_i with K the graph Laplacian of the springs plus diag(D), so
-    that K·1 = D. With the defaults N = 3 is the paper's chain (Eq. 2), N = 2 the two-block train model that it cites.
+    that K·1 = D. With the defaults N = 3 is the paper's chain (Eq. 2). The train model that the paper cites is pulled
+    at its first block only: `Chain(2, pulling=(1.0, 0.0))`. One block hangs on one spring to the driver.
 
-    Raises ValueError for a number of blocks, of springs, or a strength that is not allowed.
+    Raises ValueError for a number of blocks, of springs, or a strength that is not allowed, and if no block is pulled:
+    K has no inverse then.
 
     Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
     in units of F(0).
@@ -48,12 +51,13 @@ class Chain:
     (False, True)
     """
 
-    blocks: Annotated[int, Whole(2, MAXIMUM_BLOCKS), "number of blocks N"] = 3
+    blocks: Annotated[int, Whole(1, MAXIMUM_BLOCKS), "number of blocks N"] = 3
     coupling: Annotated[Numbers, _STRENGTHS, "springs between neighbours, one number or one each"] = 1.0
     pulling: Annotated[
         Numbers | str,
-        Either((OneOf((NEIGHBOURS,)), *_STRENGTHS.ranges)),
-        "springs to the driver, one number or one a block; neighbours: as many as a block has, as in the paper",
+        Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
+        "springs to the driver, one number or one a block, 0 where there is none; neighbours: as many as a block has, "
+        "as in the paper, and 1 for one block",
     ] = NEIGHBOURS
     threshold: Annotated[Numbers, _STRENGTHS, "static friction, one number or one a block"] = 1.0
     ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is the neighbour of the first"] = "open"
@@ -69,6 +73,10 @@ class Chain:
             value = getattr(self, key)
             if isinstance(value, tuple) and len(value) != count:
                 raise ValueError(f"chain.{key}: {len(value)} numbers for {count} {of}: one number, or one each")
+        if self.blocks == 1 and self.ends == "ring":
+            raise ValueError("chain.ends: got ring, expected open for one block")
+        if not isinstance(self.pulling, str) and not np.any(self.pulling):
+            raise ValueError(f"chain.pulling: got {self.pulling!r}, expected a number above 0 for one block or more")
 
     def is_like(self, other: Chain) -> bool:
         """Tell whether springs and static friction are those of another chain, however they were given."""
@@ -97,7 +105,8 @@ class Chain:
     def driving(self) -> np.ndarray:
         """Strengths D of the springs to the driver, shape (blocks,)."""
         if isinstance(self.pulling, str):
-            return read_only((self.before > 0.0).astype(float) + (self.after > 0.0))
+            neighbours = (self.before > 0.0).astype(float) + (self.after > 0.0)
+            return read_only(neighbours if self.blocks > 1 else np.ones(1))
         return read_only(np.broadcast_to(self.pulling, self.blocks))
 
     @property
@@ -116,10 +125,12 @@ class Chain:
 
     @property
     def is_mirror_symmetric(self) -> bool:
-        """Whether the chain is its own mirror image: only then can end blocks, and mirror blocks, move as one."""
-        return all((values == values[::-1]).all() for values in (self.driving, self.thresholds)) and bool(
-            (self.before == self.after[::-1]).all()
-        )
+        """Whether the chain is its own mirror image: only then can end blocks, and mirror blocks, move as one.
+
+        One block has no mirror block.
+        """
+        pairs = (self.driving, self.driving), (self.thresholds, self.thresholds), (self.before, self.after)
+        return self.blocks > 1 and all(bool((one == other[::-1]).all()) for one, other in pairs)
 
     @property
     def _period(self) -> int:

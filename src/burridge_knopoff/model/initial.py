@@ -13,7 +13,7 @@ from burridge_knopoff.values import shown
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
-_ONE_A_BLOCK = Several(COORDINATE, 2, MAXIMUM_BLOCKS)
+_ONE_A_BLOCK = Several(COORDINATE, 1, MAXIMUM_BLOCKS)
 
 
 @settings

@@ -37,21 +37,27 @@ class Range:
 
 @dataclass(eq=False, repr=False)
 class Number(Range):
-    """A number from `least` to `most`, or, with `above`, more than `least`; True and False are none."""
+    """A number from `least` to `most`, or, with `above`, more than `least`; True and False are none.
+
+    or_zero : whether 0 is allowed as well, outside the limits
+    """
 
     least: float
     most: float
     above: bool = False
+    or_zero: bool = False
 
     def _fit(self, value: Any, key: str) -> float | None:
         number = real_number(value)
+        if self.or_zero and number == 0.0:
+            return 0.0
         fits = self.least <= number <= self.most and not (self.above and number == self.least)
         return number if fits else None
 
     def __str__(self) -> str:
         limits = [f"{'>' if self.above else '≥'} {self.least:g}"] if self.least > -HUGE else []
         limits += [f"≤ {self.most:g}"] if self.most < HUGE else []
-        return f"a {'' if limits else 'finite '}number {' and '.join(limits)}".rstrip()
+        return f"{'0 or ' * self.or_zero}a {'' if limits else 'finite '}number {' and '.join(limits)}".rstrip()
 
 
 class Whole(Number):

@@ -47,7 +47,7 @@ def unit(chain: Chain) -> float:
 
     Springs that are stronger by a factor make all motion faster by its root; a mode grows with a times the threshold.
     """
-    return math.sqrt(float(chain.driving.min())) / float(chain.thresholds.max())
+    return math.sqrt(float(chain.driving[chain.driving > 0.0].min())) / float(chain.thresholds.max())
 
 
 def critical_a(family: Family) -> float:

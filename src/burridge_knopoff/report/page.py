@@ -26,6 +26,7 @@ from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.words import text, with_error
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.basins import undetermined_alike
+from burridge_knopoff.summaries.bifurcation import NEVER_UPWARD
 
 FOLDER = Path(__file__).parent
 
@@ -102,6 +103,8 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         ran=overview.what_was_run(study),
         states=overview.initial_states(study),
         config=overview.config_text(study),
+        never_upward=NEVER_UPWARD,
+        section_words=_section_words(study),
         crossed=[[bool(run["count"]) for run in law] for law in sections["runs"]],
         data=_data(study, commands, summaries, sections),
         laws=list(study.laws),
@@ -129,6 +132,12 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         plotly=_plotly(),
         scripts=Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS),
     )
+
+
+def _section_words(study: Study) -> str:
+    """Return of what W consists."""
+    section = study.settings(study.laws[0]).section
+    return f"the co-moving position of block {section.block}" if section.block else "the sum of the co-moving positions"
 
 
 def _data(

@@ -18,6 +18,7 @@ from burridge_knopoff.kernel.state import State
 from burridge_knopoff.kernel.time_stepping import TimeStepping
 from burridge_knopoff.kernel.vector import WIDTH
 from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of, refusal
 
@@ -162,10 +163,11 @@ def new_observer(
     trajectory_time: np.ndarray | list[float] = (),  # type: ignore[assignment]
     order: int = SERIES_ORDER,
     section_only: bool = False,
+    section: Section = SUM,
 ) -> Observer:
     """Return what measures a run of a model: J averaged over batches, J and states at given times; see `Observer`."""
     apart = float(model.sliding_offset[-1] - model.sliding_offset[0])
-    return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time, section_only)
+    return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time, section_only, section.block)
 
 
 def new_friction(model: Model, order: int) -> Friction:

@@ -9,6 +9,7 @@ from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.running.section import SUM, Section, SectionRange
 from burridge_knopoff.values import MOST_NUMBERS, refusal
 
 SOLVERS = ("series", "map", "rk4")
@@ -21,6 +22,9 @@ INTERVAL = Number(1e-6, LONGEST)
 
 #: Steps of rk4 times blocks, at most: an hour of work.
 MOST_STEPS = 1e10
+
+#: Lyapunov exponents of a run by default; one block has but two.
+DEFAULT_EXPONENTS = 3
 
 #: Step of rk4 times the fastest oscillation, at most: ⟨J⟩ of the paper's runs is then within 5e-4 of that of `series`.
 LONGEST_STEP = 0.25
@@ -63,11 +67,14 @@ class Settings:
     event_window: Annotated[
         float, DURATION, "length of the last part of the window whose events are kept with states"
     ] = 1500.0
+    section: Annotated[
+        Section, SectionRange(), "the Poincare section W = 0, of W = sum, of all x_i, or x_n of one block n: block=n"
+    ] = SUM
     lyapunov_exponents: Annotated[
         int,
         Whole(0, 2 * MAXIMUM_BLOCKS),
         "Lyapunov exponents, the largest first, at most two a block; rk4 computes none",
-    ] = 3
+    ] = DEFAULT_EXPONENTS
     lyapunov_alignment: Annotated[
         float, DURATION, "time before the window in which perturbations turn into the directions that grow most"
     ] = 1000.0
@@ -84,8 +91,9 @@ class Settings:
     def check_chain(self, chain: Chain) -> None:
         """Raise ValueError if the settings do not fit a chain, or ask for more than can be done."""
         blocks = chain.blocks
-        if self.lyapunov_exponents > 2 * blocks:
+        if self.lyapunov_exponents > max(2 * blocks, DEFAULT_EXPONENTS):
             raise refusal("lyapunov_exponents", self.lyapunov_exponents, f"at most {2 * blocks}, two a block")
+        self.section.check_chain(chain)
         longest = LONGEST_STEP / chain.highest_frequency
         if self.solver == "rk4" and self.step > longest:
             raise refusal("step", self.step, f"at most {longest:.3g} in this chain, or events come out wrong")
@@ -96,6 +104,10 @@ class Settings:
         if numbers > MOST_NUMBERS:
             allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
             raise refusal("trajectory_sampling", self.trajectory_sampling, allowed)
+
+    def exponents_of(self, chain: Chain) -> int:
+        """Return how many Lyapunov exponents are computed."""
+        return min(self.lyapunov_exponents, 2 * chain.blocks)
 
     @property
     def duration(self) -> float:

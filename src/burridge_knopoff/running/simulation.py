@@ -55,7 +55,7 @@ def _prepare(model: Model, settings: Settings, time: float, section_only: bool, 
     trajectory_time = end - settings.trajectory_sampling * np.arange(count, -1, -1)
     order = RK4_ORDER if settings.solver == "rk4" else SERIES_ORDER
     aligned = time + max(0.0, settings.transient - settings.lyapunov_alignment)
-    exponents = Exponents(model.blocks, settings.lyapunov_exponents, aligned, edge)
+    exponents = Exponents(model.blocks, settings.exponents_of(model.chain), aligned, edge)
     return Runner(
         model,
         settings.solver,
@@ -63,6 +63,8 @@ def _prepare(model: Model, settings: Settings, time: float, section_only: bool, 
         events_from=time if settings.events == "all" else end - min(settings.event_window, settings.window),
         keep_events=settings.events != "none",
         stops_only=stops_only,
-        observer=new_observer(model, edge, np.minimum(distance_time, end), trajectory_time, order, section_only),
+        observer=new_observer(
+            model, edge, np.minimum(distance_time, end), trajectory_time, order, section_only, settings.section
+        ),
         exponents=exponents,
     )

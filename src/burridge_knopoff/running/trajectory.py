@@ -164,7 +164,7 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
     perturbations may grow like a power of time: from an alignment A through a window T one that grows linearly gains
     ln(1 + T/(1 + A)), which in a run of that length looks like an exponent of that over T. Both go into the error.
     """
-    count = settings.lyapunov_exponents
+    count = settings.exponents_of(runner.model.chain)
     batch = np.full((settings.batches, count), np.nan)
     mean = np.full(count, np.nan)
     error = np.full(count, np.nan)

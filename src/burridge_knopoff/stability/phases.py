@@ -13,7 +13,7 @@ from burridge_knopoff.stability.settings import seed_at
 
 
 def ends_are_neighbours(chain: Chain) -> bool:
-    """Tell whether a spring joins the end blocks, as with two blocks and in a ring.
+    """Tell whether a spring joins the end blocks, as with two blocks and in a ring, or one block is both of them.
 
     Then neither slides uniformly while the other oscillates, and K_ii says nothing of their frequencies: with equal
     phases of two blocks ω² is K_11 − k, with opposite ones K_11 + k, k the spring, and with others there is no one ω.

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
-from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.fields import check_fields, fields_of, settings
 from burridge_knopoff.model.initial import COORDINATE, PAPER_STATES, InitialState
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, Whole
-from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.running.section import SUM, Section, SectionRange
+from burridge_knopoff.running.settings import LONGEST, Settings
 
 #: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
 POSITIONS = (-1.5, 1.5)
@@ -37,7 +38,7 @@ def seed_at(seed: int, a: float) -> list[int]:
 @settings
 @dataclass(frozen=True)
 class MotionSettings:
-    """How kinds of motion are told: the config's section `motion`, and its synchronization_threshold.
+    """How kinds of motion are told: the config's keys of `motion`, its synchronization_threshold and its `section`.
 
     Raises ValueError, one line, for anything out of range.
 
@@ -66,9 +67,15 @@ class MotionSettings:
     ] = 1e-6
     longest_period: Annotated[int, Whole(1, 1000), "section points up to which a repetition is looked for"] = 120
     synchronization_threshold: Annotated[float, TOLERANCE, "the end blocks move as one where <J> is below this"] = 1e-6
+    section: Annotated[Section, SectionRange(), fields_of(Settings)["section"].description] = SUM
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """The settings as attributes of a file."""
+        return {name: getattr(self, name) for name in fields_of(type(self))} | {"section": str(self.section)}
 
     def at_speed(self, v: float) -> MotionSettings:
         """Return the settings that a driver of speed v asks for: slower motion is smaller, and takes longer."""

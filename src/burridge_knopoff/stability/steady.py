@@ -164,7 +164,8 @@ def _with_weak_chaos(
     model: Model, motion: SteadyMotion, start: Instant, transient: float, window: float, settings: MotionSettings
 ) -> SteadyMotion:
     """Return the motion with its exponents from this state on, as chaos if the largest is certain to be positive."""
-    trajectory = run(model, start, replace(_options(transient, window), events="none"), section_only=True)
+    options = replace(_options(transient, window, settings), events="none")
+    trajectory = run(model, start, options, section_only=True)
     if trajectory.status != "completed":
         return motion
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
@@ -173,7 +174,7 @@ def _with_weak_chaos(
     return replace(motion, kind=MotionKind.CHAOTIC if chaotic else motion.kind, exponent=exponent)
 
 
-def _options(transient: float, window: float) -> Settings:
+def _options(transient: float, window: float, settings: MotionSettings) -> Settings:
     """Return the settings of a run in which a motion is measured."""
     return Settings(
         transient=transient,
@@ -182,6 +183,7 @@ def _options(transient: float, window: float) -> Settings:
         sampling=transient + window,
         trajectory=0.0,
         event_window=window,
+        section=settings.section,
         lyapunov_exponents=EXPONENTS,
         lyapunov_alignment=transient,
     )
@@ -208,7 +210,8 @@ def measure_once(
     mean_distance : what ⟨J⟩ is taken for instead of being measured
     """
     known = mean_distance is not None
-    trajectory = run(model, start, _options(transient, window), section_only=known, stops_only=True)
+    options = _options(transient, window, settings)
+    trajectory = run(model, start, options, section_only=known, stops_only=True)
     mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":
         return None

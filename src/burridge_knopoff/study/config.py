@@ -16,6 +16,7 @@ from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
 from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import HUGE, Either, Named, Number, OneOf, Range, Several, Text, Whole
+from burridge_knopoff.running.section import SECTION_KEYS
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.stability.settings import (
     ERRORS,
@@ -127,7 +128,7 @@ PHASES = {
 }
 TWO_BLOCKS = {
     "a": Field(
-        VALUES, "friction parameters at which two blocks are compared", [{"from": 0.005, "to": 0.4, "step": 0.005}]
+        VALUES, "friction parameters at which two blocks are compared", [{"from": 0.01, "to": 0.4, "step": 0.01}]
     ),
     "samples": Field(SAMPLES, "initial states from which they are compared", 8),
 }
@@ -151,7 +152,7 @@ CONFIG = Keys(
         "a_digits": Field(Whole(1, 15), "decimals of a in file names", 4),
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
-            "named initial states, each with position U(0) and velocity U'(0), one number a block, for 2 to "
+            "named initial states, each with position U(0) and velocity U'(0), one number a block, for 1 to "
             f"{MAXIMUM_BLOCKS} blocks; minus: {{}} and plus: {{}} are the paper's and need no numbers",
         ),
         "without": Field(
@@ -172,10 +173,11 @@ CONFIG = Keys(
                 _SETTINGS["solver"].default,
             ),
             transient=replace(_SETTINGS["transient"], range=TIME),
+            section=Field(SECTION_KEYS, "", {}),
             events=Field(OneOf(("window", "all")), _SETTINGS["events"].description.partition(" | none")[0], "window"),
         ),
         "synchronization_threshold": fields_of(MotionSettings)["synchronization_threshold"],
-        "motion": _section(_part(MotionSettings, "synchronization_threshold")),
+        "motion": _section(_part(MotionSettings, "synchronization_threshold", "section")),
         "agreement": _section(AGREEMENT),
         "solvers": _section(COMPARED),
         "figures": _section(FIGURES),

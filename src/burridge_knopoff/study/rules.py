@@ -115,7 +115,7 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     chain = Chain(blocks, **config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
-    usual = {law: [a for a in values if a in grid] for law, values in maps.items()}
+    usual = {law: [a for a in values if a in grid and blocks > 1] for law, values in maps.items()}
     basins, phases, solvers = (config[section] for section in ("basins", "phases", "solvers"))
     chosen = _by_law(SOME_VALUES, usual).form(basins["a"], "basins.a")
     basins["a"] = {law: list(values) for law, values in chosen.items()}
@@ -123,7 +123,9 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown]))
     config["figures"].setdefault("a", shown)
     if phases["a"] and ends_are_neighbours(chain):
-        raise refusal("phases.a", phases["a"], "[] where a spring joins the end blocks: two blocks, or a ring")
+        raise refusal("phases.a", phases["a"], "[] where a spring joins the end blocks: one or two blocks, or a ring")
+    if blocks == 1 and any(basins["a"].values()):
+        raise ValueError(f"basins.a: got {basins['a']}, expected no values for one block: a map needs two end blocks")
     for key, values in (
         *((f"basins.a.{law}", values) for law, values in basins["a"].items()),
         ("phases.a", phases["a"]),

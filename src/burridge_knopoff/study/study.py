@@ -266,6 +266,8 @@ def _study(config: Mapping[str, Any]) -> Study:
     chain = study.model(study.laws[0], values[0]).chain
     for law in study.laws:
         study.settings(law).check_chain(chain)
+    # The default asks for three, of which one block has two.
+    filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
     with rules.under("basins."):
         _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):

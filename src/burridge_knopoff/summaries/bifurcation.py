@@ -1,4 +1,4 @@
-"""All section points W' at W = 0 against a: the paper's Figs. 4a and 4b.
+"""All section points W' at W = 0 against a: the paper's Figs. 4a and 4b. W is what the config's `section` says.
 
 The file is a contiguous ragged array of the CF conventions.
 """
@@ -20,6 +20,9 @@ ROUNDING = 1e-9
 
 # Velocities on the section within which two of its points are one.
 SAME_VELOCITY = 1e-6
+#: Why a bifurcation diagram of a law and a state is empty.
+NEVER_UPWARD = "W never crosses 0 upward: the section is never reached"
+STAYS = "W stays at 0: the blocks slide uniformly"
 
 VARIABLES = {
     "crossing_velocity": Variable(("crossing",), "f8", "W' at a crossing of the section W = 0"),
@@ -59,7 +62,7 @@ def summarize(grid: Grid) -> xarray.Dataset:
         VARIABLES,
         values,
         coordinates,
-        {},
+        {"section": str(grid.section)},
         module=__name__,
     )
 

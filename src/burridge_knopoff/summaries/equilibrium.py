@@ -107,7 +107,8 @@ def sliding_position(model: Model) -> np.ndarray:
     """Return e with K e = −Φ(v)·threshold, shape (blocks,), independently of the simulation."""
     chain = model.chain
     load = -float(model.law(model.v)) * chain.thresholds
-    if chain.ends == "ring":
+    # SciPy refuses a band matrix of one number.
+    if chain.ends == "ring" or chain.blocks == 1:
         return np.array([_rounded(value) for value in solve(chain.stiffness, load, assume_a="pos")])
     bands = np.stack([np.append(0.0, np.diag(chain.stiffness, 1)), np.diag(chain.stiffness)])
     return solveh_banded(bands, load)

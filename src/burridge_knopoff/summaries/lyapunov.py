@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -48,7 +47,8 @@ def summarize(
     lyapunov_exponents : how many were computed in each run
     motion : the config's section of that name: thresholds of the kinds of motion
     """
-    settings = MotionSettings(**motion, synchronization_threshold=synchronization_threshold).at_speed(grid.models["v"])
+    chosen = {**motion, "synchronization_threshold": synchronization_threshold, "section": grid.section}
+    settings = MotionSettings(**chosen).at_speed(grid.models["v"])
     symmetric = grid.is_mirror_symmetric
     values = {}
     for name, item in VARIABLES.items():
@@ -68,6 +68,6 @@ def summarize(
         VARIABLES,
         values,
         grid.axes(),
-        asdict(settings),
+        settings.told,
         module=__name__,
     )

@@ -18,6 +18,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.command import difference, simulate_command
 from burridge_knopoff.provenance.seal import BadFile, read_seal
 from burridge_knopoff.provenance.sources import SOFTWARE
+from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paths import POINT
@@ -75,6 +76,11 @@ class Grid:
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image: only then can its end blocks synchronize."""
         return self.model(self.laws[0], next(iter(self.a.values()))).chain.is_mirror_symmetric
+
+    @property
+    def section(self) -> Section:
+        """The section of the runs."""
+        return next(iter(self.settings.values())).section
 
     def model(self, law: str, a: float) -> Model:
         """Return the model of the points under one law at one a."""

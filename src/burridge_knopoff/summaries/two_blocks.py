@@ -1,5 +1,8 @@
 """Two blocks under the laws of a study, from the same sampled initial states: each other law against the first one.
 
+There are two chains of two blocks. The train is pulled at its first block only; of it the paper speaks. In the other
+one, the study's chain with two blocks, both are pulled. One block is followed beside them, from the first state.
+
 The verdict is that of `agreement`: the kind of motion is the same, and ⟨J⟩ differs by no more than a tolerance. Both
 are those of the motion that a state ends on; only the order of events is that of runs from the state.
 """
@@ -7,7 +10,7 @@ are those of the motion that a state ends on; only the order of events is that o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -16,6 +19,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import shared_out
@@ -23,7 +27,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
 from burridge_knopoff.stability.endings import endings
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import MotionKind, motion_of_run
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import OF_GIVEN_STATES, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.event_order import common_order
@@ -31,9 +35,13 @@ from burridge_knopoff.summaries.judgement import compare, excess
 
 BLOCKS = 2
 
-_MOTION = ("law", "state", "a")
-_PAIR = ("other_law", "state", "a")
-_FRACTION = ("other_law", "a")
+#: The two chains: the train, and the one of which both blocks are pulled.
+CHAINS = ("train", "both_pulled")
+
+_MOTION = ("chain", "law", "state", "a")
+_PAIR = ("chain", "other_law", "state", "a")
+_FRACTION = ("chain", "other_law", "a")
+_ONE = ("law", "a")
 MOTION_VARIABLES = {
     "mean_distance": Variable(
         _MOTION,
@@ -59,19 +67,33 @@ PAIR_VARIABLES = {
     "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
     "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
     "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", ANSWER),
-    "parting_a": Variable(_PAIR[:2], "f8", "least a at which the laws disagree, NaN if there is none"),
+    "parting_a": Variable(_PAIR[:3], "f8", "least a at which the laws disagree, NaN if there is none"),
     "agreeing_fraction": Variable(
         _FRACTION, "f8", "fraction of the initial states for which the laws agree, as is known"
     ),
     "agreeing_low": Variable(_FRACTION, "f8", "lower end of the confidence interval of this fraction"),
     "agreeing_high": Variable(_FRACTION, "f8", "upper end, undetermined states counted as agreeing"),
 }
+ONE_BLOCK_VARIABLES = {
+    "one_block_kind": Variable(_ONE, "i1", "kind of motion that one block ends on", flag("i1", MotionKind)),
+    "one_block_stop_rate": Variable(_ONE, "f8", "stops of one block in a unit of time, in the window"),
+}
 VARIABLES = {
     "initial_position": Variable(("state", "block"), "f8", "initial position U(0)"),
     "initial_velocity": Variable(("state", "block"), "f8", "initial velocity U'(0)"),
     **MOTION_VARIABLES,
     **PAIR_VARIABLES,
+    **ONE_BLOCK_VARIABLES,
 }
+
+
+def train(chain: Chain, blocks: int) -> Chain:
+    """Return the train of so many blocks with the strengths of a chain: only its first block is pulled.
+
+    chain : one number gives each of its strengths; the spring to the driver is 1 where it is `neighbours`
+    """
+    first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
+    return Chain(blocks, chain.coupling, (first, *(blocks - 1) * (0.0,)), chain.threshold)  # type: ignore[arg-type]
 
 
 def run_settings(**settings: Any) -> Settings:
@@ -102,7 +124,7 @@ def summarize(
 ) -> xarray.Dataset:
     """Compare what two blocks end on from each initial state at each a of an ascending grid under each law.
 
-    models : one of two blocks for each law, at any a; each other law is compared with the first one
+    models : one of two blocks for each law, at any a, both of them pulled; each other law is compared with the first
     settings : of the runs for the order of events, see `run_settings`, and how all motion begins
     search, motion : how attractors are looked for, and how kinds of motion are told apart
     agreement : the config's section of that name
@@ -110,20 +132,29 @@ def summarize(
     """
     laws = [model.law.name for model in models]
     sizes = {"law": len(laws), "other_law": len(laws) - 1, "state": len(initial), "a": len(grid), "block": BLOCKS}
+    sizes["chain"] = len(CHAINS)
     values = {
         name: np.zeros([sizes[dimension] for dimension in item.dimensions], dtype=item.dtype)
         for name, item in VARIABLES.items()
     }
     for j, state in enumerate(initial):
         values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
+    trains = [replace(model, chain=train(model.chain, BLOCKS)) for model in models]
+    alone = [replace(model, chain=train(model.chain, 1)) for model in models]
+    first = InitialState(initial[0].name, initial[0].position[:1], initial[0].velocity[:1])
     with shared_out(processes) as each:
-        of_one = partial(_at, models, initial=initial, settings=settings, search=search, motion=motion)
-        for k, found in enumerate(each("two blocks", of_one, grid)):
-            for name, value in found.items():
-                values[name][..., k] = value
-    for i in range(len(laws) - 1):
-        compared = {name: values[name][i] for name in PAIR_VARIABLES}
-        pair = {name: values[name][[0, i + 1]] for name in MOTION_VARIABLES}
+        for c, (name, chosen) in enumerate(zip(CHAINS, (trains, models), strict=True)):
+            of_one = partial(_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
+            for k, found in enumerate(each(f"two blocks, {name}", of_one, grid)):
+                for variable, value in found.items():
+                    values[variable][c, ..., k] = value
+        of_one = partial(_one_block, alone, initial=first, settings=settings, motion=motion)
+        for k, found in enumerate(each("one block", of_one, grid)):
+            for variable, value in found.items():
+                values[variable][..., k] = value
+    for c, i in np.ndindex(len(CHAINS), len(laws) - 1):
+        compared = {name: values[name][c, i] for name in PAIR_VARIABLES}
+        pair = {name: values[name][c, [0, i + 1]] for name in MOTION_VARIABLES}
         both = {**pair, **compared}
         compare(both, np.asarray(grid), motion.synchronization_threshold, agreement)
         with np.errstate(divide="ignore"):
@@ -133,14 +164,16 @@ def summarize(
             for name, value in zip(("fraction", "low", "high"), agreeing_fraction(column), strict=True):
                 compared[f"agreeing_{name}"][k] = value
     shared = axes(law=laws, a=grid)
+    chain_about = {"long_name": "chain of two blocks: the train, pulled at its first block only, or both pulled"}
     about = {**shared["law"][2], "long_name": "friction law that is compared with the first one"}
-    judged = asdict(motion.at_speed(models[0].v))
+    judged = motion.at_speed(models[0].v).told
     threshold = judged.pop("synchronization_threshold")
     return summary(
         "Two blocks under each friction law",
         VARIABLES,
         values,
         {
+            "chain": ("chain", np.array(CHAINS, dtype=object), chain_about),
             "law": shared["law"],
             "other_law": ("other_law", np.array(laws[1:], dtype=object), about),
             "state": ("state", np.arange(1, len(initial) + 1, dtype="i4"), STATE.all_attributes()),
@@ -178,6 +211,24 @@ def _at(
             count[i, j], time = common_order(_sequence(first), _sequence(other))
             until[i, j] = min(time, first.end_time, other.end_time)
     return {**values, "event_order_count": count, "event_order_time": until}
+
+
+def _one_block(
+    models: Sequence[Model],
+    a: float,
+    initial: InitialState,
+    settings: Settings,
+    motion: MotionSettings,
+) -> dict[str, np.ndarray]:
+    """Return at one a how one block moves, shape (law,)."""
+    kind, rate = (np.zeros(len(models)) for _ in range(2))
+    measured = replace(settings, events="window", lyapunov_exponents=2)
+    for i, of_law in enumerate(models):
+        model = of_law.at(a)
+        found = run(model, initial, measured, stops_only=True)
+        kind[i] = motion_of_run(vars(found), False, motion.at_speed(model.v)).kind
+        rate[i] = len(found.event_time) / min(measured.event_window, measured.window)
+    return {"one_block_kind": kind, "one_block_stop_rate": rate}
 
 
 def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
