@@ -6,5 +6,5 @@ MOTION = {
     "chaotic_exponent": 1e-3,
     "standard_errors": 3.0,
     "period_tolerance": 1e-6,
-    "longest_period": 60,
+    "longest_period": 2000.0,
 }

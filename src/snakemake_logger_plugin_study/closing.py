@@ -103,6 +103,6 @@ def _undetermined(path: Path) -> list[str]:
 _READERS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
     "claims": ("summary/claims.json", _claims),
     "mean_distance": ("summary/mean_distance.nc", _incomplete),
-    "lyapunov": ("summary/lyapunov.nc", _undetermined),
+    "agreement": ("summary/agreement.nc", _undetermined),
     "report": ("report.html", lambda path: [f"report: {path}"]),
 }

@@ -180,7 +180,7 @@ UNKNOWN_ABOVE = reached(-1, initial="minus", a=lambda a: (a > 0.081) & (a < 0.14
 UNREPEATED = alter("lyapunov", "section_period", 0, a=ONE_OF_MANY)
 PARTED = alter("two_blocks", "agrees", 0, state=0)
 ONE_ATTRACTOR = both(alter("attractors", "branch", 0, a=ONE_OF_MANY), reached(0, a=ONE_OF_MANY))
-CHAOS_OF_RUNS = alter("lyapunov", "kind", CHAOTIC, law="nonlinear")
+CHAOS_OF_RUNS = alter("agreement", "kind", CHAOTIC, law="nonlinear")
 CASES: list[tuple[str, str, Alteration]] = [
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus", law="nonlinear"), reached(1, initial="minus"))),
@@ -485,11 +485,11 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("periodic_for_one_block", FAILS, alter("two_blocks", "one_block_kind", QUASIPERIODIC, law="nonlinear")),
     ("periodic_for_one_block", FAILS, alter("two_blocks", "one_block_stop_rate", 0.0)),
     ("periodic_for_one_block", LOOSELY, alter("two_blocks", "one_block_kind", CHAOTIC, a=0.1)),
-    ("periodic_for_one_block", FAILS, alter("lyapunov", "kind", PERIODIC)),
+    ("periodic_for_one_block", FAILS, alter("agreement", "kind", PERIODIC)),
     (
         "periodic_for_one_block",
         HOLDS,
-        both(alter("lyapunov", "kind", PERIODIC), alter("two_blocks", "kind", CHAOTIC, chain="train", a=0.3)),
+        both(alter("agreement", "kind", PERIODIC), alter("two_blocks", "kind", CHAOTIC, chain="train", a=0.3)),
     ),
     ("periodic_for_one_block", NOT_TESTABLE, alter("two_blocks", "one_block_kind", -1, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, alter("solvers", "difference", 0.05, solver="rk4")),
@@ -503,18 +503,18 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("solutions_agree", FAILS, solutions(1.1e-6, mean=0.0, error=0.0)),
     # Under another convention the laws may lead to one result.
     ("solutions_agree", CONVENTION, CHAOS_OF_RUNS),
-    ("solutions_agree", CONVENTION, alter("lyapunov", "kind", PERIODIC, law="nonlinear", initial="minus")),
+    ("solutions_agree", CONVENTION, alter("agreement", "kind", PERIODIC, law="nonlinear", initial="minus")),
     # Whether other regular motion is periodic or not is no other result.
-    ("solutions_agree", HOLDS, alter("lyapunov", "kind", PERIODIC, law="nonlinear", initial="plus")),
+    ("solutions_agree", HOLDS, alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus")),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", CHAOTIC, law="nonlinear"))),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
-    ("solutions_agree", NOT_TESTABLE, alter("lyapunov", "kind", UNDETERMINED)),
+    ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", np.nan)),
     # What has failed agrees with nothing.
     ("solutions_agree", NOT_TESTABLE, failed("rk4")),
     ("solutions_agree", NOT_TESTABLE, both(failed("rk4"), failed("map", law="linearized"))),
     ("solutions_agree", HOLDS, failed("rk4", a=0.02)),
-    ("solutions_agree", HOLDS, alter("lyapunov", "kind", UNDETERMINED, a=0.02)),
+    ("solutions_agree", HOLDS, alter("agreement", "kind", UNDETERMINED, a=0.02)),
     ("map_is_cheaper", FAILS, alter("solvers", "step_count", 10**9)),
     ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 10_000, solver="series")),
     ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 9_999_000, solver="rk4")),

@@ -14,7 +14,7 @@ from burridge_knopoff.summaries.branch_changes import Change
 from tests.grids import PAPER_MODELS
 from tests.sections import AGREEMENT, MOTION
 
-_, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC, _ = MotionKind
+_, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC, *_ = MotionKind
 
 # Fine where the paper's edges of synchrony are.
 A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in range(1, 61))]))
@@ -161,7 +161,6 @@ def _lyapunov() -> xarray.Dataset:
     exponent[:, 0] = np.where(A > 0.1, 0.05, 1e-5)
     return _dataset(
         {
-            "kind": (POINT, np.stack(KINDS).astype("i1")),
             "mean_distance": (POINT, MEANS),
             "section_period": (POINT, np.stack([A < 0.1, np.zeros(len(A))]).astype("i2")),
             "lyapunov_exponent": ((*POINT, "exponent"), exponent),

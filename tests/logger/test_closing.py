@@ -16,7 +16,7 @@ from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Jo
 
 STATUSES = dict(enumerate(STATUS_FLAG["flag_meanings"].split()))
 FOLDER = Path("results/paper/summary")
-RULES = {"claims": "claims.json", "mean_distance": "mean_distance.nc", "lyapunov": "lyapunov.nc"}
+RULES = {"claims": "claims.json", "mean_distance": "mean_distance.nc", "agreement": "agreement.nc"}
 POINT, AGAIN = "results/paper/points/a.nc", "the same command goes on where this run stopped"
 
 
@@ -25,7 +25,7 @@ def write(claims, statuses, kinds):
     (FOLDER / "claims.json").write_text(json.dumps(claims))
     for rule, name, meanings, values in (
         ("mean_distance", "status", STATUSES, statuses),
-        ("lyapunov", "kind", MotionKind, kinds),
+        ("agreement", "kind", MotionKind, kinds),
     ):
         dataset = xr.Dataset({name: ("a", np.array(values, dtype="i1"), flag("i1", meanings))})
         dataset.to_netcdf(FOLDER / RULES[rule])
@@ -64,7 +64,7 @@ def test_a_whole_study():
         "  fails: claim_0, claim_1, claim_2, claim_3, claim_4, claim_5, claim_6, claim_7 and 2 more",
         "  depends on convention: plus",
         f"points: 3 of 5 did not complete: diverged 2, step_limit 1 (status in {FOLDER}/mean_distance.nc)",
-        f"points: kind of motion undetermined at 2 of 5 (kind in {FOLDER}/lyapunov.nc)",
+        f"points: kind of motion undetermined at 2 of 5 (kind in {FOLDER}/agreement.nc)",
         "report: results/paper/report.html",
     ]
     # A single point says nothing of summaries.

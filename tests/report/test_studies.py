@@ -70,7 +70,7 @@ def test_what_does_not_hold_in_the_chain_is_said(small, html):
     assert ("coupling 1, 1.3; pulling 1.5; static friction 1, 1.1, 1.2" in html) == (not chain.is_mirror_symmetric)
     if not chain.is_mirror_symmetric:
         assert (small.found["mean_distance"]["synchronized"] == 0).all()
-        assert (small.found["lyapunov"]["kind"] != 0).all()
+        assert (small.found["agreement"]["kind"] != 0).all()
         assert (small.found["attractors"]["side"] == 0).all()
 
 

@@ -30,7 +30,7 @@ def model(threshold=1.0, v=0.1):
     ],
 )
 def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longer, expected):
-    first = stand_in(kind=kind, exponent=np.array([exponent]), recurrence=7.0).motion
+    first = stand_in(kind=kind, exponent=np.array([exponent]), recurrence=7.0, returns=ROWS.copy()).motion
     later = {
         "recurrence": 9.0,
         "kind": longer,
@@ -74,7 +74,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     ],
 )
 def test_growth_that_is_too_fast_for_a_torus_is_looked_at_longer(tell, kind, exponent, told, chaotic):
-    first = stand_in(kind=kind, exponent=np.array([exponent, 0.0, -0.1])).motion
+    first = stand_in(kind=kind, exponent=np.array([exponent, 0.0, -0.1]), returns=ROWS.copy()).motion
     tell(steady, "measure_once", [first, replace(first, returns=ROWS)])
     tell(steady, "locked_orbit", [None, None])
     run = SimpleNamespace(status="diverged")
@@ -174,7 +174,7 @@ def locked(threshold=1.0):
 def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tell, by_exponent, v, difference, stays):
     """Its ⟨J⟩, of an earlier time, would be listed with the exponents of the orbit; errors of 1e-5 each are allowed."""
     told = {"exponent": np.array([6e-4, 0.0, -0.1]), "mean_distance_error": 1e-5}
-    first = stand_in(kind=MotionKind.UNDETERMINED, **told).motion
+    first = stand_in(kind=MotionKind.UNDETERMINED, returns=ROWS.copy(), **told).motion
     longer = replace(first, kind=MotionKind.PERIODIC, returns=ROWS, exponent=np.array([0.0, -0.1, -0.2]))
     after = None if difference is None else replace(first, mean_distance=0.1 + difference)
     orbit = locked()
@@ -189,6 +189,24 @@ def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tel
     else:
         assert found.left_for.vector().tolist() == (ROWS[-1] if by_exponent else orbit.reference.vector()).tolist()
         assert found.exponent is first.exponent
+
+
+@pytest.mark.parametrize(
+    ("kind", "moved", "drifts"),
+    [
+        (MotionKind.QUASIPERIODIC, 0.9e-3, False),
+        (MotionKind.QUASIPERIODIC, 1.1e-3, True),
+        (MotionKind.CHAOTIC, 1.1e-3, False),  # it is elsewhere on its set
+    ],
+)
+def test_what_has_moved_on_in_the_longer_window_still_drifts(tell, kind, moved, drifts):
+    first = stand_in(kind=MotionKind.QUASIPERIODIC, exponent=np.zeros(3), returns=ROWS.copy(), spacing=0.0).motion
+    tell(steady, "measure_once", [first, replace(first, kind=kind, returns=ROWS + moved)])
+    tell(steady, "locked_orbit", [None, None])
+    found = measure(model(), None, 50.0, 30.0, MOTION)
+    assert (found.left_for is not None) == drifts
+    if drifts:
+        assert found.left_for.vector() == pytest.approx(ROWS[-1] + moved)
 
 
 def test_slower_motion_has_smaller_exponents(tell):

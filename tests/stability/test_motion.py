@@ -6,14 +6,8 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, law_of, simulate
-from burridge_knopoff.stability.motion import (
-    is_unstable,
-    motion_kind,
-    motion_of_run,
-    repetition,
-    section_closed,
-    section_period,
-)
+from burridge_knopoff.stability.motion import Motion, motion_of, motion_of_run, words_of
+from burridge_knopoff.stability.period import period_of, repetition, section_period
 from burridge_knopoff.stability.settings import MOTION
 
 QUASIPERIODIC = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2000))
@@ -48,6 +42,8 @@ def run_of(velocity, states, first_event=0.0, falling=False):
         "event_time": events,
         "event_position": states,
         "event_velocity": 0.5 * states,
+        "event_block": np.ones(len(events), dtype=int),
+        "event_kind": np.zeros(len(events), dtype=int),
     }
 
 
@@ -89,16 +85,17 @@ def test_the_words_of_a_kind():
     [
         (1e-9, 1, (0.0, -0.01), 1e-5, MotionKind.SYNCHRONIZED),
         (0.1, 3, (1e-4, -1e-4), 1e-5, MotionKind.PERIODIC),
-        (0.1, 0, (1e-4, -0.01), 1e-5, MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 1e-5, MotionKind.QUASIPERIODIC),
+        (1e-9, 0, (1e-4, -0.01), 1e-5, MotionKind.SYNCHRONIZED),
         (0.1, 0, (1e-4, -1e-4), 1e-5, MotionKind.QUASIPERIODIC),
         # With errors larger than the exponents of chaos only a repetition tells something.
         (0.1, 0, (1e-4, -0.01), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 3, (1e-4, -0.01), 1e-2, MotionKind.PERIODIC),
-        (0.1, 0, (1e-4, -0.01), 0.9e-3, MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 0.9e-3, MotionKind.QUASIPERIODIC),
         (0.1, 0, (1e-4, -0.01), 1.1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (2.3e-2, -3e-3), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
-        (1e-9, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
+        (1e-9, 0, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED_CHAOS),
         # Motion that repeats is periodic, also on an orbit that repels all others.
         (1e-9, 1, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED),
         (0.1, 2, (0.02, 0.0), 1e-3, MotionKind.PERIODIC),
@@ -106,7 +103,7 @@ def test_the_words_of_a_kind():
         (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
         (0.1, 2, (-0.01, -0.02), 1e-2, MotionKind.PERIODIC),
         # Above the threshold but not above its error, or the other way round: no chaos.
-        (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.PERIODIC),
+        (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.QUASIPERIODIC),
         (0.1, 0, (9e-4, -0.01), 1e-5, MotionKind.UNDETERMINED),
         # Weak chaos or a torus: the error leaves both.
         (0.1, 0, (2e-3, 0.0), 1e-3, MotionKind.UNDETERMINED),
@@ -127,7 +124,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
         # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
-        (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.QUASIPERIODIC),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
         # Each is judged by its own one.
@@ -138,14 +135,74 @@ def test_the_words_of_a_kind():
     ],
 )
 def test_kinds(mean_distance, period, exponents, error, kind):
-    """By one error of all exponents, or one each."""
-    errors = np.broadcast_to(error, len(exponents))
-    assert motion_kind(mean_distance, period, np.array(exponents), errors, MOTION) == kind
+    """By one error of all exponents, or one each; a period is one of section points."""
+    assert told(mean_distance, period, exponents, error).kind == kind
 
 
-@pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.UNDETERMINED)])
-def test_stops_tell_a_period_only_where_section_points_do_not(points, kind):
-    """Three points would show a repetition, and these do not."""
+def told(mean_distance, period, exponents, error, settings=MOTION, points=2000):
+    """Return the motion of a run with section points at τ = 0, 1, … and without events."""
+    random = np.random.default_rng(3).random(period or points)
+    run = run_of(np.resize(random, points), np.zeros((points, 3)), first_event=np.inf)
+    exponents = np.array(exponents, dtype=float)
+    run |= {"lyapunov_exponent": exponents, "lyapunov_error": np.broadcast_to(error, len(exponents))}
+    return motion_of(run, mean_distance, settings)
+
+
+REGULAR = (0.1, (0.0, -1e-5), 1e-5)
+
+
+@pytest.mark.parametrize(("period", "kind"), [(5, "PERIODIC"), (6, "QUASIPERIODIC"), (0, "QUASIPERIODIC")])
+@pytest.mark.parametrize("points", [40, 400, 4000])
+def test_the_longest_period_decides_and_no_window(period, kind, points):
+    mean, *exponents = REGULAR
+    found = told(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
+    assert found.kind.name == kind
+    assert found.section_period == (5 if kind == "PERIODIC" else 0)
+
+
+def test_a_longer_period_is_known_from_the_stops():
+    """The motion is locked: it has not left its closed orbit, but shows no period that a run would show."""
+    states = np.tile(np.random.default_rng(5).random((50, 3)), (12, 1))
+    run = run_of(states[:, 0], states) | {"lyapunov_exponent": np.zeros(2), "lyapunov_error": np.full(2, 1e-5)}
+    found = motion_of(run, 0.1, replace(MOTION, longest_period=40.0))
+    assert found == Motion(MotionKind.QUASIPERIODIC, 0, 50.0)
+    assert not found.is_open
+    assert motion_of(run, 0.1, MOTION) == Motion(MotionKind.PERIODIC, 50, 50.0)
+    # The states of the last events alone do not show it for long enough.
+    late = run_of(states[:, 0], states, first_event=400.0)
+    assert np.isnan(period_of(late, replace(MOTION, longest_period=40.0))[1])
+
+
+def test_an_approach_that_turns_round_the_limit_has_no_period():
+    """A multiplier next to a root of 1 brings it back to where it was, but nearer: that is no period."""
+    k = np.arange(600.0)
+    approach = 1.0 + 1e-6 * np.exp(-1e-3 * k) * np.cos(2.0 * np.pi * k / 88.0)
+    assert repetition(approach, 1e-6, 200) == 0
+    assert repetition(1.0 + 0.1 * (approach - 1.0), 1e-6, 200) == 1
+
+
+@pytest.mark.parametrize(
+    ("motion", "words"),
+    [
+        (Motion(MotionKind.PERIODIC, 48, 157.2), "periodic, section points repeat after 48"),
+        (
+            Motion(MotionKind.SYNCHRONIZED, 1, 5.7, unstable=True),
+            "unstable synchronized, section points repeat after 1",
+        ),
+        (Motion(MotionKind.QUASIPERIODIC), "quasiperiodic within 2000 time units"),
+        (
+            Motion(MotionKind.QUASIPERIODIC, 0, 28991.98),
+            "quasiperiodic within 2000 time units; locked with a period of 28992",
+        ),
+        (Motion(MotionKind.SYNCHRONIZED_CHAOS), "synchronized chaos"),
+    ],
+)
+def test_a_motion_in_words(motion, words):
+    assert words_of(motion, MOTION) == words
+
+
+@pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.PERIODIC)])
+def test_stops_tell_a_period_that_section_points_do_not(points, kind):
     run = run_of(np.arange(points), np.ones((points, 3)))
     told = {
         "status": "completed",
@@ -163,26 +220,8 @@ def test_stops_tell_a_period_only_where_section_points_do_not(points, kind):
 def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
     default = getattr(MOTION, name)
     assert [getattr(MOTION.at_speed(v), name) / default for v in (0.1, 10.0, 0.01)] == [1.0, 1.0, pytest.approx(0.1)]
+    assert MOTION.at_speed(0.01).longest_period == pytest.approx(10.0 * MOTION.longest_period)
     assert MOTION.at_speed(0.01).synchronization_threshold == MOTION.synchronization_threshold
-
-
-def test_sections_that_repeat_after_however_many_points():
-    random = np.random.default_rng(3)
-    orbit = random.random(150)
-    assert section_closed(np.tile(orbit, 8), 1e-6)
-    assert repetition(np.tile(orbit, 8), 1e-6, 60) == 0
-    assert not section_closed(QUASIPERIODIC, 1e-6)
-    assert not section_closed(random.random(2000), 1e-6)
-    # Many points lie near each other everywhere, and those of small motion: only closer than that tells an orbit.
-    assert not section_closed(np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2_000_000)), 1e-6)
-    assert not section_closed(1e-4 * QUASIPERIODIC, 1e-6)
-    assert section_closed(1e-4 * np.tile(orbit, 8), 1e-6)
-    # Of the second half all but a twentieth have a neighbour, among twelve points at least.
-    assert [section_closed(np.ones(count), 1e-6) for count in (5, 22, 24)] == [False, False, True]
-    pairs = np.repeat(np.arange(50.0), 2)
-    for alone, closed in ((4, True), (6, False)):
-        section = pairs + np.where(np.arange(100) < alone, 0.25 * (np.arange(100) % 2), 0.0)
-        assert section_closed(np.concatenate([pairs, section]), 1e-6) == closed
 
 
 @pytest.mark.parametrize(
@@ -197,7 +236,7 @@ def test_sections_that_repeat_after_however_many_points():
     ],
 )
 def test_an_orbit_that_repels(period, exponents, error, unstable):
-    assert is_unstable(period, np.array(exponents), np.full(len(exponents), error), MOTION) is unstable
+    assert told(0.1, period, exponents, error).unstable is unstable
 
 
 def test_uniform_sliding_that_attracts_is_no_periodic_motion():
@@ -215,12 +254,3 @@ def test_what_repeats_without_a_section_point_is_periodic():
     run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), start, transient=2000.0, window=2000.0)
     assert not len(run.crossing_time)
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.PERIODIC
-
-
-@pytest.mark.parametrize(("mean", "kind"), [(0.0, MotionKind.SYNCHRONIZED), (0.1, MotionKind.PERIODIC)])
-def test_an_orbit_of_a_long_period_is_known_by_its_section(mean, kind):
-    """Its exponents alone look like those of a torus."""
-    section = np.tile(np.random.default_rng(3).random(150), 8)
-    run = run_of(section, np.arange(3.0 * len(section)).reshape(-1, 3))
-    told = {"status": "completed", "mean_distance": mean, "lyapunov_exponent": np.array([0.0, 0.0, -0.1])}
-    assert motion_of_run({**run, **told, "lyapunov_error": np.full(3, 1e-5)}, True, MOTION).kind == kind

@@ -147,11 +147,15 @@ def test_what_is_no_chaos_has_to_be_steady(add, error, stops, measured, captured
 
 @pytest.mark.parametrize("kind", [MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED])
 def test_what_repeats_is_a_closed_orbit_whatever_its_exponents(add, kind):
-    pair, asked = add([motion(kind=kind)], None, [0.02])
+    pair, asked = add([motion(kind=kind, period=2000.0)], None, [0.02])
     assert [item.motion.kind for item in pair] == [MotionKind.PERIODIC] * 2
     assert "visit" not in [name for name, *_ in asked]
     (as_one,), _ = add([motion(9e-7, kind=kind)], None, [0.02])
     assert as_one.motion.kind == MotionKind.SYNCHRONIZED
+    # Locked with a longer period, or with one that nobody has seen.
+    for period in (2001.0, np.nan):
+        pair, _ = add([motion(kind=kind, period=period)], None, [0.02])
+        assert [item.motion.kind for item in pair] == [MotionKind.QUASIPERIODIC] * 2
 
 
 def test_what_attracts_as_a_whole_is_a_slow_set(add):

@@ -24,7 +24,6 @@ from tests.stability.test_search import CLOSED, MODEL, ONE, OTHER, SETTINGS, WID
         (WIDE, True, [1.0, 1.0, 0.0], [1, 2, 4], [1, 2, 4], True),
         # What has not settled has twice the time, and is let go if it drifts by more than ten resolutions.
         (CLOSED, False, [2e-5, 0.0], [1, 1], [1, 2], True),
-        (CLOSED, False, [9e-3] * 5, [1] * 5, [1, 2, 4, 8, 16], True),
         (CLOSED, False, [1.1e-2] * 5, [1] * 5, [1, 2, 4, 8, 16], False),
         (CLOSED, False, [1.0, None], [1, 1], [1, 2], False),
     ],
@@ -35,6 +34,44 @@ def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, wind
     asked = tell(settling, "visit", answers)
     assert (Settling(MODEL, SETTINGS).settle(instant_of(ONE[0])) is not None) == found
     assert [arguments[2:4] for arguments in asked] == [(x, 100 * y) for x, y in zip(transients, windows, strict=True)]
+
+
+def creeping(time, tau, size, window=100.0):
+    """Return what is seen of a closed orbit that is approached as size · exp(−τ / tau), from `time` on."""
+    drift = size * (np.exp(-time / tau) - np.exp(-(time + 0.5 * window) / tau))
+    return shown(ONE, ONE, CLOSED, drift, window=window)
+
+
+@pytest.mark.parametrize("tau", [1e3, 1e5, 1e9])
+def test_how_far_a_motion_still_is_follows_from_how_its_drift_dies_out(tau):
+    first, later = creeping(0.0, tau, 0.3), creeping(5100.0, tau, 0.3)
+    # After the half of the window between which and the one before it the drift was seen.
+    assert settling._left(first, later, 5000.0) == pytest.approx(0.3 * np.exp(-5150.0 / tau), rel=1e-4)
+    assert settling._left(first, first, 5000.0) == np.inf
+
+
+@pytest.mark.parametrize(("tau", "visits", "rests"), [(5.0, 1, True), (100.0, 3, True), (1e6, 5, False)])
+def test_a_motion_that_drifts_is_followed_until_it_is_there(tell, tau, visits, rests):
+    """For times that double, up to sixteen time limits; what drifts on then is undetermined."""
+    own, time, seen = Settling(MODEL, SETTINGS), 0.0, []
+    waits = [SETTINGS.time_limit * 2.0**k for k in range(5)]
+    for wait in waits:
+        time += wait + 100.0
+        seen.append(creeping(time, tau * SETTINGS.time_limit / 100.0, 0.005))
+    asked = tell(settling, "visit", seen[:visits])
+    found = own.at_rest(creeping(0.0, tau * SETTINGS.time_limit / 100.0, 0.005))
+    assert found is (seen[visits - 1] if rests else None)
+    assert [arguments[2] for arguments in asked] == waits[:visits]
+
+
+def test_a_set_that_is_no_closed_orbit_has_to_stay_where_it_is(tell):
+    """Or it drifts: slowly along a torus, or to another motion."""
+    own, moving = Settling(MODEL, SETTINGS), shown(ONE, ONE, WIDE, 1.0)
+    tell(settling, "visit", [moving])
+    assert own.at_rest(moving) is moving
+    elsewhere = [shown(ONE + k, ONE + k, WIDE, 1.0) for k in range(1, 6)]
+    tell(settling, "visit", elsewhere)
+    assert own.at_rest(moving) is None
 
 
 def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):

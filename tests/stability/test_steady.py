@@ -18,6 +18,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.stability import steady
+from burridge_knopoff.stability.motion import Motion
 from burridge_knopoff.stability.returns import visit
 from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION
@@ -125,20 +126,9 @@ def test_motions_seen_at_other_blocks_are_others():
 
 
 @pytest.mark.parametrize(
-    ("told", "rows", "spacing", "mean", "threshold", "expected"),
-    [
-        (MotionKind.QUASIPERIODIC, ROUND, 0.9e-6, 0.1, 1.0, MotionKind.PERIODIC),
-        (MotionKind.UNDETERMINED, ROUND, 0.9e-6, 1e-9, 1.0, MotionKind.SYNCHRONIZED),
-        (MotionKind.UNDETERMINED, ROUND, 0.9e-6, 1e-9, (1.0, 1.0, 0.9), MotionKind.PERIODIC),
-        (MotionKind.QUASIPERIODIC, ROUND, 1.1e-6, 0.1, 1.0, MotionKind.QUASIPERIODIC),
-        (MotionKind.UNDETERMINED, ROWS, 0.9e-6, 0.1, 1.0, MotionKind.UNDETERMINED),
-        (MotionKind.CHAOTIC, ROUND, 0.9e-6, 0.1, 1.0, MotionKind.CHAOTIC),
-        (MotionKind.PERIODIC, ROUND, 0.9e-6, 1e-9, 1.0, MotionKind.PERIODIC),
-    ],
+    ("mean", "threshold", "judged"), [(0.1, 1.0, 0.1), (1e-9, 1.0, 1e-9), (1e-9, (1.0, 1.0, 0.9), np.inf)]
 )
-def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
-    monkeypatch, tell, told, rows, spacing, mean, threshold, expected
-):
+def test_what_is_measured_in_one_window(tell, mean, threshold, judged):
     states = np.zeros((3, 3))
     run = SimpleNamespace(
         status="completed",
@@ -152,21 +142,21 @@ def test_what_looks_like_a_torus_but_repeats_is_a_closed_orbit(
         mean_distance_error=0.5,
     )
     runs = tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
-    tell(steady, "returns_of", [replace(shown(rows, -rows, spacing, 0.0), block=1, mirror_block=3), None])
-    monkeypatch.setattr(steady, "section_period", lambda run, settings: 7)
-    asked, looked = tell(steady, "motion_kind", [told]), tell(steady, "recurrence", [21.0])
+    tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, 0.9e-6, 0.0), block=1, mirror_block=3), None])
+    told = Motion(MotionKind.PERIODIC, 7, 40.0)
+    asked, looked = tell(steady, "motion_of", [told]), tell(steady, "recurrence", [21.0])
     found = steady.measure_once(model(threshold), None, 50.0, 30.0, MOTION, TUNING)
     # Of all events only stops are kept.
     assert runs[0][3:] == (False, True)
     # Those of the block at which the motion is seen.
     assert (looked[0][0].tolist(), found.recurrence) == ([0.5], 21.0)
     assert looked[0][1] is found.returns
-    assert (found.kind, found.section_period) == (expected, 7)
+    assert (found.kind, found.section_period, found.period) == (MotionKind.PERIODIC, 7, 40.0)
     assert (found.mean_distance, found.mean_distance_error) == (mean, 0.5)
     assert (found.block, found.mirror_block) == (1, 3)
     assert found.stop_rate.tolist() == pytest.approx([1 / 30, 0.0, 2 / 30])
     # The end blocks of a chain that is not its own mirror image do not synchronize.
-    assert asked[0][0] == (mean if threshold == 1.0 else np.inf)
+    assert asked[0][1] == judged
     # A run that is cut short, and one of hardly any stops, tell nothing.
     for _ in range(2):
         assert steady.measure_once(model(), None, 50.0, 30.0, MOTION, TUNING) is None

@@ -126,7 +126,7 @@ def test_two_blocks_are_what_their_states_end_on(compared):
         "transient": 1500.0,
         "search_transient": 3000.0,
         "agreement_standard_errors": 3.0,
-        "motion_longest_period": 120,
+        "motion_longest_period": 2000.0,
     }
     assert {name: compared.attrs[name] for name in told} == told
     assert compared["state"].values.tolist() == [1, 2]

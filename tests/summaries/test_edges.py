@@ -32,6 +32,7 @@ TOLD = {
     "kind": [MotionKind[kind] for kind in ("SYNCHRONIZED", "SYNCHRONIZED", "PERIODIC", "PERIODIC", "CHAOTIC")],
     "symmetry": [0, 0, 2, 2, 2],
     "section_period": [1, 1, 1, 1, 0],
+    "period": [5.7, 5.7, 5.7, 5.7, np.nan],
     "upward_branch": [0, 1, 1, 1, -1],
     "downward_branch": [-1, 0, 0, 1, 1],
 }
@@ -87,6 +88,7 @@ def told(rows, in_grid):
     filled = np.array([[*row.items(), (-1, -1), (-1, -1)][:2] for row in rows])
     slots = {"branch": filled[..., 0], "kind": filled[..., 1]}
     slots |= dict.fromkeys(("side", "symmetry", "section_period"), np.zeros((len(rows), 2), int))
+    slots["period"] = np.full((len(rows), 2), np.nan)
     values = xr.Dataset({name: (("value", "attractor"), item) for name, item in slots.items()})
     values = values.assign(a=("value", np.arange(float(len(rows)))), in_grid=("value", in_grid))
     reached = [[10 * k, 10 * k + 1] for k in range(1, sum(in_grid) + 1)]

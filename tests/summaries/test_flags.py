@@ -6,7 +6,10 @@ import pytest
 
 YES_NO = {0: "no", 1: "yes"}
 STATUS = {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"}
-MOTION = {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic", 4: "transient_chaos"}
+MOTION = {
+    **{-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"},
+    **{4: "transient_chaos", 5: "synchronized_chaos"},
+}
 EDGE = {-1: "undetermined", 0: "grazing", 1: "fold", 2: "flip", 3: "neimark_sacker", 4: "pitchfork", 5: "crisis"}
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}
@@ -30,7 +33,7 @@ EXPECTED = {
         "turns": VERDICT,
         "orbit_stable": VERDICT,
     },
-    "lyapunov": {"kind": MOTION, "unstable": YES_NO, "status": STATUS},
+    "lyapunov": {"run_kind": MOTION, "unstable": YES_NO, "status": STATUS},
     "mean_distance": {"synchronized": YES_NO, "status": STATUS},
     "orbits": {
         "status": {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"},

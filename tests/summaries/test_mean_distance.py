@@ -90,7 +90,7 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     found = summarize(grid, 1e-6)["synchronized"]
     assert found.values.ravel().tolist() == [synchronized]
     assert ("comment" in found.attrs) == (not synchronized)
-    kind = lyapunov.summarize(grid, 3, 1e-6, MOTION)["kind"]
+    kind = lyapunov.summarize(grid, 3, 1e-6, MOTION)["run_kind"]
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
 
 
@@ -100,10 +100,10 @@ GOLDEN = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(1200))
 TOLD = {
     0.1: ((0.0, -0.1, -0.2), np.tile([0.1, 0.3], 10), "completed", MotionKind.PERIODIC, 1, 2),
     0.2: ((1e-4, -1e-4, -0.2), GOLDEN, "completed", MotionKind.QUASIPERIODIC, 2, 0),
-    # Section points that repeat after more of them than are looked for.
-    0.3: ((1e-4, -1e-4, -0.2), np.tile(ORBIT, 8), "completed", MotionKind.PERIODIC, 2, 0),
+    # A long period of section points, though the exponents look like those of a torus.
+    0.3: ((1e-4, -1e-4, -0.2), np.tile(ORBIT, 8), "completed", MotionKind.PERIODIC, 2, 150),
     0.4: ((0.02, 0.0, -0.3), ORBIT, "completed", MotionKind.CHAOTIC, 1, 0),
-    0.5: ((0.0, -0.1, -0.2), np.tile([0.1, 0.3], 10), "step_limit", MotionKind.UNDETERMINED, 1, 2),
+    0.5: ((0.0, -0.1, -0.2), np.tile([0.1, 0.3], 10), "step_limit", MotionKind.UNDETERMINED, 1, 0),
 }
 
 
@@ -124,12 +124,12 @@ def told(tmp_path):
 
 def test_kinds_of_motion_of_runs(told):
     found = lyapunov.summarize(told, 3, 1e-6, MOTION)
-    assert (found.attrs["synchronization_threshold"], found.attrs["longest_period"]) == (1e-6, 60)
+    assert (found.attrs["synchronization_threshold"], found.attrs["longest_period"]) == (1e-6, 2000.0)
     for point in (found.sel(law=law, initial=state) for law in found["law"].values for state in ("minus", "plus")):
         expected = list(zip(*TOLD.values(), strict=True))
         assert point["lyapunov_exponent"].values.tolist() == [list(exponent) for exponent in expected[0]]
         assert (point["lyapunov_error"] == 1e-5).all()
-        names = ("kind", "zero_exponent_count", "section_period")
+        names = ("run_kind", "zero_exponent_count", "section_period")
         assert tuple(tuple(point[name].values.tolist()) for name in names) == tuple(expected[3:])
         assert point["mean_distance"].values.tolist() == list(TOLD)
         assert point["status"].values.tolist() == [0, 0, 0, 0, 1]

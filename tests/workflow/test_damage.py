@@ -105,7 +105,7 @@ def readers(results: Path):
         "chaotic_exponent": 1e-3,
         "standard_errors": 3,
         "period_tolerance": 1e-6,
-        "longest_period": 60,
+        "longest_period": 2000.0,
     }
     compared = {"relative_tolerance": 0.1, "standard_errors": 3}
     others = [open_summary(results / f"summary/{name}.nc").sel(a=[0.2]) for name in ("lyapunov", "attractors")]

@@ -92,7 +92,7 @@ def test_slips_of_a_carlson_langer_chain_are_small_and_large(tmp_path, monkeypat
 def test_unequal_blocks_are_periodic_or_chaotic(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("unequal_blocks", tmp_path))
     check_page("studies.md", "Two unequal blocks")
-    kind = opened(tmp_path, "lyapunov")["kind"]
+    kind = opened(tmp_path, "agreement")["kind"]
     meanings = dict(zip(kind.attrs["flag_values"].tolist(), kind.attrs["flag_meanings"].split(), strict=True))
     found = [[meanings[value] for value in row] for row in kind.sel(law="coulomb").values.tolist()]
     assert found == 2 * [["periodic", "periodic", "chaotic"]]

@@ -31,7 +31,7 @@ def test_summaries_carry_the_status_and_have_no_value(summary):
     for name in ("mean_distance", "mean_distance_error"):
         assert (np.isnan(found[name]) == failed).all()
     assert (found["synchronized"].where(failed, 0) == 0).all()
-    kind = summary("lyapunov")["kind"]
+    kind = summary("agreement")["kind"]
     assert (kind.where(failed, -1) == kind.attrs["flag_meanings"].split().index("undetermined") - 1).all()
     agreement = summary("agreement")
     assert (agreement["agrees"].sel(a=2.5) == -1).all()

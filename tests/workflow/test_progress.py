@@ -104,9 +104,9 @@ def test_last_lines_of_a_study(finished):
         *("attractors 2", "refined 2", "basins 9", "edges 2", "phases 2", "solvers 6", "report.html")
     }
     assert "points: all 16 completed" in lines
-    with xr.open_dataset(finished.folder / "results" / "tiny" / "summary" / "lyapunov.nc") as lyapunov:
-        undetermined = int((lyapunov["kind"] == -1).sum())
-    path = "results/tiny/summary/lyapunov.nc"
+    with xr.open_dataset(finished.folder / "results" / "tiny" / "summary" / "agreement.nc") as agreement:
+        undetermined = int((agreement["kind"] == -1).sum())
+    path = "results/tiny/summary/agreement.nc"
     assert f"points: kind of motion undetermined at {undetermined} of 16 (kind in {path})" in lines
 
 

@@ -180,7 +180,10 @@ KEYS = [
         {"synchronization_threshold": 1.0e-5},
         ("mean_distance", "lyapunov", "agreement", "attractors_of_law", "two_blocks"),
     ),
-    ({"motion.zero_exponent": 1.0e-3, "motion.longest_period": 50}, ("lyapunov", "attractors_of_law", "two_blocks")),
+    (
+        {"motion.zero_exponent": 1.0e-3, "motion.longest_period": 1000.0},
+        ("lyapunov", "attractors_of_law", "two_blocks"),
+    ),
     ({"agreement.relative_tolerance": 0.2, "agreement.standard_errors": 2}, ("agreement", "two_blocks")),
     ({"figures.a": 0.05}, ("figure_motion", "figure_distance", "figure_friction_laws")),
     ({"figures.law": "nonlinear"}, ("figure_motion", "figure_distance", "figure_stick_slip")),

@@ -14,7 +14,7 @@ from burridge_knopoff.claims.verdict import (
     by_share,
     known_share,
 )
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import CHAOS, MotionKind
 
 
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
@@ -81,11 +81,11 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     grid = found["a"].values
     share = known_share(right, known, loose_share, f"the motion of one block is not known {at_values(grid, ~known)}")
     measured = [Measured("share of a at which one block sticks and slips periodically", share)]
-    two = found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1) == MotionKind.CHAOTIC
+    two = np.isin(found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1), CHAOS)
     evidences = [("the train of two blocks", grid, two)]
-    if "lyapunov" in evidence.summaries:
-        runs = evidence.choose(evidence.summary("lyapunov"), a)
-        three = runs["kind"].transpose("a", ...).values.reshape(runs.sizes["a"], -1) == MotionKind.CHAOTIC
+    if "agreement" in evidence.summaries:
+        runs = evidence.choose(evidence.summary("agreement"), a)
+        three = np.isin(runs["kind"].transpose("a", ...).values.reshape(runs.sizes["a"], -1), CHAOS)
         evidences.append(("the study's chain", runs["a"].values, three))
     for name, values, chaos in evidences:
         measured.append(Measured(f"share of motions of {name} that are chaotic", float(chaos.mean())))

@@ -14,7 +14,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.stability.motion import MotionKind, motion_kind
+from burridge_knopoff.stability.motion import MotionKind, motion_with
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.judgement import compare
 
@@ -53,12 +53,12 @@ def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any
     own = evidence.summaries.get("agreement")
     threshold = {} if own is None else own.attrs
     before, after = (_kinds(lyapunov, one.config, about) for one, about in ((evidence, threshold), (other, agreement)))
-    kind = lyapunov["kind"]
-    changed = {"lyapunov": lyapunov.assign(kind=kind.copy(data=np.where(after != before, after, kind.values)))}
+    kind = lyapunov["run_kind"]
+    changed = {"lyapunov": lyapunov.assign(run_kind=kind.copy(data=np.where(after != before, after, kind.values)))}
     if own is not None:
         runs = own["kind"]
         same = runs.values == kind.sel(law=runs["law"], initial=runs["initial"], a=runs["a"]).values
-        moved = changed["lyapunov"]["kind"].sel(law=runs["law"], initial=runs["initial"], a=runs["a"]).values
+        moved = changed["lyapunov"]["run_kind"].sel(law=runs["law"], initial=runs["initial"], a=runs["a"]).values
         changed["agreement"] = own.assign(kind=runs.copy(data=np.where(same, moved, runs.values)))
     if THRESHOLD in agreement and "mean_distance" in evidence.summaries:
         means = evidence.summaries["mean_distance"]
@@ -73,13 +73,12 @@ def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[s
     """Return the kind of motion of each run by the tolerances of a config and a threshold of synchrony."""
     threshold = {THRESHOLD: about[THRESHOLD]} if THRESHOLD in about else {}
     settings = MotionSettings(**{**config["motion"], **threshold}).at_speed(config["v"])
-    mean, period, exponent, error = (
-        lyapunov[name].values for name in ("mean_distance", "section_period", "lyapunov_exponent", "lyapunov_error")
-    )
+    names = "section_period", "period", "mean_distance", "lyapunov_exponent", "lyapunov_error"
+    points, period, mean, exponent, error = (lyapunov[name].values for name in names)
     kinds = np.full(mean.shape, int(MotionKind.UNDETERMINED))
     for at in np.argwhere(np.isfinite(mean)):
         run = tuple(at)
-        kinds[run] = motion_kind(float(mean[run]), int(period[run]), exponent[run], error[run], settings)
+        kinds[run] = motion_with(points[run], period[run], mean[run], exponent[run], error[run], settings).kind
     return kinds
 
 

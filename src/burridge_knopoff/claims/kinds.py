@@ -24,8 +24,10 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.stability.motion import (
+    CHAOS,
     REGULAR,
     MotionKind,
+    with_one_chaos,
     zero_exponents,
 )
 from burridge_knopoff.stability.settings import MotionSettings
@@ -43,15 +45,13 @@ CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
     """Return (a, kind of motion) of the runs from a state, as `agreement.nc` has it."""
     runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
-    return runs["a"].values, runs["kind"].values
+    return runs["a"].values, with_one_chaos(runs["kind"].values)
 
 
 def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return where the kind of motion that a state reaches is known, and which it is: chaos that dies is chaos too."""
+    """Return where the kind of motion that a state reaches is known, and which it is: all chaos is one."""
     known, kind = reached(attractors, initial, law, "kind")
-    return known & (kind != MotionKind.UNDETERMINED), np.where(
-        kind == MotionKind.TRANSIENT_CHAOS, MotionKind.CHAOTIC, kind
-    )
+    return known & (kind != MotionKind.UNDETERMINED), with_one_chaos(kind)
 
 
 def all_of_kind(
@@ -83,7 +83,7 @@ def all_of_kind(
         attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
         known = (attractors["branch"] >= 0).values & (attractors["kind"].values != MotionKind.UNDETERMINED)
         if known.any():
-            share = float(np.isin(attractors["kind"].values, allowed)[known].mean())
+            share = float(np.isin(with_one_chaos(attractors["kind"].values), allowed)[known].mean())
             measured.append(Measured(f"share of all attractors with {what} motion", share))
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
@@ -153,7 +153,7 @@ def onset_of_chaos(
         there = (found["branch"].values >= 0) & (grid > 0.0)[:, None]
         if there.any(axis=1).sum() < LEAST_VALUES:
             raise NotTestableError(f"attractors are known at fewer than {LEAST_VALUES} values of a under the {law} law")
-        chaotic = (there & (found["kind"].values == MotionKind.CHAOTIC)).any(axis=1)
+        chaotic = (there & np.isin(found["kind"].values, CHAOS)).any(axis=1)
         first = int(np.argmax(chaotic)) if chaotic.any() else len(grid)
         low, high = float(np.nanmax(grid)), np.inf
         if chaotic.any():

@@ -103,7 +103,7 @@ def solutions_agree(
     solved: dict[tuple[str, float], bool] = {}
     compared, measured, apart = [], [], []
     for state in initial:
-        runs = evidence.of_state("lyapunov", state)
+        runs = evidence.of_state("agreement", state)
         solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a, least=1)
         threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
         for value in solvers["a"].values:

@@ -19,7 +19,7 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.orbits.edge_kind import EdgeKind
-from burridge_knopoff.stability.motion import REGULAR, MotionKind
+from burridge_knopoff.stability.motion import CHAOS, REGULAR, MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.branch_changes import Change
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
@@ -27,7 +27,7 @@ from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 if TYPE_CHECKING:
     import xarray
 
-TORUS = "a torus, or chaos too weak to tell from one,"
+TORUS = "quasiperiodic motion, or chaos too weak to tell from it,"
 UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 
@@ -98,7 +98,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             raise NotTestableError(f"the study has no {name} law")
         own = edges["law"].values == laws.index(name)
         before, after, kinds = (edges[key].values for key in ("motion_before", "motion_after", "kind"))
-        changes = own & (edges["change"].values != Change.PASSED) & (after == MotionKind.CHAOTIC)
+        changes = own & (edges["change"].values != Change.PASSED) & np.isin(after, CHAOS)
         changes &= ~_chaotic_before(edges, evidence.summary("refined").sel(law=name))
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
         unknown = changes & (before == MotionKind.UNDETERMINED)
@@ -147,5 +147,5 @@ def _chaotic_before(edges: xarray.Dataset, refined: xarray.Dataset) -> np.ndarra
     for k in np.flatnonzero(edges["change"].values == Change.END):
         there = refined["branch"].values == edges["to_branch"].values[k]
         below = np.flatnonzero(there.any(axis=1) & (a <= edges["grid_low"].values[k]))
-        result[k] = len(below) > 0 and bool((kind[below[-1]][there[below[-1]]] == MotionKind.CHAOTIC).any())
+        result[k] = len(below) > 0 and bool(np.isin(kind[below[-1]][there[below[-1]]], CHAOS).any())
     return result

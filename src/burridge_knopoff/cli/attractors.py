@@ -72,7 +72,9 @@ def run(options: argparse.Namespace) -> int:
     column = [f"{share:.1f} ({low:.1f} to {high:.1f}) %" for share, low, high in shares]
     print("\n".join(attractor_table(found, {f"of {drawn} states (95 % interval)": column} if drawn else {})))
     if drawn:
-        print(f"\nundetermined: {int(found['undetermined_count'].sum())} of {drawn} states")
+        lost = int(found["undetermined_count"].sum())
+        why = f": they come to none of these by tau = {search.label_limit:g}, or still drift" if lost else ""
+        print(f"\nundetermined: {lost} of {drawn} states{why}")
     if state is not None:
         reached = found.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)
         branch = reached["initial_branch"].item()

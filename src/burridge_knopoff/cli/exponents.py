@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.running import simulation
     from burridge_knopoff.show.words import table
     from burridge_knopoff.stability.chains import ALIGNMENT, WINDOW, transverse_exponent
-    from burridge_knopoff.stability.motion import motion_of_run
+    from burridge_knopoff.stability.motion import motion_of_run, words_of
 
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
@@ -50,8 +50,9 @@ def run(options: argparse.Namespace) -> int:
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
     if trajectory.lyapunov_infinite_count > 0:
         print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
-    found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion.at_speed(model.v))
-    print(f"\nmotion: {found.words}")
+    motion = motion.at_speed(model.v)
+    found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
+    print(f"\nmotion: {words_of(found, motion)}")
     print(f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)

@@ -51,8 +51,8 @@ def embedded_runs(
 ) -> dict[str, Any]:
     """Return what the page knows of every run, values exact, arrays over (law, initial, a).
 
-    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a). Its `kind` is that of a
-    run or, where this leaves it open, of the attractor that the run has come to.
+    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a). Kinds of motion and
+    periods are those of `agreement`, of the attractor that the run has come to.
 
     `first` are the indices of the run that is shown at first, the one of the figures of single runs.
     `simulate` holds for each law and initial state the command in two parts, with `--a` and its value between them.
@@ -71,7 +71,8 @@ def embedded_runs(
         "mean_distance_error": _nested(mean_distance["mean_distance_error"].values),
         "status": mean_distance["status"].values.tolist(),
         "kind": agreement["kind"].values.tolist(),
-        "period": lyapunov["section_period"].values.tolist(),
+        "points": lyapunov["section_period"].values.tolist(),
+        "periods": _nested(agreement["period"].values),
         "exponents": _nested(exponent),
         "exponent_errors": _nested(error),
         "mean_distance_text": _with_errors(*(mean_distance[f"mean_distance{end}"].values for end in ("", "_error"))),
@@ -81,6 +82,8 @@ def embedded_runs(
         "arguments": shlex.join(commands.arguments),
         "results": f"results/{study.name}",
         "statuses": list(ENDS.values()),
+        "longest": study.config["motion"]["longest_period"] / min(1.0, study.config["v"] / 0.1),
+        "quasiperiodic": int(MotionKind.QUASIPERIODIC),
         "kinds": {str(int(kind)): kind.words for kind in MotionKind},
     }
 

@@ -24,11 +24,12 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
     rows = []
     for slot in np.flatnonzero(found["branch"].values[0, 0] >= 0):
         one = found.isel(law=0, a=0, attractor=slot)
-        period, kind = one["section_period"].item(), MotionKind(one["kind"].item())
+        points, period, kind = one["section_period"].item(), one["period"].item(), MotionKind(one["kind"].item())
+        locked = kind == MotionKind.QUASIPERIODIC and np.isfinite(period)
         rows.append(
             (
                 called(found, one["branch"].item(), one["side"].item()),
-                f"{kind.words} {period}" if period else kind.words,
+                f"{kind.words}{f' {points}' if points else f', locked: period {period:.5g}' if locked else ''}",
                 plain(with_error(one["mean_distance"].item(), one["mean_distance_error"].item())),
                 " ".join(f"{value:z7.4f}" for value in one["lyapunov_exponent"].values),
                 *(column[slot] for column in columns.values()),

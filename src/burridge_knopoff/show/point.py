@@ -13,7 +13,7 @@ from burridge_knopoff.provenance.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.show.words import listed, paragraph
-from burridge_knopoff.stability.motion import motion_of_run
+from burridge_knopoff.stability.motion import motion_of_run, words_of
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.words import counted, plain, with_error
 
@@ -73,7 +73,8 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
     yield "<J>", plain(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
-    yield "motion", motion_of_run(run, chain.is_mirror_symmetric, motion.at_speed(point["v"].item())).words
+    motion = motion.at_speed(point["v"].item())
+    yield "motion", words_of(motion_of_run(run, chain.is_mirror_symmetric, motion), motion)
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
         yield "exponents", ", ".join(plain(with_error(*map(float, one))) for one in exponents)

@@ -18,7 +18,7 @@ from burridge_knopoff.orbits.orbit import OrbitError
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor, close_returns, pushed, spread
 from burridge_knopoff.stability.labels import UNDETERMINED, label
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import CHAOS
 from burridge_knopoff.stability.nearness import is_near
 from burridge_knopoff.stability.radius import bounded, captured, midst, recovered
 from burridge_knopoff.stability.returns import Returns
@@ -125,7 +125,7 @@ class Search(Settling):
         """Follow a few states that are ascribed to chaotic attractors; tell whether they lead to nothing new."""
         known = len(self.attractors)
         for index, attractor in enumerate(self.attractors):
-            if attractor.slow or attractor.motion.kind != MotionKind.CHAOTIC:
+            if attractor.slow or attractor.motion.kind not in CHAOS:
                 continue
             for k in np.flatnonzero(labels == index)[: self.tuning.checked]:
                 self.reach(starts[k])

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -20,8 +21,6 @@ from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 from burridge_knopoff.stability.settling import Settling
 from burridge_knopoff.stability.steady import measure_once
 from burridge_knopoff.stability.tuning import TUNING
-
-CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +52,7 @@ def known_attractors(
         one = found.isel(attractor=slot)
         velocity = one["velocity"].values
         start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
-        closed = settling.settle(start) if one["kind"].item() in CLOSED else None
+        closed = None if math.isnan(one["period"].item()) else settling.settle(start)
         window = TUNING.filling * settings.window if closed is None else settling.window_of(closed)
         # The search has seen which kind it is, in longer windows.
         steady = measure_once(model, start, settings.transient, window, motion.at_speed(model.v), TUNING)

@@ -26,7 +26,7 @@ from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.labels import UNDETERMINED, label, moved
 from burridge_knopoff.stability.lifetime import lifetimes
 from burridge_knopoff.stability.mirror import pair_distances, symmetrized
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import CHAOS, MotionKind
 from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.steady import SteadyMotion, measure
@@ -96,7 +96,7 @@ def _ending(
     """
     motion = attractors[index].motion
     found = _ending_of(motion)
-    if motion.kind != MotionKind.CHAOTIC:
+    if motion.kind not in CHAOS:
         return found
     window = tuning.exposure * settings.lifetime
     options = Settings(

@@ -20,7 +20,7 @@ import scipy.special
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.attractor import Attractor, pushed
 from burridge_knopoff.stability.labels import UNDETERMINED, label, moved
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import CHAOS
 from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.sampling import CONFIDENCE
 from burridge_knopoff.stability.settings import SearchSettings
@@ -63,7 +63,7 @@ def lifetimes(
     """
     found: list[Lifetime | None] = []
     for index, attractor in enumerate(attractors):
-        if attractor.motion.kind != MotionKind.CHAOTIC:
+        if attractor.motion.kind not in CHAOS:
             found.append(None)
         elif attractor.partner < index:
             found.append(found[attractor.partner])

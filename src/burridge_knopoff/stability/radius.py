@@ -14,7 +14,7 @@ import numpy as np
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.stability.attractor import Attractor, pushed
 from burridge_knopoff.stability.labels import label, moved
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import CHAOS
 from burridge_knopoff.stability.nearness import least_distance
 from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.settings import SearchSettings
@@ -33,7 +33,7 @@ def midst(attractors: Sequence[Attractor], index: int, tolerance: float, tuning:
     tolerance : distance within which the returns of closed orbits repeat
     """
     motion = attractors[index].motion
-    if motion.kind != MotionKind.CHAOTIC and not attractors[index].slow:
+    if motion.kind not in CHAOS and not attractors[index].slow:
         return []
     reach = tuning.spacings * motion.spacing
     return [

@@ -85,7 +85,7 @@ def returns_of(
     block : that stops, 1 … N, shape (stops,); states : gives the states at those that a mask of this shape chooses
     """
     stop_count = np.bincount(block.astype(int), minlength=model.blocks + 1)[1:]
-    section, mirror_section = _sections(stop_count, tuning)
+    section, mirror_section = sections(stop_count, tuning)
     returns = states(block == section)
     mirror_returns = returns[:0]
     fewest = len(returns)
@@ -108,7 +108,7 @@ def returns_of(
     )
 
 
-def _sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
+def sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
     """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
 
     stops : of each block, shape (blocks,)

@@ -44,7 +44,7 @@ class MotionSettings:
 
     >>> from burridge_knopoff import MotionSettings
     >>> MotionSettings(chaotic_exponent=2e-3).longest_period
-    120
+    2000.0
     """
 
     zero_exponent: Annotated[
@@ -62,10 +62,14 @@ class MotionSettings:
     period_tolerance: Annotated[
         float,
         TOLERANCE,
-        "a motion is periodic if its section points W' and states repeat within this, or if its second exponent is "
-        "negative; below v = 0.1 it scales with v",
+        "section points W' and states that differ by this at most repeat; below v = 0.1 it scales with v",
     ] = 1e-6
-    longest_period: Annotated[int, Whole(1, 1000), "section points up to which a repetition is looked for"] = 120
+    longest_period: Annotated[
+        float,
+        TIME,
+        "a motion is periodic if it repeats after this time at most; regular motion that is locked with a longer "
+        "period, or does not repeat, is quasiperiodic; below v = 0.1 it grows as 1/v",
+    ] = 2000.0
     synchronization_threshold: Annotated[float, TOLERANCE, "the end blocks move as one where <J> is below this"] = 1e-6
     section: Annotated[Section, SectionRange(), fields_of(Settings)["section"].description] = SUM
 
@@ -80,7 +84,11 @@ class MotionSettings:
     def at_speed(self, v: float) -> MotionSettings:
         """Return the settings that a driver of speed v asks for: slower motion is smaller, and takes longer."""
         share = min(1.0, v / 0.1)
-        return replace(self.scaled(share), period_tolerance=share * self.period_tolerance)
+        return replace(
+            self.scaled(share),
+            period_tolerance=share * self.period_tolerance,
+            longest_period=self.longest_period / share,
+        )
 
     def scaled(self, share: float) -> MotionSettings:
         """Return settings whose thresholds of exponents are that share of these."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractor import pushed
-from burridge_knopoff.stability.motion import MotionKind, closed_kind, judged_distance
+from burridge_knopoff.stability.motion import CHAOS, closed_kind, judged_distance
 from burridge_knopoff.stability.nearness import is_near, least_distance
 from burridge_knopoff.stability.returns import Returns, stops_alike, visit
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
@@ -55,13 +56,36 @@ class Settling:
             whole = self.is_symmetric(found) or not self.model.chain.is_mirror_symmetric
             filled = window >= tuning.filling * self.settings.window and whole
             if settled and (closed or filled or window == longest):
-                return found
+                return self.at_rest(found)
             if not settled:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
-        # What has not settled by now drifts slowly along a set; pushes will show whether the set attracts.
-        return found if found is not None and found.drift <= tuning.loose_drift * resolution else None
+        # What has not settled by now drifts slowly, along a set or to one.
+        return self.at_rest(found) if found is not None and found.drift <= tuning.loose_drift * resolution else None
+
+    def at_rest(self, found: Returns) -> Returns | None:
+        """Return a motion as it is when it no longer drifts; None if it still does after all the time that it is given.
+
+        A closed orbit is approached exponentially: from how fast the drift dies out follows how far the motion still
+        is. A set that is no closed orbit has to stay where it is.
+        """
+        tuning, still = self.tuning, self.tolerance * self.tuning.still
+        wait = self.settings.time_limit
+        while wait <= tuning.patience * self.settings.time_limit:
+            closed = found.closed(self.tolerance)
+            if found.drift <= still or (not closed and found.settled(self.tolerance, self.resolution, tuning)):
+                return found
+            later = visit(self.model, found.instant(), wait, found.window, tuning)
+            if later is None:
+                return None
+            if closed and later.closed(self.tolerance):
+                if _left(found, later, wait) <= tuning.left * self.resolution:
+                    return later
+            elif not closed and is_near(later.returns, found.returns, self._reach(found), tuning.near_share):
+                return later
+            found, wait = later, 2.0 * wait
+        return None
 
     def measured(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
         """Measure a settled motion; where it turns out to be on its way to another one, return that one instead."""
@@ -71,13 +95,16 @@ class Settling:
         if motion is None:
             return None
         if motion.left_for is not None:
-            later = visit(self.model, motion.left_for, 0.0, settings.window, tuning)
-            return None if later is None or again == tuning.trials else self.measured(later, again + 1)
-        chaotic = motion.kind == MotionKind.CHAOTIC
+            later = None if again == tuning.trials else visit(self.model, motion.left_for, 0.0, settings.window, tuning)
+            later = self.at_rest(later) if later is not None else None
+            return None if later is None else self.measured(later, again + 1)
+        chaotic = motion.kind in CHAOS
         if closed and not chaotic:
             # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
             mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
-            return found, replace(motion, kind=closed_kind(mean, self.motion_settings))
+            own = self.motion_settings.at_speed(self.model.v)
+            period = motion.period if math.isfinite(motion.period) else math.inf
+            return found, replace(motion, kind=closed_kind(mean, period, own), period=period)
         if not chaotic and motion.mean_distance_error <= tuning.unsteady * motion.mean_distance:
             return found, motion
         # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
@@ -120,7 +147,7 @@ class Settling:
         start = pushed(found.instant(), tuning.slow_push * self.resolution, np.random.default_rng(settings.seed))
         times = tuning.slow_time * settings.transient, tuning.filling * settings.window
         around = measure(self.model, start, *times, self.motion_settings, tuning)
-        if around is None or around.kind != MotionKind.CHAOTIC:
+        if around is None or around.kind not in CHAOS:
             return False
         later = visit(self.model, start, settings.time_limit, settings.window, tuning)
         return later is not None and not later.closed(self.tolerance)
@@ -128,6 +155,12 @@ class Settling:
     def _reach(self, found: Returns) -> float:
         """Return how far from a motion a return that belongs to it may lie."""
         return max(self.resolution, 0.0 if found.closed(self.tolerance) else self.tuning.spacings * found.spacing)
+
+
+def _left(found: Returns, later: Returns, wait: float) -> float:
+    """Return how far a motion that was seen twice, so long after each other, still is from the orbit it approaches."""
+    rate = np.log(found.drift / max(later.drift, np.finfo(float).tiny)) / (wait + later.window)
+    return float(later.drift / np.expm1(0.5 * rate * later.window)) if rate > 0.0 else np.inf
 
 
 def _sees_both(found: Returns | SteadyMotion) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,12 +14,13 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.locking import locked_orbit, recurrence
 from burridge_knopoff.stability.motion import (
-    OPEN,
+    CHAOS,
+    Motion,
     MotionKind,
+    chaotic_kind,
     closed_kind,
     judged_distance,
-    motion_kind,
-    section_period,
+    motion_of,
 )
 from burridge_knopoff.stability.nearness import is_near, spacing_of
 from burridge_knopoff.stability.returns import Returns, instant_of, returns_of
@@ -35,7 +37,8 @@ class SteadyMotion:
 
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
     stop_rate : stops of each block in a unit of time, shape (blocks,)
-    kind, exponent : kind of motion (stability.motion) and Lyapunov exponents, the largest first
+    kind, section_period, period : see `Motion`; the period also of a closed orbit to which the motion is locked
+    exponent : Lyapunov exponents, the largest first
 
     returns, mirror_returns, spacing, block, mirror_block : see `Returns`
     recurrence : see `locking.recurrence`
@@ -61,18 +64,24 @@ class SteadyMotion:
     exponent: np.ndarray
     block: int = 1
     mirror_block: int = 1
+    period: float = math.nan
     recurrence: float = 0.0
     left_for: Instant | None = None
 
     @property
     def words(self) -> str:
-        """Kind of motion, section points of a closed orbit, ⟨J⟩ and Lyapunov exponents, in a line."""
-        points = f", {self.section_period} section points" if self.section_period else ""
+        """Kind of motion, period of a closed orbit, ⟨J⟩ and Lyapunov exponents, in a line."""
+        period = f", period {self.period:.6g}" if math.isfinite(self.period) else ""
         exponents = ", ".join(f"{value:.4f}" for value in self.exponent)
-        return f"{self.kind.words}{points}, <J> = {self.mean_distance:.6g}, exponents {exponents}"
+        return f"{self.kind.words}{period}, <J> = {self.mean_distance:.6g}, exponents {exponents}"
 
     def __repr__(self) -> str:
         return f"<SteadyMotion: {self.words}>"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the motion may be a closed orbit of which one has seen too little."""
+        return Motion(self.kind, period=self.period).is_open
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
@@ -119,15 +128,18 @@ def measure(
     orbits are looked for in that one; where there is none either, and perturbations have grown faster than on a torus,
     the exponents are measured in the longest window, in which it is chaos if the largest is beyond its error.
 
-    If the closed orbit has another ⟨J⟩, the motion was on its way there: its kind is left open, and `left_for` is set.
+    If the closed orbit has another ⟨J⟩, or the returns have moved on by the end of the longer window, the motion was on
+    its way: its kind is left open, and `left_for` is set.
     """
     settings = settings.at_speed(model.v)
     found = measure_once(model, start, transient, window, settings, tuning)
-    if found is None or found.kind not in OPEN:
+    if found is None or not found.is_open:
         return found
     usual, last = found, found.instant()
     orbit = locked_orbit(model, found.returns, found.recurrence, tuning)
     seen, longer = tuning.longer_window * window, None
+    if orbit is None and math.isinf(found.period):
+        return found
     if orbit is None:
         # The usual window is part of the longer one, in which ⟨J⟩ is that share of it at least: far from synchrony.
         far = found.mean_distance / tuning.longer_window > settings.synchronization_threshold
@@ -135,17 +147,19 @@ def measure(
         longer = measure_once(model, start, transient, seen, scaled, tuning, known)
     if longer is not None:
         # The returns stay those of the usual window: their number decides how attractors are told apart.
-        found = replace(found, kind=longer.kind, section_period=longer.section_period, exponent=longer.exponent)
-        last = longer.instant()
-        if found.kind in OPEN:
+        if longer.kind not in CHAOS and _has_drifted(found, longer, model, tuning):
+            return replace(usual, left_for=longer.instant())
+        told = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
+        found, last = replace(found, **told), longer.instant()
+        if found.is_open:
             orbit = locked_orbit(model, longer.returns, longer.recurrence, tuning)
     if orbit is not None:
         found, last = _locked(found, orbit, settings), orbit.reference
-    elif found.kind in OPEN:
+    elif found.is_open and not math.isinf(found.period):
         if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
             return found
         return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
-    if found.kind == MotionKind.CHAOTIC:
+    if found.kind in CHAOS:
         return found
     later = measure_once(model, last, transient, window, settings, tuning)
     if later is None or not _differ(found, later, model, settings, tuning):
@@ -153,11 +167,20 @@ def measure(
     return replace(usual, left_for=last)
 
 
+def _has_drifted(found: SteadyMotion, longer: SteadyMotion, model: Model, tuning: Tuning) -> bool:
+    """Tell whether the last returns of a longer window lie elsewhere than those of a shorter one."""
+    if found.block != longer.block:
+        return False
+    reach = max(tuning.same_mean * model.scale, tuning.spacings * found.spacing)
+    return not is_near(longer.returns[-len(found.returns) :], found.returns, reach, tuning.near_share)
+
+
 def _locked(motion: SteadyMotion, orbit: PeriodicOrbit, settings: MotionSettings) -> SteadyMotion:
     """Return a motion as that of the closed orbit to which it is locked, whose multiplier has the second exponent."""
     mean = judged_distance(motion.mean_distance, orbit.model.chain.is_mirror_symmetric)
     rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
-    return replace(motion, kind=closed_kind(mean, settings), exponent=np.array([0.0, rate, *motion.exponent[2:]]))
+    kind, exponent = closed_kind(mean, orbit.period, settings), np.array([0.0, rate, *motion.exponent[2:]])
+    return replace(motion, kind=kind, period=orbit.period, exponent=exponent)
 
 
 def _with_weak_chaos(
@@ -171,7 +194,8 @@ def _with_weak_chaos(
     exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     # Errors alone decide: they hold what growth in proportion to time looks like.
     chaotic = exponent[0] > settings.standard_errors * error[0]
-    return replace(motion, kind=MotionKind.CHAOTIC if chaotic else motion.kind, exponent=exponent)
+    mean = judged_distance(motion.mean_distance, model.chain.is_mirror_symmetric)
+    return replace(motion, kind=chaotic_kind(mean, settings) if chaotic else motion.kind, exponent=exponent)
 
 
 def _options(transient: float, window: float, settings: MotionSettings) -> Settings:
@@ -224,13 +248,8 @@ def measure_once(
     found = returns_of(model, window, block, states, tuning)
     if found is None:
         return None
-    period = section_period(vars(trajectory), settings)
-    exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
     mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
-    kind = motion_kind(mean, period, exponent, error, settings)
-    if kind in OPEN and found.repeats(settings.period_tolerance):
-        # A weakly attracting orbit of a long period: its exponent may be 0 within its error, but its returns repeat.
-        kind = closed_kind(mean, settings)
+    told = motion_of(vars(trajectory), mean, settings)
     return SteadyMotion(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
@@ -238,9 +257,10 @@ def measure_once(
         mean_distance=mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
         stop_rate=np.bincount(block, minlength=model.blocks + 1)[1:] / window,
-        kind=kind,
-        section_period=period,
-        exponent=exponent,
+        kind=told.kind,
+        section_period=told.section_period,
+        period=told.period,
+        exponent=trajectory.lyapunov_exponent,
         block=found.block,
         mirror_block=found.mirror_block,
         recurrence=recurrence(trajectory.event_time[block == found.block], found.returns, tuning),
@@ -258,7 +278,7 @@ def lies_on(
     resolution : distance below which attractors are not told apart
     tolerance : distance within which the returns of closed orbits repeat
     """
-    chaotic = attractor.kind == MotionKind.CHAOTIC and attractor.spacing > tolerance
+    chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
     if found.block != attractor.block or (found.repeats(tolerance) and chaotic):
         return False
     return is_near(

@@ -17,9 +17,13 @@ class Tuning:
 
     #: Longest transient and window, in those of the settings, of a motion that is still settling: four doublings.
     patience: int = 16
-    #: Drift, in resolutions, with which a motion that has not settled by then may still show a set: it creeps along it,
-    #: and pushes show whether the set attracts.
+    #: Drift, in resolutions, up to which a motion that has not settled by then is followed on, for as many times the
+    #: `time_limit` in the longest wait: either it comes to rest, or it is undetermined.
     loose_drift: float = 10.0
+    #: What drifts by less than this share of the tolerance within which it repeats does not drift.
+    still: float = 1e-3
+    #: Part of the resolution that a closed orbit may still be away when it counts as reached.
+    left: float = 0.1
     #: Closed orbits drift by less than the resolution over this once they have settled, since they attract
     #: exponentially; other sets fill up so slowly that the resolution itself must do.
     closed_drift: float = 100.0

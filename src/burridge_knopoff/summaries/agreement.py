@@ -12,12 +12,20 @@ import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
-from burridge_knopoff.stability.motion import OPEN, REGULAR, MotionKind, same_result
+from burridge_knopoff.stability.motion import (
+    CHAOS,
+    OPEN,
+    REGULAR,
+    SYNCHRONOUS,
+    MotionKind,
+    same_result,
+)
 from burridge_knopoff.study.words import counted
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 from burridge_knopoff.summaries.reached import reached
+from burridge_knopoff.summaries.slots import PERIOD
 
 # The last bit of a product of vectors depends on where in memory they lie.
 DIGITS = 12
@@ -27,8 +35,8 @@ _PAIR = ("other_law", "initial", "a")
 # ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
 SAME_MEAN = 0.01
 KIND_COMMENT = (
-    "of the attractor that the run has come to, where the run alone does not tell a torus from weak chaos or from a "
-    "closed orbit that hardly attracts; a run on its way to synchrony counts as synchronized"
+    "that of the attractor that the run has come to, which was seen for longer; a run on its way to synchrony counts "
+    "as synchronized; where no attractor is known, or the run is on none, as far as the run alone shows it"
 )
 POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
@@ -36,6 +44,7 @@ POINT_VARIABLES = {
     "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", MotionKind) | {"comment": KIND_COMMENT}),
 }
 RUN_VARIABLES = {
+    "period": Variable(_POINT, "f8", *PERIOD),
     "settled": Variable(
         _POINT,
         "i1",
@@ -73,7 +82,7 @@ def summarize(
 ) -> xarray.Dataset:
     """Compare each law with the first one at every grid point.
 
-    lyapunov : the summary of that name, for the kinds of motion
+    lyapunov : the summary of that name, for the kinds of motion of runs
     attractors : the summary of that name, for what the initial states reach; without it nobody knows which runs settled
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
@@ -90,7 +99,8 @@ def summarize(
                 count, until = common_order(all_events(runs[0]), all_events(run))
                 values["event_order_count"][i, j, k] = count
                 values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
-    values["kind"][...] = lyapunov["kind"].sel(law=list(grid.laws)).values
+    of_runs = lyapunov.sel(law=list(grid.laws))
+    values["kind"][...], values["period"][...] = of_runs["run_kind"].values, of_runs["period"].values
     values["settled"][...] = Answer.UNDETERMINED
     if attractors is not None:
         _fill_settled(values, attractors, agreement, synchronization_threshold)
@@ -115,7 +125,8 @@ def _fill_settled(
 ) -> None:
     """Fill in whether each run has the ⟨J⟩ and the kind of motion of the attractor that its initial state reaches.
 
-    Where the run alone leaves the kind open it is that of the attractor, if ⟨J⟩ is: attractors are watched for longer.
+    The kind of a run whose ⟨J⟩ is that of the attractor becomes that of the attractor, which was seen for longer: all
+    that ends on one attractor has one kind.
     """
     relative_tolerance, standard_errors = agreement["relative_tolerance"], agreement["standard_errors"]
     own = attractors.sel(contact=attractors.attrs["contact_convention"], start=attractors.attrs["start_convention"])
@@ -128,16 +139,19 @@ def _fill_settled(
             standard_errors * np.hypot(error, my_error), np.maximum(SAME_MEAN * np.maximum(mean, mine), threshold)
         )
         there = known & (np.abs(mean - mine) <= allowed)
-        kind, (_, finer) = values["kind"][law, initial], reached(own, *names, "kind")
+        kind, (_, finer), (_, period) = (
+            values["kind"][law, initial],
+            *(reached(own, *names, k) for k in ("kind", "period")),
+        )
         # Chaos that ends long after the run is chaos in the run.
-        finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, MotionKind.CHAOTIC, finer)
-        told = there & np.isin(finer, (*REGULAR, MotionKind.CHAOTIC)) & np.isin(kind, OPEN)
+        lasting = np.where(mean < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
+        finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, lasting, finer)
+        told = there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, OPEN) | same_result(kind, finer))
         told |= (
-            known
-            & (finer == MotionKind.SYNCHRONIZED)
-            & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
+            known & np.isin(finer, SYNCHRONOUS) & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
         )
         kind[...] = np.where(told, finer, kind)
+        values["period"][law, initial] = np.where(told, period, values["period"][law, initial])
         there &= (finer == MotionKind.UNDETERMINED) | same_result(kind, finer)
         # Errors as wide as what two laws may differ by hide whether two motions are one.
         telling = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)

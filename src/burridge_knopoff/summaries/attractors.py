@@ -127,6 +127,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
         "start_convention": start,
         "synchronization_threshold": motion.synchronization_threshold,
         "section": str(motion.section),
+        "longest_period": motion.at_speed(model.v).longest_period,
         "position_box": np.array(settings.position),
         "velocity_box": np.array(settings.velocity),
         **{key: value for key, value in asdict(settings).items() if key not in ("position", "velocity")},

@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import REGULAR, MotionKind
 
 if TYPE_CHECKING:
     import xarray
+
+# Share by which the period of a closed orbit differs between two neighbouring values of a at most.
+SAME_PERIOD = 0.01
 
 
 class Change(IntEnum):
@@ -52,9 +55,10 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
 
     attractors, refined : those of one law at the values of the grid, and at all
 
-    A change is one of the kind of motion, of mirror symmetry, or of the number of section points of periodic motion. Of
-    a mirror pair one is looked at. The first and the last value of a are no ends. Between values of the grid a branch
-    that does not change is not looked for; so it has ended only where it is absent from the grid.
+    A change is one of the kind of motion, of mirror symmetry, or of the number of section points of periodic motion; a
+    closed orbit whose period passes `longest_period` has not changed. Of a mirror pair one is looked at. The first and
+    the last value of a are no ends. Between values of the grid a branch that does not change is not looked for; so it
+    has ended only where it is absent from the grid.
     """
     slots = slots_of_branches(refined)
     grid = np.flatnonzero(refined["in_grid"].values[: len(slots)] == 1)
@@ -80,7 +84,7 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
             if ((grid > low) & (grid < high)).any():
                 yield end(low)
                 yield beginning(high)
-            elif _features(refined, low, slots[low][branch]) != _features(refined, high, slots[high][branch]):
+            elif _differ(refined, (low, slots[low][branch]), (high, slots[high][branch])):
                 yield BranchChange(low, high, slots[low][branch], slots[high][branch], branch, branch, Change.CHANGE)
         if there[-1] < len(slots) - 1:
             yield end(there[-1])
@@ -98,6 +102,15 @@ def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
         order = [slot for slot in np.argsort(sides, kind="stable") if own[slot] >= 0]
         rows.append({int(own[slot]): int(slot) for slot in order})
     return rows
+
+
+def _differ(refined: xarray.Dataset, *places: tuple[int, int]) -> bool:
+    """Tell whether the motions at two values of a and slots are no longer the same."""
+    before, after = (_features(refined, *place) for place in places)
+    periods = np.array([refined["period"].values[place] for place in places])
+    one_orbit = np.isfinite(periods).all() and np.ptp(periods) <= SAME_PERIOD * periods.max()
+    regular = {before[0], after[0]} == {*REGULAR} and before[1] == after[1]
+    return before != after and not (regular and one_orbit)
 
 
 def _features(refined: xarray.Dataset, k: int, slot: int) -> tuple[int, ...]:

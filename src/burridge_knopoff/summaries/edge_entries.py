@@ -10,7 +10,7 @@ import xarray
 
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import Edge
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import CHAOS, MotionKind
 from burridge_knopoff.summaries.branch_changes import BranchChange, Change, slots_of_branches
 from burridge_knopoff.summaries.followed_orbits import FollowedOrbits
 
@@ -103,5 +103,5 @@ def _unlocated(change: BranchChange, kind: np.ndarray) -> EdgeKind:
     """Return the kind of an edge next to which there is no closed orbit: a crisis if chaos ends, begins or dies out."""
     sides = (change.low, change.before), (change.high, change.after)
     ends = [kind[k, slot] for k, slot in sides if slot >= 0]
-    chaotic = np.isin(ends, (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS))
+    chaotic = np.isin(ends, (*CHAOS, MotionKind.TRANSIENT_CHAOS))
     return EdgeKind.CRISIS if chaotic.all() else EdgeKind.UNDETERMINED

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.stability.motion import MotionKind, same_result
+from burridge_knopoff.stability.motion import SYNCHRONOUS, MotionKind, same_result
 
 
 def compare(
@@ -19,8 +19,8 @@ def compare(
 ) -> None:
     """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
 
-    A torus and a closed orbit without synchrony are one kind here: which of them a value of a shows, one beside it need
-    not (`motion.REGULAR`). Where the kind of one of the two motions is not determined, only ⟨J⟩ beyond the tolerance is
+    Periodic and quasiperiodic motion are one kind here: which of them a value of a shows, one beside it need not
+    (`motion.REGULAR`). Where the kind of one of the two motions is not determined, only ⟨J⟩ beyond the tolerance is
     a verdict; where the difference is within its errors of the tolerance there is none, but for motions that both are
     synchronized.
     values : mean_distance, its error and kind of both laws, the first and the other, shape (2, …, a); the rest is
@@ -48,7 +48,7 @@ def same_mean(values: Mapping[str, np.ndarray], threshold: float, agreement: Map
     Of two motions that are synchronized it does. Within its errors of the tolerance it is undetermined.
     """
     beyond, margin = excess(values, threshold, agreement), agreement["standard_errors"] * values["difference_error"]
-    within = (beyond <= -margin) | (values["kind"] == MotionKind.SYNCHRONIZED).all(axis=0)
+    within = (beyond <= -margin) | np.isin(values["kind"], SYNCHRONOUS).all(axis=0)
     return np.select([beyond > margin, within], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
 
 

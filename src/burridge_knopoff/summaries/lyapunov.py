@@ -11,9 +11,11 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
-from burridge_knopoff.stability.motion import SECTION, MotionKind, motion_of_run, zero_exponents
+from burridge_knopoff.stability.motion import MotionKind, motion_of_run, zero_exponents
+from burridge_knopoff.stability.period import SECTION
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.summaries.slots import PERIOD
 
 _AXES = ("law", "initial", "a")
 VARIABLES = {
@@ -27,12 +29,18 @@ VARIABLES = {
         (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, of the batches and of the window"
     ),
     "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents known to be -infinity"),
-    "kind": Variable(_AXES, "i1", "kind of motion", flag("i1", MotionKind)),
+    "run_kind": Variable(
+        _AXES,
+        "i1",
+        "kind of motion as far as the run alone shows it",
+        flag("i1", MotionKind) | {"comment": "agreement.nc has the kind of the attractor that the run has come to"},
+    ),
     "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
     "unstable": Variable(_AXES, "i1", "whether the run has stayed on a closed orbit that repels", YES_OR_NO),
     "section_period": Variable(
         _AXES, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
     ),
+    "period": Variable(_AXES, "f8", *PERIOD),
     "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
     "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
 }
@@ -59,8 +67,8 @@ def summarize(
         for name in _COPIED:
             values[name][index] = read[name]
         found = motion_of_run(read, symmetric, settings)
-        values["kind"][index], values["section_period"][index] = found.kind, found.section_period
-        values["unstable"][index] = found.unstable
+        values["run_kind"][index], values["unstable"][index] = found.kind, found.unstable
+        values["section_period"][index], values["period"][index] = found.section_period, found.period
         exponents = read["lyapunov_exponent"], read["lyapunov_error"]
         values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(*exponents, settings))
     return summary(

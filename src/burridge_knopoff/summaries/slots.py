@@ -14,6 +14,10 @@ from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.steady import EXPONENTS
 
+PERIOD = (
+    "period of the closed orbit on which the motion is or to which it is locked, NaN if none is known",
+    {"comment": "inf where the motion attracts as a closed orbit does but has not repeated in the time it was seen"},
+)
 NOTHING = {"comment": "-1 where there is none or it is undetermined"}
 
 # What is 0, not −1, in an empty slot.
@@ -47,6 +51,7 @@ def slot_variables(place: str) -> dict[str, Variable]:
             "upward section points after which the state of all blocks repeats, 0 if it does not",
             {},
         ),
+        "period": ("f8", *PERIOD),
         "lifetime": ("f8", "mean lifetime of chaos, inf if none of an ensemble ended; NaN for other motion", {}),
         "lifetime_low": ("f8", "lower end of the 95 % confidence interval of the lifetime", {}),
         "lifetime_high": ("f8", "upper end of the 95 % confidence interval of the lifetime", {}),
@@ -135,7 +140,7 @@ def slot_values(found: Continuation, places: Sequence[int], lasting: float, dime
             values["branch"][at], values["side"][at] = found.branch[place][i], found.side[place][i]
             for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
                 values[name][at] = getattr(attractor, name)
-            for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "stop_rate"):
+            for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "period", "stop_rate"):
                 values[name][at] = getattr(motion, name)
             if lifetime is not None:
                 values["lifetime"][at] = lifetime.mean
