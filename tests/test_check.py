@@ -17,8 +17,9 @@ from burridge_knopoff import open_study
 from burridge_knopoff.check.study import check_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.seal import BadFile, canonical, identity, write_sealed_text
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.recorded import recorded_study
@@ -59,7 +60,7 @@ def whole(tmp_path_factory):
             state, settings = study.state(initial), study.settings(law, solver)
             write_point(run(study.model(law, grid.a[a]), state, settings), path)
     write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
-    write_study_record(results, study, config_file, read_yaml(config_file), "--configfile small.yaml")
+    write_study_record(results, study, config_file, read_yaml(config_file), "--configfile small.yaml", {})
     return results
 
 
@@ -151,8 +152,10 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_other_sources_make_points_stale(results, monkeypatch, law):
     path = point(results, law)
-    identity = points.point_identity
-    monkeypatch.setattr(points, "point_identity", lambda command: identity(command + "x" * (law in command)))
+    about = points.point_about
+    monkeypatch.setattr(
+        points, "point_about", lambda command: about(command) | ({"sources": "0"} if law in command else {})
+    )
     stale = {finding.path: finding.reason for finding in check_study(results).findings if finding.kind == "stale"}
     assert "was made by other sources" in stale[path]
     assert all(f"/{law}/" in str(path) for path in stale)
@@ -166,6 +169,48 @@ def test_summaries(results):
     values.attrs.update(source_module="burridge_knopoff.summaries.mean_distance", source_fingerprint="0" * 16)
     write_summary(values, path)
     assert found(results) == {("stale", "summary/mean_distance.nc")}
+
+
+@pytest.mark.parametrize(
+    "name", ["summary/claims.json", "summary/agreement.txt", "figures/lyapunov.png", "report.html"]
+)
+@pytest.mark.parametrize("size", [0, 5])
+def test_texts_and_pictures_are_read_too(results, name, size):
+    path = results / name
+    write_sealed_text(path, "content", {})
+    assert not found(results)
+    path.write_bytes(path.read_bytes()[:size])
+    assert found(results) == {("corrupt", name)}
+
+
+def test_what_a_file_was_made_from_is_compared_with_the_record(results, capsys):
+    """Where a file was made from another one that is bad itself, the reason names that."""
+    names = ("attractors/linearized.nc", "summary/attractors.nc", "summary/attractors.txt", "figures/windows.png")
+    record = results / "study.json"
+    content = json.loads(record.read_text())
+    dataset = open_summary(results / "summary/mean_distance.nc")
+
+    def abouts(samples):
+        first = {"file": names[0], "attractors": {"samples": samples}}
+        inputs = {"inputs": {names[0]: identity(canonical(first))}}
+        return first, *({"file": name, **inputs} for name in names[1:])
+
+    for name, about in zip(names, abouts(20), strict=True):
+        (results / name).parent.mkdir(exist_ok=True)
+        if name.endswith(".nc"):
+            write_summary(dataset, results / name, about)
+        else:
+            write_sealed_text(results / name, "content", about)
+    for samples, stale in ((20, set()), (30, {("stale", name) for name in names})):
+        record.write_text(json.dumps({**content, "files": dict(zip(names, abouts(samples), strict=True))}))
+        assert found(results) == stale
+    main(["check", str(results)])
+    said = capsys.readouterr().out
+    first = results / names[0]
+    assert f"{first}: was made with attractors.samples: got 20, expected 30\n" in said
+    assert f"{results / names[2]}: was made from {first}, which is stale\n" in said
+    with pytest.raises(BadFile, match=rf"^{first}: .* -R {first}$"):
+        open_summary(results / names[1])
 
 
 #: Of each job a file that it makes.
@@ -195,7 +240,10 @@ def test_what_was_begun_and_not_made_is_missing_and_nothing_else(results, capsys
     assert f"missing  {results / file}: its job failed: MemoryError: no more (log {log})\n" in said
     for path in missing:
         path.parent.mkdir(exist_ok=True)
-        shutil.copy(results / "summary/mean_distance.nc", path)
+        if path.suffix == ".nc":
+            shutil.copy(results / "summary/mean_distance.nc", path)
+        else:
+            write_sealed_text(path, "content", {})
     assert main(["check", str(results)]) == 0
 
 
@@ -280,18 +328,20 @@ def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     for name in (*OF_STAGES.split(), *kept):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).write_text("")
+    for name in kept[:-1]:
+        write_sealed_text(results / name, "content", {})
     file, given = results.parent.parent / "small.yaml", f"{CONFIG}without: [attractors, proof]\n"
     assert main(["check", str(results)]) == 1
     file.write_text(given)
     study = load_study(read_yaml(file), "small.yaml")
-    write_study_record(results, study, "small.yaml", read_yaml(file), "--configfile small.yaml")
+    write_study_record(results, study, "small.yaml", read_yaml(file), "--configfile small.yaml", {})
     capsys.readouterr()
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out
     shown = [name for name in OF_STAGES.split() if not name.startswith(("logs", "benchmarks"))]
     assert said.count("leftover ") == len(shown)
     assert all(f"leftover {results / name}: not part of this study\n" in said for name in shown)
-    assert f"{results}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed\n" in said
+    assert f"{results}: 7 points and 4 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n" in said
     assert set(open_study(results)["summary"].children) == {"mean_distance"}
     assert main(["prune", str(results)]) == 0
     assert not any((results / name).exists() for name in OF_STAGES.split())

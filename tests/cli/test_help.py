@@ -27,7 +27,7 @@ def folder(tmp_path_factory):
     results = folder / "results" / "paper"
     given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
     given |= {"transient": 10, "window": 20, "batches": 2}
-    write_study_record(results, run_study(results, given).study, folder / "paper.yaml", given, "")
+    write_study_record(results, run_study(results, given).study, folder / "paper.yaml", given, "", {})
     return folder
 
 

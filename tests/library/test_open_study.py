@@ -10,10 +10,13 @@ import xarray
 
 from burridge_knopoff import open_study
 from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.seal import write_sealed
+from burridge_knopoff.show.result import open_result
 from tests.small_study import run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
 CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
+SUMMARY = "summary/some.nc"
 MISSING = ("nonlinear", "plus", "0.0800")
 
 
@@ -22,8 +25,8 @@ def make_study(folder):
     small = run_study(folder, CONFIG)
     small.grid.path(*MISSING).unlink()
     (folder / "summary").mkdir()
-    xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf(folder / "summary" / "some.nc")
-    write_study_record(folder, small.study, "few.yaml", CONFIG, "--configfile few.yaml")
+    write_sealed(folder / SUMMARY, xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf, {"v": 0.1})
+    write_study_record(folder, small.study, "few.yaml", CONFIG, "--configfile few.yaml", {SUMMARY: {"v": 0.1}})
 
 
 @pytest.fixture(scope="module")
@@ -79,13 +82,35 @@ def test_without_points(results):
     assert set(open_study(results, points=False).children) == {"summary"}
 
 
-@pytest.mark.parametrize("name", ["points/linearized/plus/a0.0500.nc", "summary/some.nc"])
-def test_a_file_that_cannot_be_read_is_named(results, tmp_path, name):
+POINT = "points/linearized/plus/a0.0500.nc"
+
+
+@pytest.mark.parametrize(
+    ("name", "damage", "reason"),
+    [
+        (POINT, lambda path: path.write_bytes(b""), "is empty"),
+        (POINT, lambda path: path.write_bytes(b"no netCDF"), "has no seal at its end"),
+        (POINT, lambda path: shutil.copy(path.with_name("a0.0800.nc"), path), "is another run: --a 0.08 instead of"),
+        (SUMMARY, lambda path: path.write_bytes(b""), "is empty"),
+        (
+            SUMMARY,
+            lambda path: write_sealed(path, xarray.Dataset({"mean": ("a", [1.0, 3.0])}).to_netcdf, {"v": 0.3}),
+            "was made with v: got 0.3, expected 0.1",
+        ),
+    ],
+)
+def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, name, damage, reason):
+    """With the line, and the command that remakes the file, of `bk show`."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
-    (tmp_path / name).write_bytes(b"no netCDF")
-    with pytest.raises(ValueError, match="cannot be read") as caught:
-        open_study(tmp_path)
-    assert str(tmp_path / name) in str(caught.value)
+    damage(tmp_path / name)
+    said = []
+    for read in (open_study, lambda folder: open_result(folder / name)):
+        with pytest.raises(ValueError, match=reason) as caught:
+            read(tmp_path)
+        said.append(str(caught.value))
+    assert said[0] == said[1]
+    assert said[0].startswith(f"{tmp_path / name}: ")
+    assert said[0].endswith(f"; remake it: snakemake -c2 --configfile few.yaml -R {tmp_path / name}")
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):

@@ -1,14 +1,16 @@
 """The seal of a file: what it says, and that no netCDF program minds it; tests/fuzzing changes sealed files."""
 
+import hashlib
 import subprocess
+from pathlib import Path
 
 import netCDF4
 import pytest
 import xarray as xr
 
 from burridge_knopoff import simulate
-from burridge_knopoff.dataset.point import point_identity, write_point
-from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, seal
+from burridge_knopoff.dataset.point import point_about, write_point
+from burridge_knopoff.provenance.seal import BadFile, check_seal, read_seal, seal_path, write_sealed, write_sealed_text
 from tests.optional import needs, setting
 
 
@@ -21,9 +23,11 @@ def path(tmp_path_factory):
 
 def test_the_seal_of_a_point(path):
     with xr.open_dataset(path) as dataset:
-        about = point_identity(dataset.attrs["history"])
-    assert read_seal(path) == (about, "completed")
-    assert point_identity("bk simulate --law linearized --a 0.09") != about
+        command = dataset.attrs["history"]
+    assert read_seal(path) == (point_about(command), "completed")
+    assert check_seal(path, point_about(command)) == "completed"
+    with pytest.raises(BadFile, match=r"is another run: --a 0.08 instead of --a 0.09"):
+        check_seal(path, point_about(command.replace("0.08", "0.09", 1)))
 
 
 def test_the_netcdf_library_reads_a_sealed_file(path, tmp_path):
@@ -54,12 +58,68 @@ def test_missing_empty_and_unreadable_files(tmp_path):
 
 
 def test_another_seal_is_no_seal(path, tmp_path):
-    """The line is part of what is sealed: nobody's status or subject can be written into it."""
+    """The line is part of what is sealed: nobody's status or command can be written into it."""
     target = tmp_path / "forged.nc"
-    for old, new in ((b" completed ", b" diverged "), (read_seal(path)[0].encode(), identity("another").encode())):
+    for old, new in ((b" completed ", b" diverged "), (b"--a 0.08", b"--a 0.09")):
         target.write_bytes(path.read_bytes().replace(old, new))
         with pytest.raises(BadFile, match="has other bytes than were written"):
             read_seal(target)
-    target.write_bytes(b"data")
-    seal(target, identity("this"), "diverged")
-    assert read_seal(target) == (identity("this"), "diverged")
+    write_sealed(target, lambda name: Path(name).write_bytes(b"data"), {"this": 1}, "diverged")
+    assert read_seal(target) == ({"this": 1}, "diverged")
+
+
+ABOUT = {"file": "summary/x.txt", "motion": {"period": 1.0, "kind": "one"}, "inputs": {"y.nc": "0"}, "sources": "ab"}
+
+
+@pytest.mark.parametrize("name", ["x.nc", "x.txt", "x.png"])
+def test_what_differs_is_said(tmp_path, name):
+    """The same for a file that holds its seal and for one that has it beside it."""
+    path = tmp_path / name
+    write_sealed(path, lambda name: Path(name).write_bytes(b"content"), ABOUT)
+    assert path.read_bytes().startswith(b"content")
+    assert check_seal(path, ABOUT) == "made"
+    assert check_seal(path) == "made", "outside a study nothing is known of it"
+    for change, words in (
+        ({"file": "summary/z.txt"}, "is another file: got summary/x.txt, expected summary/z.txt"),
+        ({"motion": {"period": 2.0, "kind": "one"}}, "was made with motion.period: got 1.0, expected 2.0"),
+        (
+            {"motion": {"kind": "one", "period": 1.0}},
+            'was made with motion: got ["period", "kind"], expected ["kind", "period"]',
+        ),
+        ({"motion": {"kind": "one"}, "sources": "cd"}, "was made with motion.period: got 1.0, expected nothing"),
+        ({"inputs": {"y.nc": "1"}}, "was made from another y.nc"),
+        ({"sources": "cd"}, "was made by other sources than those of now (ab, now cd)"),
+    ):
+        with pytest.raises(BadFile) as caught:
+            check_seal(path, {**ABOUT, **change})
+        assert (caught.value.reason, caught.value.kind) == (words, "stale")
+    assert check_seal(path, {**ABOUT, "sources": "cd"}, any_sources=True) == "made"
+
+
+@pytest.mark.parametrize("suffix", ["txt", "json", "png"])
+@pytest.mark.parametrize(
+    ("damage", "reason"),
+    [
+        (lambda path: path.write_bytes(b""), "is empty"),
+        (lambda path: path.write_bytes(path.read_bytes()[:-1]), "has other bytes than were written"),
+        (lambda path: path.unlink(), "is missing"),
+        (lambda path: seal_path(path).unlink(), "has no seal beside it"),
+        (lambda path: seal_path(path).write_bytes(b"noise"), "has no seal beside it"),
+    ],
+)
+def test_a_damaged_text_or_picture_is_known(tmp_path, suffix, damage, reason):
+    path = tmp_path / f"result.{suffix}"
+    write_sealed_text(path, "some text\n", ABOUT)
+    assert path.read_text() == "some text\n"
+    damage(path)
+    with pytest.raises(BadFile, match=reason):
+        read_seal(path)
+
+
+def test_a_seal_of_another_version(tmp_path):
+    """It held 16 digits where what the file is stands now."""
+    head = b"\n#seal 0123456789abcdef completed "
+    path = tmp_path / "old.nc"
+    path.write_bytes(b"data" + head + hashlib.sha256(b"data" + head).hexdigest().encode() + b"\n")
+    with pytest.raises(BadFile, match="was sealed by another version"):
+        read_seal(path)

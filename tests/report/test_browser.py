@@ -262,7 +262,7 @@ def test_the_report_of_a_study(browser, reported):
 
 def test_the_report_of_a_study_that_lacks_most(browser, poor):
     path = poor.folder / "report.html"
-    write_report(poor.study, poor.sources, ["--configfile", "poor.yaml"], path)
+    write_report(poor.study, poor.sources, ["--configfile", "poor.yaml"], path, {})
     reader = Reader(browser, path)
     reader.draw_everything()
     reader.page.locator("#run-law").select_option("linearized")

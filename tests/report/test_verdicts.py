@@ -5,7 +5,6 @@ import json
 import pytest
 
 from burridge_knopoff.claims.formats import as_json
-from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
 from tests.refused import refused
 from tests.report.conftest import CLAIMS
@@ -51,17 +50,9 @@ def test_what_cannot_be_judged_is_put_by_its_reason(read):
     assert sum(read_verdicts(None).counts.values()) == 0
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", "null", '{"digest": '])
+@pytest.mark.parametrize("text", ["", "[]", "{}", "null", '{"claims": '])
 def test_what_is_no_file_of_verdicts_is_one_line(tmp_path, text):
     path = tmp_path / "claims.json"
     path.write_text(text)
     with refused("claims.json: is not a file of verdicts"):
-        read_verdicts(path)
-
-
-def test_a_changed_verdict_is_not_believed(tmp_path):
-    path = tmp_path / "claims.json"
-    path.write_text(CLAIMS.read_text().replace("0.0", "0.1", 1))
-    assert path.read_text() != CLAIMS.read_text()
-    with pytest.raises(BadFile, match="has other content than was written; remake it: snakemake -c2 -R "):
         read_verdicts(path)

@@ -1,15 +1,19 @@
 """Results that are kept: taken again only where all that decides them is the same."""
 
 import dataclasses
+import math
 import os
+import pickle
 from functools import partial
 
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.running import kept as module
 from burridge_knopoff.running.kept import kept
+from burridge_knopoff.running.packing import pack, unpack
 from burridge_knopoff.running.processes import shared_out
 
 
@@ -82,6 +86,45 @@ def test_a_damaged_file_counts_as_none(tmp_path, damage):
     path.write_bytes(damage)
     assert kept(tmp_path, first, 7) == (7, path, False)
     assert kept(tmp_path, first, 7) == (7, path, True)
+
+
+def test_a_file_of_another_call_counts_as_none(tmp_path):
+    one, other = (kept(tmp_path, first, number)[1] for number in (7, 8))
+    os.replace(one, other)
+    assert kept(tmp_path, first, 8) == (8, other, False)
+
+
+def test_what_is_read_is_what_was_written():
+    """Types, signs, bits and order in memory included: a later call is known by them."""
+    array = np.asfortranarray(np.arange(6.0).reshape(2, 3))
+    scalar = np.float64(0.1)
+    value = [None, True, -0.0, 0.1, np.nan, 3, "text", b"\0\xff", (1, [2, ()]), {1: "a", (2,): [array, array]}]
+    value += [scalar, np.int32(3), np.zeros((0, 4)), np.array(1.5), np.array([True, False]), MODEL, Answer.YES, [MODEL]]
+    again = unpack(pack(value))
+    assert repr(again) == repr(value)
+    assert pack(again) == pack(value)
+    pair = again[9][2,]
+    assert pair[0] is pair[1]
+    assert pair[0].flags.f_contiguous
+    assert pair[0].flags.writeable
+    assert again[-1][0] is again[-3] == MODEL
+    assert type(again[10]) is np.float64
+    assert math.copysign(1, again[2]) == -1
+
+
+@pytest.mark.parametrize("value", [np.array([None]), {1, 2}, print])
+def test_what_cannot_be_kept_is_refused(value):
+    with pytest.raises(TypeError):
+        pack(value)
+
+
+def test_nothing_is_a_pickle(tmp_path):
+    content = kept(tmp_path, first, MODEL)[1].read_bytes()
+    with pytest.raises(pickle.UnpicklingError):
+        pickle.loads(content)
+    # A class that nobody has imported is not looked for.
+    with pytest.raises(LookupError):
+        unpack(b'[["object",0],[["attributes","antigravity:x",{}]]]\n')
 
 
 def told(number):

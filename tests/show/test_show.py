@@ -37,7 +37,7 @@ def study(small_studies, tmp_path_factory):
     results = tmp_path_factory.mktemp("show") / "results" / "paper"
     for name, dataset in small.found.items():
         write_summary(dataset, results / f"summary/{name}.nc")
-    write_study_record(results, small.study, "paper.yaml", {}, "")
+    write_study_record(results, small.study, "paper.yaml", {}, "", {})
     return results
 
 
@@ -136,7 +136,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path / "foreign.nc", "has no seal"),
         (tmp_path / "none.nc", "is missing"),
         (tmp_path, "cannot be read"),
-        (study / "study.json", "has no seal at its end: it is cut off, or another program wrote it (shown are points"),
+        (study / "study.json", "has no seal beside it (shown are points"),
         (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
         said = shown(capsys, path, code=2)

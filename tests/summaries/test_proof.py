@@ -91,7 +91,7 @@ def test_the_words_hold_the_numbers_and_what_is_assumed(found):
 def test_the_same_bytes(linearized, tmp_path):
     for name in ("one", "other"):
         dataset = proof.summarize([PAPER])
-        write_results(dataset, proof, [str(tmp_path / f"{name}.nc"), str(tmp_path / f"{name}.txt")])
+        write_results(dataset, proof, {str(tmp_path / f"{name}.{suffix}"): {} for suffix in ("nc", "txt")})
         assert (dataset["multiplier"].values == linearized["multiplier"].values).all()
     for suffix in ("nc", "txt"):
         assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"other.{suffix}").read_bytes()

@@ -56,7 +56,7 @@ def stages_running(study: Study) -> set[str]:
 def temporaries(study: Study) -> list[str]:
     """Return the files in results/ that have not been moved into place."""
     results = study.folder / "results"
-    return sorted(str(path.relative_to(results)) for path in results.rglob(".*"))
+    return sorted(str(path.relative_to(results)) for path in results.rglob(".*.part-*"))
 
 
 def processes(study: Study) -> dict[int, str]:

@@ -1,20 +1,22 @@
 """Damaged and foreign files: the stage that reads one stops and names it, why, and the command that remakes it."""
 
+import hashlib
 import os
 import re
 import shlex
 import shutil
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 import pytest
 import yaml
 
-from burridge_knopoff import simulate
+from burridge_knopoff import open_study, simulate
+from burridge_knopoff.check.study import check_study
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.provenance.seal import BadFile, identity, seal
+from burridge_knopoff.provenance.seal import BadFile, read_sealed, write_sealed
+from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.study import load_study
 from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
@@ -43,14 +45,16 @@ def noise_inside(content: bytes) -> bytes:
     return content[:middle] + noise(64) + content[middle + 64 :]
 
 
-def other_version(path: Path, **attributes: str) -> None:
-    """Let a point file be one that another version has made and sealed."""
-    content = path.read_bytes()
-    path.write_bytes(content[: content.rindex(b"\n#seal ")])
-    with netCDF4.Dataset(path, "a") as dataset:
-        dataset.setncatts(attributes)
-        about = identity(dataset.history, dataset.software, dataset.source_fingerprint)
-    seal(path, about, "completed")
+def resealed(path: Path, **changes) -> None:
+    """Let a file be one that something else has made and sealed."""
+    content, about, status = read_sealed(path)
+    write_sealed(path, lambda name: Path(name).write_bytes(content), {**about, **changes}, status)
+
+
+def other_version(content: bytes) -> bytes:
+    """Return the content with a seal as an earlier version wrote it."""
+    sealed = unsealed(content) + b"\n#seal 0123456789abcdef completed "
+    return sealed + hashlib.sha256(sealed).hexdigest().encode() + b"\n"
 
 
 def unsealed(content: bytes) -> bytes:
@@ -84,8 +88,8 @@ DAMAGES = {
     "another law": (lambda path: shutil.copy(path.parents[2] / "nonlinear/minus" / path.name, path), "another run"),
     "another study": (lambda path: other_run(path, transient=90), "another run"),
     "another a by a hair": (lambda path: other_run(path, a=float(np.nextafter(0.2, 1))), "another run"),
-    "another version": (lambda path: other_version(path, software="burridge-knopoff 0.0.1"), "0.0.1"),
-    "other sources": (lambda path: other_version(path, source_fingerprint="0123456789abcdef"), "other sources"),
+    "another version": (lambda path: rewrite(path, other_version), "another version"),
+    "other sources": (lambda path: resealed(path, sources="0123456789abcdef"), "other sources"),
 }
 
 
@@ -217,3 +221,78 @@ def test_a_bad_summary_is_remade(finished, copy):
     (command,) = remade(copy, failures(run.stderr).values())
     assert command.endswith("-R results/tiny/summary/stick_slip.nc")
     check_end(copy, finished)
+
+
+def as_old_as(path: Path, change) -> None:
+    """Change a file so that its time of modification tells nothing."""
+    times = path.stat()
+    change(path)
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+
+def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
+    """Of another tile, of another law, of a study with another v, and of one of another shape: four in one run."""
+    results = copy.folder / "results" / "tiny"
+    points = read_sealed(results / "summary/mean_distance.nc")[1]["points"]
+    foreign = {
+        "basins/linearized/a0.0800/tile1.nc": lambda path: shutil.copy(path.with_name("tile0.nc"), path),
+        "edges/nonlinear.nc": lambda path: shutil.copy(path.with_name("linearized.nc"), path),
+        "summary/mean_distance.nc": lambda path: resealed(path, points={**points, "v": 0.3}),
+        "summary/stick_slip.nc": lambda path: shutil.copy(
+            limited.folder / "results/limits/summary/stick_slip.nc", path
+        ),
+    }
+    for name, change in foreign.items():
+        as_old_as(results / name, change)
+    assert {str(finding.path.relative_to(results)) for finding in check_study(results).findings} == foreign.keys()
+    rules = ("basins", "edges", "figure_mean_distance", "figure_stick_slip")
+    run = copy.run("-R", *rules, "--until", *rules)
+    assert run.returncode == 1
+    reasons = failures(run.stderr)
+    said = "\n".join(reasons.values())
+    tiles = "got basins/linearized/a0.0800/tile0.nc, expected basins/linearized/a0.0800/tile1.nc"
+    assert f"tile1.nc: is another file: {tiles}; remake it" in said
+    assert "nonlinear.nc: is another file: got edges/linearized.nc, expected edges/nonlinear.nc; remake it" in said
+    assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1; remake it" in said
+    assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*; remake it", said)
+    remade(copy, reasons.values())
+    assert not check_study(results).findings
+    check_end(copy, finished)
+
+
+def test_damaged_texts_and_pictures_are_made_again(copy, finished):
+    """No job needs to read them: the next run looks at them itself."""
+    results = copy.folder / "results" / "tiny"
+    for name in ("summary/claims.json", "figures/orbits.png"):
+        as_old_as(results / name, lambda path: rewrite(path, cut))
+    as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
+    said = copy.ok("-n")
+    assert "results/tiny/summary/agreement.txt: is empty: it would be made again" in said
+    found = {finding.path.name: finding.kind for finding in check_study(results).findings}
+    assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
+    said = copy.ok()
+    assert "results/tiny/figures/orbits.png: has other bytes than were written: it is made again" in said
+    assert not check_study(results).findings
+    check_end(copy, finished)
+
+
+def test_touching_hides_nothing(copy):
+    """What a file was made from stands in it: Snakemake's records may say that all is up to date."""
+    results = copy.folder / "results" / "tiny"
+    copy.config.write_text(f"{TINY}synchronization_threshold: 0.2\n")
+    copy.ok("--touch")
+    assert "Nothing to be done" in copy.ok("-n")
+    reasons = {finding.path.name: finding.reason for finding in check_study(results).findings}
+    words = "was made with config.synchronization_threshold: got 1e-06, expected 0.2"
+    assert reasons["mean_distance.nc"] == reasons["lyapunov.nc"] == words
+    # What needs the key, and what is made from that; no more.
+    assert reasons.keys() >= {"linearized.nc", "tile0.nc", "two_blocks.nc", "claims.json", "report.html", "basins.png"}
+    assert not reasons.keys() & {"bifurcation.nc", "orbits.nc", "stick_slip.nc", "proof.nc", "a0.2000.nc"}
+    for read in (open_summary, open_result):
+        with pytest.raises(BadFile, match=words):
+            read(results / "summary/mean_distance.nc")
+    with pytest.raises(BadFile):
+        open_study(results)
+    copy.config.write_text(TINY)
+    copy.ok("--touch")
+    assert not check_study(results).findings

@@ -99,7 +99,7 @@ def test_last_lines_of_a_study(finished):
     made = next(line for line in lines if line.startswith("files made in results/tiny: "))
     counts = set(made.partition(": ")[2].split(", "))
     results = finished.folder / "results" / "tiny"
-    folders = {"points": 16} | {name: len(list((results / name).iterdir())) for name in ("summary", "figures")}
+    folders = {"points": 16} | {name: len(list((results / name).glob("[!.]*"))) for name in ("summary", "figures")}
     assert counts == {f"{name} {count}" for name, count in folders.items()} | {
         *("attractors 2", "refined 2", "basins 9", "edges 2", "phases 2", "solvers 6", "report.html")
     }

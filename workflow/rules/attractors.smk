@@ -30,6 +30,7 @@ rule attractors_of_law:
         grid=list(STUDY.grid.values()),
         model=lambda wildcards: model_config([wildcards.law]),
         sources=sources("attractors_of_law"),
+        seals=seals,
         kept=lambda wildcards: kept_folder(
             f"attractors {wildcards.law}",
             SEARCH_PARAMS,
@@ -70,6 +71,7 @@ rule attractors:
         a=list(STUDY.grid.values())[0],
         blocks=STUDY.blocks,
         sources=sources("attractors"),
+        seals=seals,
     message:
         "attractors of all laws"
     script:

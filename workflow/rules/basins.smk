@@ -31,6 +31,7 @@ rule basin_tile:
         model=lambda wildcards: model_config([wildcards.law]),
         basins=basin_keys("pairs"),
         sources=sources("basin_part"),
+        seals=seals,
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
     script:
@@ -80,6 +81,7 @@ rule basins:
         basins=basin_keys(),
         state=BASIN_PARAMS["state"],
         sources=sources("basins"),
+        seals=seals,
     message:
         "maps of basins of attraction"
     script:

@@ -44,6 +44,7 @@ rule watch_chain:
         },
         threshold=STUDY.config["synchronization_threshold"],
         sources=sources("watch_chain"),
+        seals=seals,
     message:
         "mirror synchrony of sampled states, {wildcards.blocks} blocks"
     script:
@@ -64,6 +65,7 @@ rule chains_summary:
     params:
         summary="chains",
         sources=sources("merge", "summaries.chains"),
+        seals=seals,
     message:
         "fraction of synchronizing states over number of blocks and a"
     script:

@@ -38,6 +38,7 @@ rule claims:
         ),
         figures=sorted({Path(path).stem for path in rules.figures.input}),
         sources=sources("claims"),
+        seals=seals,
     message:
         "verdicts on the claims of the paper"
     script:

@@ -21,6 +21,7 @@ rule edges_of_law:
         blocks=STUDY.blocks,
         a=min(STUDY.grid.values()),
         sources=sources("edges_of_law"),
+        seals=seals,
         kept=lambda wildcards: kept_folder(
             f"edges {wildcards.law}",
             model_config([wildcards.law]),
@@ -52,6 +53,7 @@ rule edges:
     params:
         summary="edges",
         sources=sources("merge", "summaries.edges"),
+        seals=seals,
     message:
         "edges of all laws"
     script:

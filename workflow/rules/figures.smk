@@ -54,9 +54,12 @@ for figure in DESCRIPTIONS:
             script=figure.script,
             figure=figure.name,
             caption=figure.caption_of,
+            folder=f"{RESULTS}/points",
             runs=STUDY.shown_runs if figure.of_runs else None,
+            of_points=POINT_SOURCES if figure.of_runs else None,
             from_study={name: getattr(STUDY, name) for name in figure.from_study},
             sources=sources(figure.script, f"figures.{figure.name}"),
+            seals=seals,
         message:
             f"figure: {figure.title.replace('{', '{wildcards.')}"
         script:

@@ -25,6 +25,7 @@ rule phases_of_law:
         model=lambda wildcards: model_config([wildcards.law]),
         motion=motion_config(),
         sources=sources("phases_of_law"),
+        seals=seals,
     message:
         "phases of the end blocks, {wildcards.law} law"
     script:
@@ -45,6 +46,7 @@ rule phases:
     params:
         summary="phases",
         sources=sources("merge", "summaries.phases"),
+        seals=seals,
     message:
         "phases of the end blocks, all laws"
     script:

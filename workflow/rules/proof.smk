@@ -19,6 +19,7 @@ rule proof:
     params:
         model=lambda wildcards: proved_config(),
         sources=sources("proof"),
+        seals=seals,
     message:
         "proof: the loss of synchrony in ball arithmetic"
     script:

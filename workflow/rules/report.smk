@@ -33,6 +33,7 @@ rule report:
         optional=OPTIONAL_RESULTS,
         benchmarks=f"{RESULTS}/benchmarks",
         sources=sources("report"),
+        seals=seals,
     message:
         f"report: {RESULTS}/report.html"
     script:

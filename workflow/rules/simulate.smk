@@ -1,6 +1,7 @@
 # Points: one simulation for each friction law, initial state and a.
 
 POINTS = all_points(STUDY)
+POINT_SOURCES = source_fingerprint("burridge_knopoff.dataset.point")
 
 
 rule points:
@@ -24,7 +25,7 @@ rule simulate:
         command=lambda wildcards: STUDY.command(
             wildcards.law, wildcards.initial, wildcards.a
         ),
-        sources=source_fingerprint("burridge_knopoff.dataset.point"),
+        sources=POINT_SOURCES,
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, a = {wildcards.a}"
     # A run that ended at a limit is a result too.

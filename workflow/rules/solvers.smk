@@ -46,7 +46,9 @@ rule solvers:
     group:
         group("summaries")
     params:
-        points={**STUDY.points, "folder": RESULTS, "a": STUDY.compared},
+        folder=RESULTS,
+        points={**STUDY.points, "a": STUDY.compared},
+        of_points=POINT_SOURCES,
         others={
             solver: {
                 law: asdict(STUDY.settings(law, solver))
@@ -57,6 +59,7 @@ rule solvers:
         },
         step=STUDY.config["solvers"]["step"],
         sources=sources("solvers"),
+        seals=seals,
     message:
         "independent solvers of the same equations"
     script:

@@ -98,7 +98,14 @@ if ROOT != Path.cwd():
 
 def record_study():
     """Record in the folder of results what the study is, if there are any or some are to be made."""
-    write_study_record(RESULTS, STUDY, CONFIG_FILE, WRITTEN, shlex.join(ARGUMENTS))
+    write_study_record(
+        RESULTS,
+        STUDY,
+        CONFIG_FILE,
+        WRITTEN,
+        shlex.join(ARGUMENTS),
+        recorded_seals(),
+    )
 
 
 PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
@@ -138,9 +145,7 @@ def prepare_results():
             file=sys.stderr,
         )
     elif (
-        "basins" not in STUDY.left_out
-        and not STUDY.basin_maps
-        and GIVEN.get("basins")
+        "basins" not in STUDY.left_out and not STUDY.basin_maps and GIVEN.get("basins")
     ):
         print(
             "basins: no map: give basins.a; none of its usual values is in the grid",

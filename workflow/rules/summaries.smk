@@ -28,7 +28,11 @@ CLAIMS_MADE = (
 )
 SUMMARY_FILES = {"points": {"points": rules.points.input}, "models": {}}
 SUMMARY_PARAMS = {
-    "points": {"points": {"folder": f"{RESULTS}/points", **STUDY.points}},
+    "points": {
+        "folder": f"{RESULTS}/points",
+        "points": STUDY.points,
+        "of_points": POINT_SOURCES,
+    },
     "models": {
         "model": model_config(),
         "blocks": STUDY.blocks,
@@ -86,6 +90,7 @@ for name, row in SUMMARIES.items():
             summary=name,
             config=keys(*row.get("keys", [])),
             sources=sources(f"summary_of_{row['of']}", f"summaries.{name}"),
+            seals=seals,
         message:
             f"summary: {name}"
         script:

@@ -26,8 +26,11 @@ rule two_blocks:
         settings=keys("start", "transient", "window"),
         search={key: STUDY.config["attractors"][key] for key in OF_GIVEN_STATES},
         # A block of the study's section need not be there: the sum always is.
-        motion={key: value for key, value in motion_config().items() if key != "section"},
+        motion={
+            key: value for key, value in motion_config().items() if key != "section"
+        },
         sources=sources("two_blocks"),
+        seals=seals,
     message:
         "two blocks: each law against the first one"
     script:

@@ -17,9 +17,10 @@ parts, further = ([open_summary(path) for path in paths] for paths in (snakemake
 models = models_of(params.model, params.a, params.blocks)
 numbers = all_laws.branch_numbers(parts, models, SearchSettings(**params.attractors), snakemake.threads)
 on_grid = all_laws.merge(parts, numbers)
-write_results(on_grid, all_laws, snakemake.output[:2])
+*paths, between, turns = snakemake.output
+write_results(on_grid, all_laws, {path: params.seals[path] for path in paths})
 numbers = all_laws.with_branches_between(numbers, further)
 everywhere = all_laws.merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
 everywhere = all_laws.named_alike(everywhere, on_grid)
-write_summary(everywhere, snakemake.output[2])
-write_summary(rotation.summarize(everywhere, models), snakemake.output[3])
+write_summary(everywhere, between, params.seals[between])
+write_summary(rotation.summarize(everywhere, models), turns, params.seals[turns])

@@ -23,5 +23,7 @@ found = continue_attractors(models, settings, motion, refine, starts=initial, st
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries import attractors, refined
 
-write_summary(attractors.one_law(found, initial, settings, motion, params.start), snakemake.output[0])
-write_summary(refined.one_law(found, settings, motion, refine, params.start), snakemake.output[1])
+on_grid = attractors.one_law(found, initial, settings, motion, params.start)
+between = refined.one_law(found, settings, motion, refine, params.start)
+for dataset, (path, about) in zip((on_grid, between), params.seals.items(), strict=True):
+    write_summary(dataset, path, about)

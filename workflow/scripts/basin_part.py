@@ -17,4 +17,4 @@ model = model_of(params.model, snakemake.wildcards.law, params.a, len(plane.init
 chosen = plane, SearchSettings(**params.attractors), MotionSettings(**params.motion), params.start
 number = snakemake.wildcards.get("tile")
 found = pairs(attractors, model, *chosen) if number is None else tile(attractors, model, int(number), *chosen)
-write_summary(found, snakemake.output[0])
+write_summary(found, *next(iter(snakemake.params.seals.items())))

@@ -21,4 +21,4 @@ maps = [
 ]
 attractors, limit = open_summary(snakemake.input.attractors), SearchSettings(**params.attractors).label_limit
 dataset = basins.merge(maps, attractors, list(params.model["laws"]), plane, limit, params.start)
-write_results(dataset, basins, snakemake.output)
+write_results(dataset, basins, snakemake.params.seals)

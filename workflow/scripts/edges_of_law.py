@@ -13,4 +13,5 @@ from burridge_knopoff.summaries.edges import one_law
 params, law = snakemake.params, snakemake.wildcards.law
 attractors, refined = (open_summary(path).sel(law=law) for path in snakemake.input)
 model = model_of(params.model, law, params.a, params.blocks)
-write_summary(one_law(model, attractors, refined, snakemake.resources.cpus_per_task, params.kept), snakemake.output[0])
+dataset = one_law(model, attractors, refined, snakemake.resources.cpus_per_task, params.kept)
+write_summary(dataset, *next(iter(params.seals.items())))

@@ -14,6 +14,6 @@ from burridge_knopoff.summaries.points import Grid, open_point
 
 params = snakemake.params
 module = import_module(f"burridge_knopoff.figures.{params.figure}")
-grid = Grid.of(params.runs["folder"], params.runs)
+grid = Grid.of(params.folder, params.runs)
 runs = {initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}
-write_figure(module.draw(runs), *snakemake.output)
+write_figure(module.draw(runs), *snakemake.output, seals=params.seals)

@@ -15,4 +15,4 @@ from burridge_knopoff.figures.style import write_figure
 params = snakemake.params
 module = import_module(f"burridge_knopoff.figures.{params.figure}")
 summaries = [open_summary(path) for path in snakemake.input]
-write_figure(module.draw(*summaries, **params.from_study), *snakemake.output)
+write_figure(module.draw(*summaries, **params.from_study), *snakemake.output, seals=params.seals)

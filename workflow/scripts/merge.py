@@ -10,4 +10,4 @@ from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.summaries.results import write_results
 
 module = import_module(f"burridge_knopoff.summaries.{snakemake.params.summary}")
-write_results(module.merge([open_summary(path) for path in snakemake.input]), module, snakemake.output)
+write_results(module.merge([open_summary(path) for path in snakemake.input]), module, snakemake.params.seals)

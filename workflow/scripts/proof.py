@@ -9,4 +9,4 @@ from burridge_knopoff.summaries import proof
 from burridge_knopoff.summaries.results import write_results
 
 models = models_of(snakemake.params.model, proof.GIVEN[0] / proof.GIVEN[1], proof.CHAIN_BLOCKS)
-write_results(proof.summarize(models), proof, snakemake.output)
+write_results(proof.summarize(models), proof, snakemake.params.seals)

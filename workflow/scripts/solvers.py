@@ -10,7 +10,8 @@ from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
 
 params = snakemake.params
-folder = Path(params.points["folder"])
+folder = Path(params.folder)
 grid = Grid.of(folder / "points", params.points)
 others = {solver: grid.elsewhere(folder / "solvers" / solver, settings) for solver, settings in params.others.items()}
-write_summary(summarize(grid, others, params.step), snakemake.output[0])
+path = snakemake.output[0]
+write_summary(summarize(grid, others, params.step), path, params.seals[path])

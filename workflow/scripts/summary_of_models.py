@@ -12,4 +12,4 @@ from burridge_knopoff.summaries.results import write_results
 params = snakemake.params
 module = import_module(f"burridge_knopoff.summaries.{params.summary}")
 models = models_of(params.model, params.grid[0], params.blocks)
-write_results(module.summarize(models, params.grid), module, snakemake.output)
+write_results(module.summarize(models, params.grid), module, snakemake.params.seals)

@@ -11,7 +11,7 @@ from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.results import write_results
 
 params = snakemake.params
-grid = Grid.of(params.points["folder"], params.points)
+grid = Grid.of(params.folder, params.points)
 others = [open_summary(path) for path in snakemake.input.summaries]
 module = import_module(f"burridge_knopoff.summaries.{params.summary}")
-write_results(module.summarize(grid, *others, **params.config), module, snakemake.output)
+write_results(module.summarize(grid, *others, **params.config), module, params.seals)

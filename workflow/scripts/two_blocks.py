@@ -18,4 +18,4 @@ initial = Sample(samples=samples, symmetric_samples=0, **params.sample).initial(
 settings = run_settings(**params.settings)
 judged = SearchSettings(**params.search), MotionSettings(**params.motion), params.agreement
 found = summarize(models, initial, grid, settings, *judged, processes=snakemake.resources.cpus_per_task)
-write_summary(found, snakemake.output[0])
+write_summary(found, *next(iter(snakemake.params.seals.items())))

@@ -12,4 +12,5 @@ from burridge_knopoff.summaries.chains import chain_dataset
 params, blocks = snakemake.params, int(snakemake.wildcards.blocks)
 models = [model_of(params.model, law, params.grid[0], blocks) for law in params.model["laws"]]
 watch = Watch(**params.watch, pair_distance=params.threshold)
-write_summary(chain_dataset(models, params.grid, Sample(**params.sample), watch), snakemake.output[0])
+dataset = chain_dataset(models, params.grid, Sample(**params.sample), watch)
+write_summary(dataset, *next(iter(params.seals.items())))

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from burridge_knopoff.figures.description import figure_descriptions, study_figures
+from burridge_knopoff.provenance.seal import seal_path
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES, TEXTS
 from burridge_knopoff.study.study import Study, all_points, solver_points
@@ -47,6 +48,13 @@ def leftovers(results: Path, study: Study) -> list[Path]:
         # What a link leads to is not the study's own.
         and path.resolve() == whole / name
         and path.is_file()
+    ]
+
+
+def study_files(study: Study) -> list[str]:
+    """Return the names, below its results, of all files of a study but points and their logs."""
+    return [
+        file.format(**wildcards) for files, _, named in _other_files(study) for wildcards in named for file in files
     ]
 
 
@@ -104,6 +112,7 @@ def delete(results: Path, paths: list[Path]) -> None:
     """Delete files of a study, and the folders in it that are empty without them; raises OSError if one cannot be."""
     for path in paths:
         path.unlink(missing_ok=True)
+        seal_path(path).unlink(missing_ok=True)
         for folder in path.parents:
             if folder == results or any(folder.iterdir()):
                 break

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.check.leftovers import leftovers, run_files, unmade
+from burridge_knopoff.check.leftovers import leftovers, run_files, study_files, unmade
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, remake_command
-from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.provenance.seal import BadFile, check_seal
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
@@ -84,7 +84,7 @@ def root_of(results: Path) -> Path:
 
 
 def check_study(results: str | Path) -> Check:
-    """Check every point and every other netCDF file of a study against its config and the current sources.
+    """Check every file of a study against its seal, its config and the current sources.
 
     Of summaries, figures and the report what is not there is missing if its job has begun, see `unmade`.
     Raises ValueError, one line, if the folder holds no study.
@@ -106,7 +106,8 @@ def check_study(results: str | Path) -> Check:
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
     unknown = {path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")}
-    rest = {**dict.fromkeys(others - unknown, Path()), **unmade(results, study)}
+    there = {path for name in study_files(study) if (path := results / name).is_file()}
+    rest = {**dict.fromkeys((others - unknown) | there, Path()), **unmade(results, study)}
     found = [
         *(_look(path, *run) for path, run in points.items()),
         *(_look(path, log=log) for path, log in rest.items()),
@@ -137,11 +138,11 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
     """Return what is wrong with the point file of a run, or with another file if there is no command, or None."""
     try:
         if not command:
-            open_summary(path)
+            open_summary(path) if path.suffix == ".nc" else check_seal(path)
         elif (status := check_run(path, command)) != "completed":
             return Finding("failed", path, f"ended with status {status}")
     except BadFile as error:
-        reason = error.reason
+        reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"
         if error.kind == "missing":
             words = last_words(log)
             reason = f"its job failed: {words} (log {log})" if words else "not made yet"

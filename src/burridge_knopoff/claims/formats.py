@@ -1,4 +1,4 @@
-"""The ledger as files: claims.json with a digest of itself, claims.csv and claims.md; docs/data.md describes them."""
+"""The ledger as files: claims.json, claims.csv and claims.md; docs/data.md describes them."""
 
 from __future__ import annotations
 
@@ -9,12 +9,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from burridge_knopoff.claims.verdict import NOT_TESTABLE
-from burridge_knopoff.provenance.seal import identity
-
-
-def content_digest(content: Mapping[str, Any]) -> str:
-    """Return 16 hexadecimal digits of the SHA-256 of a ledger, by which a damaged claims.json is known."""
-    return identity(json.dumps({key: value for key, value in content.items() if key != "digest"}, sort_keys=True))
 
 
 def untestable(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
@@ -35,8 +29,8 @@ def _grouped(key: str, claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[
 
 
 def as_json(content: Mapping[str, Any]) -> str:
-    """Return the ledger as JSON, with a digest of itself."""
-    return json.dumps({**content, "digest": content_digest(content)}, ensure_ascii=False, indent=1) + "\n"
+    """Return the ledger as JSON."""
+    return json.dumps(content, ensure_ascii=False, indent=1) + "\n"
 
 
 def as_csv(content: Mapping[str, Any]) -> str:

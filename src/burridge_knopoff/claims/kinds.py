@@ -153,7 +153,7 @@ def onset_of_chaos(
         there = (found["branch"].values >= 0) & (grid > 0.0)[:, None]
         if there.any(axis=1).sum() < LEAST_VALUES:
             raise NotTestableError(f"attractors are known at fewer than {LEAST_VALUES} values of a under the {law} law")
-        chaotic = (there & np.isin(found["kind"].values, CHAOS)).any(axis=1)
+        chaotic = np.any(there & np.isin(found["kind"].values, CHAOS), axis=1)
         first = int(np.argmax(chaotic)) if chaotic.any() else len(grid)
         low, high = float(np.nanmax(grid)), np.inf
         if chaotic.any():

@@ -23,7 +23,7 @@ from burridge_knopoff.dataset.variables import (
     flag,
 )
 from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
-from burridge_knopoff.provenance.seal import identity, write_sealed
+from burridge_knopoff.provenance.seal import write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
 from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
@@ -118,9 +118,9 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
 
 
-def point_identity(command: str) -> str:
-    """Return what the point file of a run is about: its `bk simulate` command, and the software that makes it."""
-    return identity(command, SOFTWARE, source_fingerprint(__name__))
+def point_about(command: str) -> dict[str, str]:
+    """Return what the point file of a run is, for its seal: its `bk simulate` command and the sources that make it."""
+    return {"command": command, "sources": source_fingerprint(__name__)}
 
 
 def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
@@ -168,7 +168,7 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
         with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
             fill(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
 
-    write_sealed(path, write, point_identity(attributes["history"]), trajectory.status)
+    write_sealed(path, write, point_about(attributes["history"]), trajectory.status)
 
 
 def to_dataset(trajectory: Trajectory) -> xarray.Dataset:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable, described
-from burridge_knopoff.provenance.seal import BadFile, identity, read_seal, write_sealed
+from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
 from burridge_knopoff.provenance.sources import provenance, source_fingerprint
 
 AXES: dict[str, Variable] = {
@@ -54,23 +54,27 @@ def summary(
     return xarray.Dataset(described(variables, values), dict(coordinates), head)
 
 
-def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
-    """Write a summary as netCDF; the same Dataset gives the same bytes."""
+def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
+    """Write a summary as netCDF; the same Dataset gives the same bytes.
+
+    about : what the file is, for its seal; if None, it is known by its sources alone
+    """
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
         encoding[str(name)] = {"_FillValue": None}
         if variable.dtype != object and variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
-    about = identity(*(dataset.attrs[key] for key in ("software", "source_module", "source_fingerprint")))
+    about = {"sources": dataset.attrs["source_fingerprint"]} if about is None else about
     write_sealed(path, lambda name: dataset.to_netcdf(name, engine="netcdf4", encoding=encoding), about)
 
 
 def open_summary(path: str | Path) -> xarray.Dataset:
     """Return a summary, loaded into memory.
 
-    Raises BadFile if it is missing, damaged, or made by other sources than those of this package.
+    Raises BadFile if it is missing, damaged, another file than its study has there, or made by other sources than those
+    of this package.
     """
-    read_seal(path)
+    check_seal(path)
     dataset = xarray.load_dataset(path, engine="netcdf4")
     module, fingerprint = dataset.attrs["source_module"], dataset.attrs["source_fingerprint"]
     current = source_fingerprint(module)

@@ -62,7 +62,7 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
         cycles, *others, sticks = panels[column :: len(states)]
-        *ratios, together = others or [None]
+        ratios, together = others[:-1], others[-1] if others else None
         for n, block in enumerate(shown):
             one = run.sel(block=block)
             _points(cycles, n, one["cycle_time"], one["cycle_time_error"])

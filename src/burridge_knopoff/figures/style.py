@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial, wraps
 from pathlib import Path
 from typing import Any, ParamSpec
@@ -19,6 +19,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from burridge_knopoff.provenance.files import write_whole
+from burridge_knopoff.provenance.seal import write_sealed
 
 Arguments = ParamSpec("Arguments")
 
@@ -256,8 +257,11 @@ def say_nothing(panel: Axes, reason: str) -> None:
     panel.set_axis_off()
 
 
-def write_figure(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure in the format of each path, .pdf, .png or .svg; the same figure gives the same bytes."""
+def write_figure(figure: Figure, *paths: str | Path, seals: Mapping[str, Mapping[str, Any]] | None = None) -> None:
+    """Write a figure in the format of each path, .pdf, .png or .svg; the same figure gives the same bytes.
+
+    seals : {path: what the file is}, if it is a file of a study
+    """
     for path in map(Path, paths):
         # `savefig` would draw twice, the first time for the layout alone, which a drawing begins with anyway.
         canvas = get_registered_canvas_class(path.suffix[1:])
@@ -266,4 +270,5 @@ def write_figure(figure: Figure, *paths: str | Path) -> None:
         with mpl.rc_context(STYLE):
             figure.dpi = STYLE["savefig.dpi"]
             draw = getattr(canvas(figure), f"print_{path.suffix[1:]}")
-            write_whole(path, partial(draw, metadata=metadata))
+            write = partial(draw, metadata=metadata)
+            write_sealed(path, write, seals[str(path)]) if seals else write_whole(path, write)

@@ -54,9 +54,9 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
     strip = 0.4 + 0.1 * two_blocks.sizes["state"]
     figure = Figure(figsize=(PAGE, 0.6 + len(CHAINS) * (2.1 + strip)), layout="constrained")
     panels = figure.subplots(2 * len(CHAINS), 1, sharex=True, height_ratios=len(CHAINS) * [2.1, strip])
-    entries = {}
+    entries: dict[object, Artist] = {}
     for n, chain in enumerate(CHAINS):
-        for handle in draw_panels(*panels[2 * n : 2 * n + 2], two_blocks.sel(chain=chain)):
+        for handle in draw_panels(panels[2 * n], panels[2 * n + 1], two_blocks.sel(chain=chain)):
             entries.setdefault(handle.get_label(), handle)
     legend_below(figure, list(entries.values()))
     below = "initial states for which the laws disagree"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -9,8 +10,9 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.dataset.point import POINT_VARIABLES, point_about
 from burridge_knopoff.dataset.summary import AXES, axes
+from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.values import refusal
@@ -31,13 +33,14 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file, and
     `tree["grid"]` has what is one number a point over (law, initial, a): NaN, or −1 among whole numbers, where a point
     is not there. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. What the study had
-    once and has no more, as summaries of a stage that is left out now, is not opened. No file is held against the
-    sources that made it: `bk check` does that.
+    once and has no more, as summaries of a stage that is left out now, is not opened. Other sources than those of now
+    may have made the files: `bk check` tells.
 
     The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
     Several threads may open studies, one after the other; while one opens, others must not read: HDF5 would crash.
 
-    Raises ValueError, one line, if the folder holds no study of this version, or a file that cannot be read.
+    Raises ValueError, one line, if the folder holds no study of this version, or a file that is damaged or not of the
+    study; the line has the command that remakes the file.
 
     >>> from burridge_knopoff import open_study
     >>> study = open_study("results/paper")
@@ -63,7 +66,9 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
                 for k, a in enumerate(values):
                     name = f"points/{POINT.format(law=law, initial=initial, a=a)}"
                     if (results / name).is_file():
-                        point = nodes[name.removesuffix(".nc")] = _opened(results / name)
+                        point = nodes[name.removesuffix(".nc")] = _opened(
+                            results / name, point_about(study.command(law, initial, a))
+                        )
                         for number, everywhere in found.items():
                             everywhere[i, j, k] = point.variables[number].values
         nodes["grid"] = xarray.Dataset(
@@ -83,7 +88,8 @@ def _absent(name: str) -> Any:
     return kind.type(np.nan if kind.kind == "f" else -1)
 
 
-def _opened(path: Path) -> xarray.Dataset:
+def _opened(path: Path, about: Mapping[str, Any] | None = None) -> xarray.Dataset:
+    check_seal(path, about, any_sources=True)
     try:
         return xarray.open_dataset(path)
     except (OSError, RuntimeError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""What the last run of a study was about, recorded beside its results: its config, and how to run it again."""
+"""What the last run of a study was about, recorded beside its results: its config, how to run it again, its files."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 import os
 import shlex
 import subprocess
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +23,7 @@ NAME = "study.json"
 #: {key of a record: its type}
 _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
-    **dict.fromkeys(("given", "config", "grid"), dict),
+    **dict.fromkeys(("given", "config", "grid", "files"), dict),
 }
 
 
@@ -42,16 +43,22 @@ def git_commit() -> str:
 
 
 def write_study_record(
-    results: str | Path, study: Study, config_file: str | Path, given: dict[str, Any], arguments: str
+    results: str | Path,
+    study: Study,
+    config_file: str | Path,
+    given: dict[str, Any],
+    arguments: str,
+    files: Mapping[str, Mapping[str, Any]],
 ) -> None:
     """Record a study in its folder of results; a record that says the same already stays untouched.
 
     config_file, given : its config as it was given, and what that file holds
     arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
+    files : {name below the folder: what the file should be, see `provenance.seal`}, without points, whose commands tell
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, study.config, study.grid)
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, study.config, study.grid, files)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -64,17 +71,19 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     arguments, config_file : as they were recorded
     given, config : the config as it was given, and with all defaults
     grid : {name in file names: value of a}
+    files : {name below the folder: what the file should be}, but for points
 
     Raises ValueError, one line, if there is none.
     """
     path = Path(results, NAME)
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
+        # Records of earlier versions have no files.
+        record = {"files": {}, **json.loads(path.read_text(encoding="utf-8"))}
     except OSError:
         raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
-    except (ValueError, RecursionError):
-        record = None
-    if not isinstance(record, dict) or {key: type(value) for key, value in record.items()} != _TYPES:
+    except (ValueError, TypeError, RecursionError):
+        record = {}
+    if {key: type(value) for key, value in record.items()} != _TYPES:
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record
 
@@ -82,6 +91,16 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
 def study_folder(path: str | Path) -> Path | None:
     """Return the folder of results in which a file lies, None if it lies in none."""
     return next((folder for folder in Path(path).absolute().parents if (folder / NAME).is_file()), None)
+
+
+def recorded_file(path: str | Path) -> dict[str, Any] | None:
+    """Return what a file of a study should be by the record of its last run; None if that does not know the file."""
+    folder = study_folder(path)
+    if folder is None:
+        return None
+    with contextlib.suppress(ValueError):
+        return read_study_record(folder)["files"].get(Path(path).absolute().relative_to(folder).as_posix())
+    return None
 
 
 def check_owner(results: str | Path, config_file: str | Path, given: dict[str, Any]) -> None:

@@ -1,22 +1,37 @@
-"""The seal: the last line of every netCDF file of a study, after the HDF5 data, by which a damaged file is known.
+"""The seal of a file of results: what the file is, how its run ended, and the SHA-256 of its bytes.
 
-HDF5 itself sees neither a changed number nor noise over a part of a file. netCDF programs do not read past the end of
-the data that HDF5 has noted, so they do not see the seal. It holds the SHA-256 of all bytes before it, a digest of what
-the file is about, and how a run ended: all files of a study can be checked without opening one by netCDF.
+HDF5 itself sees neither a changed number nor noise over a part of a file, and nothing in a picture or a text says which
+study it belongs to. The seal is one line. In a netCDF file it is the last line, after the HDF5 data: netCDF programs do
+not read past the end that HDF5 has noted. The seal of a text or a picture lies beside it, in `.<name>.seal`.
+
+A mapping in the types of JSON says what the file is. For a point it holds the `bk simulate` command and the fingerprint
+of the sources. For every other file of a study it holds the name of the file, the params of its rule (the keys of the
+config and the sources that decide it), and for each input a digest of what that is. The workflow records in study.json
+what the files of a study should be, and `check_seal` compares.
 """
 
 from __future__ import annotations
 
 import hashlib
+import json
+import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
+from burridge_knopoff.provenance.command import difference
 from burridge_knopoff.provenance.files import write_whole
-from burridge_knopoff.provenance.record import remake_command
+from burridge_knopoff.provenance.record import recorded_file, remake_command, study_folder
 
-_SEAL = re.compile(rb"\n#seal ([0-9a-f]{16}) ([a-z_]+) ([0-9a-f]{64})\n\Z")
-_LONGEST = 200
+_MARK = b"\n#seal "
+_SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
+#: Suffixes of the files that hold their seals: netCDF, and what is kept for another run.
+_INSIDE = (".nc", "")
+#: What is told last of what differs: it may follow from the others.
+_LAST = ("inputs", "sources")
+#: Characters of a value in a message.
+_LONGEST = 60
 
 
 class BadFile(ValueError):
@@ -31,43 +46,146 @@ class BadFile(ValueError):
 
 
 def identity(*parts: str) -> str:
-    """Return 16 hexadecimal digits for what a file is about."""
+    """Return 16 hexadecimal digits for texts."""
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
-def write_sealed(path: str | Path, write: Callable[[str], object], about: str, status: str = "made") -> None:
-    """Let `write` fill a file and seal it, whole or not at all; see `write_whole`."""
+def canonical(about: Any) -> str:
+    """Return what a file is as one line of JSON; the order counts, as that of the laws does in a summary."""
+    return json.dumps(about, separators=(",", ":"))
+
+
+def seal_path(path: str | Path) -> Path:
+    """Return the file that holds the seal of a file: itself or, of a text or a picture, one beside it."""
+    path = Path(path)
+    return path if path.suffix in _INSIDE else path.with_name(f".{path.name}.seal")
+
+
+def write_sealed(
+    path: str | Path, write: Callable[[str], object], about: Mapping[str, Any], status: str = "made"
+) -> None:
+    """Let `write` fill a file and seal it, whole or not at all; see `write_whole`.
+
+    about : what the file is, in the types of JSON
+    status : how its run ended
+    """
+    head = f" {canonical(about)} {status} ".encode()
+    line = b""
 
     def write_and_seal(name: str) -> None:
+        nonlocal line
         write(name)
-        seal(name, about, status)
+        line = _line(Path(name).read_bytes(), head)
+        if seal_path(path) == Path(path):
+            with open(name, "ab") as file:
+                file.write(line)
 
     write_whole(path, write_and_seal)
+    if seal_path(path) != Path(path):
+        write_whole(seal_path(path), lambda name: Path(name).write_bytes(line))
 
 
-def seal(path: str | Path, about: str, status: str) -> None:
-    """Put the seal at the end of a file that has just been written; about : see `identity`."""
-    head = f"\n#seal {about} {status} ".encode()
-    with open(path, "r+b") as file:
-        digest = hashlib.sha256(file.read() + head).hexdigest()
-        file.write(head + f"{digest}\n".encode())
+def _line(content: bytes, head: bytes) -> bytes:
+    head = _MARK.rstrip() + head
+    return head + hashlib.sha256(content + head).hexdigest().encode() + b"\n"
 
 
-def read_seal(path: str | Path) -> tuple[str, str]:
-    """Check all bytes of a file against its seal; return what it is about, see `identity`, and how its run ended.
+def write_sealed_text(path: str | Path, text: str, about: Mapping[str, Any]) -> None:
+    """Write a text file and its seal."""
+    write_sealed(path, lambda name: Path(name).write_bytes(text.encode()), about)
+
+
+def read_seal(path: str | Path) -> tuple[dict[str, Any], str]:
+    """Check all bytes of a file against its seal; return what the file is, and how its run ended.
 
     Raises BadFile if the file is not there, has no seal, or is not what was sealed.
     """
+    return read_sealed(path)[1:]
+
+
+def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
+    """Return the content of a file without its seal, what the file is, and how its run ended; see `read_seal`."""
+    path = Path(path)
     try:
-        content = Path(path).read_bytes()
+        content = path.read_bytes()
+        beside = seal_path(path)
+        seal = content if beside == path else beside.read_bytes() if beside.is_file() else b""
     except FileNotFoundError:
         raise BadFile(path, "is missing", "missing") from None
     except OSError as error:
         raise BadFile(path, f"cannot be read: {error.strerror}", "corrupt") from None
-    found = _SEAL.search(content[-_LONGEST:])
+    if not content:
+        raise BadFile(path, "is empty", "corrupt")
+    found = _SEAL.search(seal, max(seal.rfind(_MARK), 0))
     if found is None:
-        reason = "has no seal at its end: it is cut off, or another program wrote it" if content else "is empty"
-        raise BadFile(path, reason, "corrupt")
-    if hashlib.sha256(content[: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
+        where = "at its end: it is cut off, or another program wrote it" if beside == path else "beside it"
+        raise BadFile(path, f"has no seal {where}", "corrupt")
+    if beside == path:
+        content = content[: found.start()]
+    if hashlib.sha256(content + found[0][: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
         raise BadFile(path, "has other bytes than were written", "corrupt")
-    return found[1].decode(), found[2].decode()
+    try:
+        about = json.loads(found[1])
+    except ValueError:
+        about = None
+    if not isinstance(about, dict):
+        raise BadFile(path, "was sealed by another version")
+    return content, about, found[2].decode()
+
+
+def check_seal(path: str | Path, about: Mapping[str, Any] | None = None, *, any_sources: bool = False) -> str:
+    """Check that a file is whole and the one that it should be; return how its run ended.
+
+    about : what it should be; if None, what the record of its study says, and nothing outside a study
+    any_sources : whether other sources may have made it
+
+    Raises BadFile, one line with what differs: of the file or, if it was made from a file that is not as it should be
+    either, of that one.
+    """
+    found, status = read_seal(path)
+    expected = recorded_file(path) if about is None else json.loads(canonical(about))
+    if expected is None or canonical(found) == canonical(expected):
+        return status
+    key = min(_differing(found, expected), key=lambda key: (key != "file", key in _LAST), default="order")
+    if not (any_sources and key == "sources"):
+        if key == "inputs" and (folder := study_folder(path)):
+            for name in sorted(expected["inputs"].keys() & found.get("inputs", {}).keys()):
+                if (folder / name).is_file():
+                    check_seal(_beside(path, folder / name), any_sources=any_sources)
+        raise BadFile(path, _difference(key, found.get(key), expected.get(key)))
+    return status
+
+
+def _differing(found: Mapping[str, Any], expected: Mapping[str, Any]) -> list[str]:
+    """Return the keys whose values differ."""
+    keys = {**expected, **found}
+    return [key for key in keys if canonical(found.get(key)) != canonical(expected.get(key))]
+
+
+def _beside(path: str | Path, other: Path) -> Path:
+    """Return the path of another file of a study as that of the first one is written."""
+    return other if Path(path).is_absolute() else Path(os.path.relpath(other))
+
+
+def _difference(key: str, found: Any, expected: Any) -> str:
+    """Return in words how two files differ in a key."""
+    if key == "command" and found and expected:
+        return f"is another run: {difference(found, expected)}"
+    if key == "sources" and found and expected:
+        return f"was made by other sources than those of now ({found}, now {expected})"
+    place = [key]
+    while isinstance(found, dict) and isinstance(expected, dict):
+        if keys := _differing(found, expected):
+            found, expected = found.get(keys[0]), expected.get(keys[0])
+            place.append(keys[0])
+        else:
+            found, expected = list(found), list(expected)
+    if place[0] == "inputs" and len(place) > 1:
+        return f"was made from another {place[1]}"
+    values = f"got {_words(found)}, expected {_words(expected)}"
+    return f"is another file: {values}" if place == ["file"] else f"was made with {'.'.join(place)}: {values}"
+
+
+def _words(value: Any) -> str:
+    text = "nothing" if value is None else value if isinstance(value, str) else json.dumps(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

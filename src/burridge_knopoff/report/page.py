@@ -12,7 +12,7 @@ import xarray
 from markupsafe import Markup
 
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.provenance.files import write_text
+from burridge_knopoff.provenance.seal import write_sealed_text
 from burridge_knopoff.report import curves, overview, tables
 from burridge_knopoff.report.basin_maps import basin_maps
 from burridge_knopoff.report.numbers import embedded_json
@@ -55,13 +55,16 @@ class Sources:
     benchmarks: Path = field(default=Path("benchmarks"))
 
 
-def write_report(study: Study, sources: Sources, arguments: Sequence[str], path: str | Path) -> None:
+def write_report(
+    study: Study, sources: Sources, arguments: Sequence[str], path: str | Path, about: Mapping[str, Any]
+) -> None:
     """Write the report of a study as one HTML file.
 
     arguments : that name the study to `snakemake` in the commands of the report, none for the default one
+    about : what the file is, for its seal
     Raises ValueError, one line that names the file, if a source cannot be read.
     """
-    write_text(path, render(study, sources, arguments))
+    write_sealed_text(path, render(study, sources, arguments), about)
 
 
 def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.claims.formats import by_topic, content_digest, untestable
+from burridge_knopoff.claims.formats import by_topic, untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
 from burridge_knopoff.provenance.seal import BadFile
 
@@ -42,11 +42,7 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
         return Verdicts({}, {}, {}, {}, {})
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
-        written = content.pop("digest") == content_digest(content)
+        claims, counts, independent = (content.pop(key) for key in ("claims", "counts", "independent_counts"))
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
-    if not written:
-        raise BadFile(path, "has other content than was written")
-    claims = content.pop("claims")
-    counts, independent = content.pop("counts"), content.pop("independent_counts")
     return Verdicts(counts, independent, by_topic(claims), untestable(claims), content)

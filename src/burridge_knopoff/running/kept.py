@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import pickle
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import fields, is_dataclass
 from functools import partial
@@ -19,8 +18,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from burridge_knopoff.provenance.seal import BadFile, read_seal, write_sealed
+from burridge_knopoff.provenance.seal import read_sealed, write_sealed
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.running.packing import pack, unpack
 
 _DIGIT = "[0-9a-f]"
 
@@ -28,17 +28,21 @@ _DIGIT = "[0-9a-f]"
 def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
     """Return the result of a call, the file that keeps it, and whether it was read from there.
 
-    A file that is damaged counts as none. Raises OSError, one line, if the file cannot be written.
+    A file that is damaged, or keeps another result, counts as none. Raises OSError, one line, if the file cannot be
+    written.
     """
     digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
     for part in _parts([function, *items]):
         digest.update(part)
     path = folder / digest.hexdigest()[:32]
-    with contextlib.suppress(BadFile):
-        read_seal(path)
-        return pickle.loads(path.read_bytes()), path, True
+    about = {"kept": path.name}
+    with contextlib.suppress(ValueError, LookupError, AttributeError):
+        content, found, _ = read_sealed(path)
+        if found == about:
+            return unpack(content), path, True
     result = function(*items)
-    write_sealed(path, lambda name: Path(name).write_bytes(pickle.dumps(result)), path.name[:16])
+    content = pack(result)
+    write_sealed(path, lambda name: Path(name).write_bytes(content), about)
     return result, path, False
 
 

@@ -10,9 +10,10 @@ import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.provenance.record import read_study_record, study_folder
-from burridge_knopoff.provenance.seal import BadFile, read_seal
+from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.stability.settings import MOTION, MotionSettings
+from burridge_knopoff.study.recorded import check_result
 
 #: {variable that no other summary has: name of the summary}, where the module that made it does not tell.
 _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
@@ -47,7 +48,8 @@ class Result:
         config = self.record.get("config", {})
         if "motion" not in config:
             return MOTION
-        return MotionSettings(**config["motion"], synchronization_threshold=config["synchronization_threshold"])
+        others = {key: config[key] for key in ("synchronization_threshold", "section") if key in config}
+        return MotionSettings(**config["motion"], **others)
 
     @property
     def made_by(self) -> str:
@@ -61,12 +63,12 @@ class Result:
 def open_result(path: str | Path) -> Result:
     """Return what is in a point file or a summary, of these sources or of others.
 
-    Raises ValueError, one line, if it is not there, damaged, or of another program.
+    Raises ValueError, one line, if it is missing, damaged, of another program, or not what its study has there.
     """
     path = Path(path)
     study = study_folder(path)
     try:
-        read_seal(path)
+        check_result(path)
     except BadFile as error:
         # Only of these is it known what makes them again.
         if study and path.suffix == ".nc":

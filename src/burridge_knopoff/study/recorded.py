@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.dataset.point import point_about
 from burridge_knopoff.model.fields import Keys
-from burridge_knopoff.provenance.record import NAME, read_study_record
+from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
+from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.values import joined
+
+_RUN = re.compile(r"(?:points|solvers/(?P<solver>\w+))/(?P<law>\w+)/(?P<initial>\w+)/a(?P<a>[\d.]+)\.nc")
 
 
 def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
@@ -27,6 +33,19 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
     if (study.config, study.grid) != (record["config"], record["grid"]):
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record, study
+
+
+def check_result(path: Path) -> None:
+    """Check that a file is whole and, in a study, the one that should be there; other sources may have made it.
+
+    Raises BadFile as `check_seal` does.
+    """
+    about, folder = None, study_folder(path)
+    if folder and (run := _RUN.fullmatch(path.absolute().relative_to(folder).as_posix())):
+        # Of what is no run of the study, or of another version, it is not known what it should be.
+        with contextlib.suppress(ValueError, KeyError):
+            about = point_about(recorded_study(folder)[1].command(**run.groupdict()))
+    check_seal(path, about, any_sources=True)
 
 
 def _other_key(config: Any, keys: Keys, place: str = "") -> str:

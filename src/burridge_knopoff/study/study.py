@@ -74,8 +74,7 @@ class Study:
         points, law = self.points, self.shown_law
         initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
         only = {key: {law: points[key][law]} for key in ("laws", "settings")}
-        folder = f"results/{self.name}/points"
-        return {**points, **only, "folder": folder, "initial": initial, "a": {self.shown_point: self.shown_a}}
+        return {**points, **only, "initial": initial, "a": {self.shown_point: self.shown_a}}
 
     @property
     def law_descriptions(self) -> dict[str, dict[str, Any]]:

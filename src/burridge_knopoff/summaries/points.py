@@ -11,13 +11,12 @@ import netCDF4
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import point_identity
+from burridge_knopoff.dataset.point import point_about
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.command import difference, simulate_command
-from burridge_knopoff.provenance.seal import BadFile, read_seal
-from burridge_knopoff.provenance.sources import SOFTWARE
+from burridge_knopoff.provenance.command import simulate_command
+from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
@@ -142,16 +141,7 @@ def check_run(path: Path, command: str) -> str:
 
     Raises BadFile as `read_point` does.
     """
-    about, status = read_seal(path)
-    if about == point_identity(command):
-        return status
-    with netCDF4.Dataset(path) as dataset:
-        found, software = dataset.history, dataset.software
-    if found != command:
-        raise BadFile(path, f"is another run: {difference(found, command)}")
-    if software != SOFTWARE:
-        raise BadFile(path, f"was made by {software}, now {SOFTWARE}")
-    raise BadFile(path, "was made by other sources of the simulation than those of now")
+    return check_seal(path, point_about(command))
 
 
 def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,0 +1,116 @@
+"""Values of Python as bytes and back: a line of JSON, and after it the bytes of all arrays.
+
+Reading runs no code from the file, as reading a pickle would. None, truth values, numbers, texts, bytes, enumerations,
+lists, tuples, mappings, NumPy's arrays and numbers can be written, and objects by their attributes. An array or object
+that stands in several places is one object again after reading.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from enum import Enum
+from functools import cached_property
+from inspect import getattr_static
+from typing import Any, Literal
+
+import numpy as np
+
+_PLAIN = (type(None), bool, int, float, str)
+
+
+def pack(value: Any) -> bytes:
+    """Return a value as bytes; raises TypeError for an array of objects or an object without attributes."""
+    objects: list[Any] = []
+    arrays: list[bytes] = []
+    # With the objects themselves: an address is that of one object only while that lives.
+    known: dict[int, tuple[Any, int]] = {}
+
+    def packed(value: Any) -> Any:
+        if type(value) in _PLAIN:
+            return value
+        match value:
+            case Enum():
+                return ["enum", _name(type(value)), value.name]
+            case bytes():
+                return ["bytes", value.hex()]
+            case np.generic():
+                return ["number", value.dtype.str, value.tobytes().hex()]
+        if type(value) in (list, tuple):
+            return [type(value).__name__, *map(packed, value)]
+        if type(value) is dict:
+            return ["dict", *([packed(key), packed(item)] for key, item in value.items())]
+        if id(value) not in known:
+            item = array(value) if isinstance(value, np.ndarray) else attributes(value)
+            known[id(value)] = value, len(objects)
+            objects.append(item)
+        return ["object", known[id(value)][1]]
+
+    def array(value: np.ndarray) -> Any:
+        if value.dtype.hasobject:
+            raise TypeError(f"an array of objects cannot be kept: {value.dtype}")
+        order: Literal["F", "C"] = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
+        arrays.append(value.tobytes(order))
+        return ["array", value.dtype.str, list(value.shape), order]
+
+    def attributes(value: Any) -> Any:
+        # What is computed from the others when it is asked for is left out.
+        own = {
+            name: item
+            for name, item in vars(value).items()
+            if not isinstance(getattr_static(type(value), name, None), cached_property)
+        }
+        return ["attributes", _name(type(value)), {name: packed(item) for name, item in own.items()}]
+
+    top = packed(value)
+    return json.dumps([top, objects], separators=(",", ":")).encode() + b"\n" + b"".join(arrays)
+
+
+def unpack(content: bytes) -> Any:
+    """Return the value that `pack` has written; raises ValueError, LookupError or AttributeError if it is not one.
+
+    Objects are of the classes of modules that have been imported.
+    """
+    line, _, data = content.partition(b"\n")
+    top, packed_objects = json.loads(line)
+    objects: list[Any] = []
+    place = 0
+
+    def unpacked(item: Any) -> Any:
+        if not isinstance(item, list):
+            return item
+        kind, *parts = item
+        match kind:
+            case "enum":
+                return _class(parts[0])[parts[1]]
+            case "bytes":
+                return bytes.fromhex(parts[0])
+            case "number":
+                return np.frombuffer(bytes.fromhex(parts[1]), parts[0])[0]
+            case "list" | "tuple":
+                return (list if kind == "list" else tuple)(map(unpacked, parts))
+            case "dict":
+                return {unpacked(key): unpacked(value) for key, value in parts}
+        return objects[parts[0]]
+
+    for kind, *parts in packed_objects:
+        if kind == "array":
+            dtype, shape, order = parts
+            count = int(np.prod(shape, dtype=int))
+            values = np.frombuffer(data, dtype, count, place) if count else np.empty(0, dtype)
+            place += values.nbytes
+            objects.append(values.reshape(shape, order=order).copy(order="K"))
+        else:
+            value = object.__new__(_class(parts[0]))
+            vars(value).update({name: unpacked(item) for name, item in parts[1].items()})
+            objects.append(value)
+    return unpacked(top)
+
+
+def _name(kind: type) -> str:
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def _class(name: str) -> Any:
+    module, _, qualname = name.partition(":")
+    return getattr(sys.modules[module], qualname)
