@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 from PIL import Image
@@ -34,13 +35,20 @@ def headline(content: dict) -> str:
     """Return the sentence of the README that counts the independent statements of a ledger."""
     counts, every = content["independent_counts"], sum(content["counts"].values())
     number = sum(counts.values())
-    return (
-        f"**Of {number} independent statements {counts['holds']} hold, {counts['holds loosely']} hold loosely,\n"
-        f"{counts['depends on convention']} depend on conventions that the paper leaves open, "
-        f"{counts['depends on reading']} on how they are read, {counts['fails']} fail, and\n"
-        f"{counts['not testable']} cannot be tested**; {every - number} more repeat these or follow from them. "
-        "[docs/claims.md](docs/claims.md) has each with its numbers.\n"
+    words = {
+        "holds": "hold",
+        "holds loosely": "hold loosely",
+        "depends on convention": "depend on conventions that the paper leaves open",
+        "depends on reading": "depend on how they are read",
+        "fails": "fail",
+        "not testable": "cannot be tested",
+    }
+    *parts, last = (f"{counts[verdict]} {said}" for verdict, said in words.items() if counts[verdict])
+    sentence = (
+        f"**Of {number} independent statements {', '.join(parts)}, and {last}**; {every - number} more repeat these or "
+        "follow from them. [docs/claims.md](docs/claims.md) has each with its numbers."
     )
+    return textwrap.fill(sentence, 120, break_on_hyphens=False) + "\n"
 
 
 def readme(text: str, content: dict) -> str:

@@ -196,7 +196,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # More than a job can do.
     "steps": (f"{GOOD}solver: {{linearized: rk4}}\nstep: 1.0e-9\n", ["step: 1e-09", "3.33e+09 steps"]),
     "samples": (f"{GOOD}sampling: 1.0e-5\n", ["sampling: 1e-05", "1e7 samples"]),
-    "events": (f"{GOOD}window: 1.0e+9\nsampling: 1000\n", ["window: 1000000000.0", "numbers"]),
+    "trajectory": (
+        f"{GOOD}trajectory: 7000\ntrajectory_sampling: 1.0e-4\n",
+        ["trajectory_sampling: 0.0001", "samples"],
+    ),
     "pixels": (f"{GOOD}basins: {{a: {{linearized: [0.1]}}, pixels: 16384}}\n", ["basins.pixels: 16384", "numbers"]),
     "pairs_of_states": (f"{GOOD}basins: {{pairs: 10000000}}\n", ["basins.pairs: 10000000", "numbers"]),
 }

@@ -14,7 +14,7 @@ from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change
 from tests.claims.worlds import Summaries
 
-UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC, TRANSIENT = MotionKind
+UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC, TRANSIENT, _ = MotionKind
 ONE_OF_MANY = 0.03
 Alteration = Callable[[Summaries], None]
 

@@ -52,7 +52,7 @@ def test_a_tolerance_of_motion_decides_what_is_chaos(exponent, name, expected):
     world["lyapunov"]["lyapunov_exponent"].loc[{"exponent": 0, "initial": "plus"}] = exponent
     kind = MotionKind.CHAOTIC if exponent > 0.001 else MotionKind.UNDETERMINED
     for summary in ("lyapunov", "agreement"):
-        world[summary]["kind"].loc[{"initial": "plus"}] = kind
+        world[summary]["run_kind" if summary == "lyapunov" else "kind"].loc[{"initial": "plus"}] = kind
     other = by_name(world)[name]
     changed = other.summaries["agreement"]["kind"].sel(initial="plus").values
     assert (changed == (MotionKind.UNDETERMINED if exponent > 0.001 else MotionKind.CHAOTIC)).all()
@@ -63,9 +63,9 @@ def test_a_tolerance_of_motion_decides_what_is_chaos(exponent, name, expected):
 def test_a_kind_that_an_attractor_has_shown_stays():
     world = paper_world()
     world["lyapunov"]["lyapunov_exponent"].loc[{"exponent": 0, "initial": "plus"}] = 0.0008
-    world["lyapunov"]["kind"].loc[{"initial": "plus"}] = MotionKind.UNDETERMINED
+    world["lyapunov"]["run_kind"].loc[{"initial": "plus"}] = MotionKind.UNDETERMINED
     other = by_name(world)["motion.chaotic_exponent = 0.0005 (0.001)"]
-    assert (other.summaries["lyapunov"]["kind"].sel(initial="plus") == MotionKind.CHAOTIC).all()
+    assert (other.summaries["lyapunov"]["run_kind"].sel(initial="plus") == MotionKind.CHAOTIC).all()
     assert (other.summaries["agreement"]["kind"] == world["agreement"]["kind"]).all()
 
 

@@ -136,7 +136,7 @@ def _compared(pair: tuple[str, ...], difference: object) -> dict:
         "same_kind": (pair, np.int8(1)),
         "difference": (pair, difference),
         "difference_error": (pair, 1e-6),
-        "parting_a": (pair[:2], np.nan),
+        "parting_a": (pair[:-1], np.nan),
     }
 
 
@@ -161,7 +161,9 @@ def _lyapunov() -> xarray.Dataset:
     exponent[:, 0] = np.where(A > 0.1, 0.05, 1e-5)
     return _dataset(
         {
+            "run_kind": (POINT, np.stack(KINDS).astype("i1")),
             "mean_distance": (POINT, MEANS),
+            "period": (POINT, np.stack([np.where(A < 0.1, 7.5, np.nan), np.full(len(A), np.nan)])),
             "section_period": (POINT, np.stack([A < 0.1, np.zeros(len(A))]).astype("i2")),
             "lyapunov_exponent": ((*POINT, "exponent"), exponent),
             "lyapunov_error": ((*POINT, "exponent"), 1e-4),

@@ -23,7 +23,7 @@ from burridge_knopoff.summaries.branch_changes import Change
         (
             MotionKind,
             {-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic"}
-            | {3: "chaotic", 4: "transient_chaos"},
+            | {3: "chaotic", 4: "transient_chaos", 5: "synchronized_chaos"},
         ),
         (Symmetry, {0: "synchronized", 1: "symmetric", 2: "asymmetric"}),
         (

@@ -66,6 +66,7 @@ def test_what_flags_mean():
         "earlier_event_kind": event,
         "event_kind": event,
         "crossing_direction": {-1: "downward", 1: "upward"},
+        "initially_slipping": {0: "no", 1: "yes"},
     }
 
 

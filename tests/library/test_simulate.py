@@ -43,7 +43,7 @@ def test_an_initial_state_with_a_name():
     [
         (POSITION, "or (position, velocity)"),
         (3, "initial: 3 is not allowed"),
-        (np.array(1.0), "initial: 1.0 is not allowed"),
+        (np.array(1.0), "initial: array(1.) is not allowed"),
         (("minus", "plus"), "or (position, velocity)"),
         ({"positon": POSITION, "velocity": VELOCITY}, "initial.positon: unknown key"),
         ({"position": POSITION}, "initial.velocity: missing"),

@@ -9,6 +9,8 @@ from burridge_knopoff import OrbitError, Symmetry
 from burridge_knopoff.orbits import edges
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import Edge, locate_edges
+from burridge_knopoff.orbits.following import BranchOrbit
+from tests.orbits.stand_in import stand_in
 
 
 @pytest.mark.parametrize(
@@ -41,7 +43,7 @@ def branch(monkeypatch):
     def made(value, a=lambda length: length, kind=EdgeKind.FLIP):
         def point(length, slope=1.0):
             orbit = SimpleNamespace(a=a(length), symmetry=Symmetry.ASYMMETRIC, period=1.0)
-            return SimpleNamespace(orbit=orbit, multipliers=value(length), length=length, tangent=[slope])
+            return stand_in(BranchOrbit, orbit=orbit, multipliers=value(length), length=length, tangent=[slope])
 
         monkeypatch.setattr(edges, "critical_values", lambda orbit, value: {(kind, "keeping"): value})
         monkeypatch.setattr(edges, "step_along", lambda first, length: point(length))
@@ -112,7 +114,7 @@ def test_edges_between_two_orbits_come_in_the_order_of_the_branch(monkeypatch):
         values = np.array([0.6 + 0.8j, 0.6 - 0.8j])
         orbit = SimpleNamespace(a=0.1 + length, symmetry=Symmetry.SYNCHRONIZED)
         multipliers = SimpleNamespace(keeping=values, breaking=values, length=length)
-        return SimpleNamespace(orbit=orbit, multipliers=multipliers, length=length, tangent=[1.0])
+        return stand_in(BranchOrbit, orbit=orbit, multipliers=multipliers, length=length, tangent=[1.0])
 
     def values(orbit, found):
         sign = {"flip": 1.0, "torus": -1.0, "pitchfork": -1.0, "fold": 1.0}
@@ -158,8 +160,8 @@ def test_the_period_at_an_edge_is_that_of_the_orbits_before_it(before, expected)
     ],
 )
 def test_an_orbit_grazes_at_the_length_that_is_left(remaining, slope, beyond, a, error, turns):
-    point = SimpleNamespace(orbit=SimpleNamespace(a=0.1), remaining=remaining, tangent=[9.0, slope], corner=True)
-    following = [] if beyond is None else [SimpleNamespace(tangent=[-9.0, beyond], corner=False)]
+    point = stand_in(BranchOrbit, orbit=SimpleNamespace(a=0.1), remaining=remaining, tangent=[9.0, slope], corner=True)
+    following = [] if beyond is None else [stand_in(BranchOrbit, tangent=[-9.0, beyond], corner=False)]
     (edge,) = locate_edges([point, *following])
     assert (edge.kind, edge.turns) == (EdgeKind.GRAZING, turns)
     assert (edge.a, edge.a_error) == (pytest.approx(a, abs=1e-12), pytest.approx(error, rel=1e-9, abs=0.0))
@@ -195,8 +197,8 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_edge_of_that(monkeypatch, u
     monkeypatch.setattr(edges, "locate_edges", located)
     simple = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
     orbits = [SimpleNamespace(a=a, symmetry=Symmetry.ASYMMETRIC, period=2.0) for a in (0.11, 0.12)]
-    point = SimpleNamespace(orbit=orbits[0], length=0.02, corner=False)
-    found = list(own([point, SimpleNamespace(orbit=orbits[1], length=0.03, joined=simple, corner=False)]))
+    point = stand_in(BranchOrbit, orbit=orbits[0], length=0.02, corner=False)
+    found = list(own([point, stand_in(BranchOrbit, orbit=orbits[1], length=0.03, joined=simple, corner=False)]))
     assert asked == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
     if expected is None:
         assert found == []

@@ -11,6 +11,8 @@ from burridge_knopoff.orbits import following
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.orbits.edges import locate_edges
 from burridge_knopoff.orbits.following import Following
+from burridge_knopoff.orbits.periodic import PeriodicOrbit
+from tests.orbits.stand_in import stand_in
 
 
 @pytest.mark.parametrize(
@@ -118,7 +120,7 @@ def walk(monkeypatch):
         monkeypatch.setattr(following, "smooth_step", step)
         monkeypatch.setattr(following, "come_to_corner", lambda points, length: next(corners))
         monkeypatch.setattr(following, "turn_corner", lambda point: next(turned))
-        return follow(SimpleNamespace(a=0.1), (0.1, 0.2), **options), lengths
+        return follow(stand_in(PeriodicOrbit, model=SimpleNamespace(a=0.1)), (0.1, 0.2), **options), lengths
 
     return walked
 

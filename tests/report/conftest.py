@@ -70,7 +70,7 @@ def _fail(found) -> None:
     lost = {"status": Status.DIVERGED, "mean_distance": np.nan}
     for summary, law, values in (
         ("mean_distance", "law", {**lost, "mean_distance_error": np.nan}),
-        ("lyapunov", "law", {**lost, "lyapunov_exponent": np.nan, "lyapunov_error": np.nan, "kind": -1}),
+        ("lyapunov", "law", {**lost, "lyapunov_exponent": np.nan, "lyapunov_error": np.nan, "run_kind": -1}),
         ("agreement", "other_law", dict.fromkeys(("difference", "difference_error", "section_distance"), np.nan)),
         ("agreement", "other_law", {"agrees": -1}),
         ("agreement", "law", {"kind": -1}),

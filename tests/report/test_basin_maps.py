@@ -17,6 +17,7 @@ def test_basin_maps_hold_label_and_time_of_every_pixel():
     basins = xr.Dataset(
         {"branch": (plane, branch[None]), "side": (plane, side[None]), "decision_time": (plane, time[None])},
         {"first_position": [-1.0, 0.0, 1.0], "last_position": [0.0, 1.0], "a": ("map", [0.08])},
+        {"plane_position": np.zeros(3)},
     )
     basins["law"] = "map", [1], {"flag_meanings": "linearized nonlinear"}
     basins["uncertainty_exponent"], basins["uncertainty_exponent_error"] = ("map", [0.5]), ("map", [np.nan])

@@ -24,7 +24,8 @@ from burridge_knopoff.stability.settings import MOTION, SEARCH
 )
 def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(law, a, kind, points, period):
     search = Search(Model(Chain(3), law_of(law, a)))
-    found = search.attractors[search.reach(search.model.begin(PAPER_STATES["plus"]))].motion
+    index = search.reach(search.model.begin(PAPER_STATES["plus"]))
+    found = search.attractors[index].motion
     assert (found.kind.name, found.section_period) == (kind, points)
     assert found.period == pytest.approx(period, rel=1e-5)
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.stability import returns
-from burridge_knopoff.stability.returns import instant_of, orbit_length, returns_of, stops_alike
+from burridge_knopoff.stability import period
+from burridge_knopoff.stability.period import orbit_length
+from burridge_knopoff.stability.returns import instant_of, returns_of, stops_alike
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import ROWS, shown
 
@@ -72,8 +73,8 @@ def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike)
 )
 def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
     """In a window four times as long as well; the mirror image is seen at the mirror block."""
-    assert returns.sections(np.array(stops), TUNING) == expected
-    assert returns.sections(np.array(stops[::-1]), TUNING) == expected[::-1]
+    assert period.sections(np.array(stops), TUNING) == expected
+    assert period.sections(np.array(stops[::-1]), TUNING) == expected[::-1]
 
 
 def test_a_block_without_velocity_sticks():

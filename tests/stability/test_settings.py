@@ -9,6 +9,7 @@ import pytest
 from burridge_knopoff import MotionSettings, SearchSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.ranges import Interval, Number, Whole
+from burridge_knopoff.running.section import Section, SectionRange
 from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, Sample, Watch
 from tests.refused import refused
 
@@ -34,6 +35,8 @@ def values(kind, name):
         # A tile takes a row of pixels at least, and the symmetric samples are some of all.
         most = {"tiles": BasinSettings().pixels, "symmetric_samples": Sample().samples}.get(name, allowed.most)
         return [allowed.least, most], [allowed.least - 1, allowed.most + 1, allowed.least + 0.5, True, "3"]
+    if isinstance(allowed, SectionRange):
+        return [Section(), Section("block", 2)], [1, None, ["sum"]]
     assert isinstance(allowed, Number)
     least, most = allowed.least, allowed.most
     good = [np.nextafter(least, np.inf), most] + ([] if allowed.above else [least])

@@ -1,6 +1,6 @@
 """Fractions and intervals follow from the outcomes; two blocks under both laws."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import product
 
 import numpy as np
@@ -91,14 +91,15 @@ def test_files_of_other_settings_do_not_mix(files):
 def test_two_blocks_agree_where_both_synchronize(compared):
     """Each other law is compared with the first one."""
     assert compared["other_law"].values.tolist() == ["nonlinear", "exponential"]
-    assert compared["agrees"].sel(a=0.03).values.tolist() == [[1, 1]] * 2
-    assert (compared["kind"].sel(a=0.03) == 0).all()
+    assert compared["chain"].values.tolist() == ["train", "both_pulled"]
+    assert (compared["agrees"].sel(a=0.03) == 1).all()
+    assert (compared["kind"].sel(a=0.03, chain="both_pulled") == 0).all()
     assert (np.isnan(compared["parting_a"]) | (compared["parting_a"] > 0.03)).all()
     mean = compared["mean_distance"].values
-    assert np.array_equal(compared["difference"].values, mean[1:] - mean[0])
-    for other, a in product(range(2), range(3)):
-        told = [compared[f"agreeing_{name}"].values[other, a] for name in ("fraction", "low", "high")]
-        assert told == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[other, :, a]))
+    assert np.array_equal(compared["difference"].values, mean[:, 1:] - mean[:, :1])
+    for chain, other, a in product(range(2), range(2), range(3)):
+        told = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
+        assert told == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
@@ -108,20 +109,27 @@ def test_states_for_which_it_is_not_known_whether_laws_agree_count_either_way():
     assert (low, high) == (fraction_interval(3, 8)[1], fraction_interval(6, 8)[2])
 
 
+def train_model(model):
+    """Return a model of two blocks of which only the first one is pulled."""
+    return replace(model, chain=Chain(2, pulling=(1.0, 0.0)))
+
+
 def test_two_blocks_are_what_their_states_end_on(compared):
     """Kind and ⟨J⟩ are those of the motion that is reached, the order of events is that from the start."""
-    for (j, state), (k, a) in product(enumerate(STATES), enumerate(GRID)):
+    chains_of = [train_model, lambda law: law]
+    for (c, chain), (j, state), (k, a) in product(enumerate(chains_of), enumerate(STATES), enumerate(GRID)):
         assert tuple(compared["initial_position"].values[j]) == state.position
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
-        runs = [simulate(model.at(a), state, SETTINGS) for model in models(2, LAWS)]
-        for i, model in enumerate(models(2, LAWS)):
-            told = {name: compared[name].values[i, j, k] for name in two_blocks.MOTION_VARIABLES}
-            assert told == asdict(endings(model.at(a), STATES, SEARCH)[j])
+        both = [chain(model).at(a) for model in models(2, LAWS)]
+        for i, model in enumerate(both):
+            told = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
+            assert told == asdict(endings(model, STATES, SEARCH)[j])
+        runs = [simulate(model, state, SETTINGS) for model in both]
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):
             count, until = common_order(first, other)
-            assert compared["event_order_count"].values[i, j, k] == count
-            assert compared["event_order_time"].values[i, j, k] == min(until, 1900.0)
+            assert compared["event_order_count"].values[c, i, j, k] == count
+            assert compared["event_order_time"].values[c, i, j, k] == min(until, 1900.0)
     told = {
         "transient": 1500.0,
         "search_transient": 3000.0,
@@ -135,13 +143,13 @@ def test_two_blocks_are_what_their_states_end_on(compared):
 def test_one_law_has_nothing_to_be_compared_with():
     told = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
     alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *told)
-    assert alone["agrees"].shape == (0, 1, 1)
-    assert alone["mean_distance"].shape == (1, 1, 1)
+    assert alone["agrees"].shape == (2, 0, 1, 1)
+    assert alone["mean_distance"].shape == (2, 1, 1, 1)
 
 
-def test_the_figure_shows_the_fractions(files, compared):
+def test_the_figure_shows_the_fractions(files):
     summary = chains.merge([open_summary(path) for path in files])
-    titled = [panel for panel in draw(summary, compared).axes if panel.get_title(loc="left")]
-    assert [panel.get_title(loc="left")[:8] for panel in titled] == ["(a) $N=2", "(b) $N=1", "(c) $N=2"]
+    titled = [panel for panel in draw(summary).axes if panel.get_title(loc="left")]
+    assert [panel.get_title(loc="left")[:8] for panel in titled] == ["(a) $N=2", "(b) $N=1"]
     shown = titled[0].get_lines()[0].get_ydata()
     assert shown.tolist() == summary["synchronized_fraction"].sel(blocks=2).values[0].tolist()

@@ -41,7 +41,7 @@ EXPECTED = {
         "bifurcation_side": {-1: "undetermined", 0: "subcritical", 1: "supercritical"},
     },
     "solvers": {"status": {-1: "no_such_solver", **STATUS}},
-    "two_blocks": AGREEMENT,
+    "two_blocks": {**AGREEMENT, "one_block_kind": MOTION},
     "stick_slip": {},
     "equilibrium": {},
 }

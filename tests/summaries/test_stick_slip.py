@@ -7,10 +7,10 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.summaries.frequency import leading_frequency
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,
-    leading_frequency,
     long_velocity,
     stick_fraction,
     summarize,

@@ -90,7 +90,7 @@ class Study:
             str(path.relative_to(results)): path.read_bytes()
             for folder in folders
             for path in sorted((results / folder).rglob("*"))
-            if path.is_file()
+            if path.is_file() and not path.name.startswith(".")
         }
 
 

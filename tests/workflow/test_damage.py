@@ -139,7 +139,7 @@ def test_no_stage_takes_in_a_bad_point(finished, grids, tmp_path, damage):
         message = str(caught.value)
         assert message.startswith(f"{results / POINT}: "), stage
         assert words in message, stage
-        assert re.search(r"; remake it: snakemake -c2 .*--configfile study\.yaml -R \S+$", message), stage
+        assert re.search(r"; remake it: cd \S+ && snakemake -c2 .*--configfile study\.yaml -R \S+$", message), stage
         assert "\n" not in message, stage
 
 

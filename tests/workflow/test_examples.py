@@ -17,7 +17,7 @@ TARGETS = {
     "history": ["mean_distance.nc", "lyapunov.nc", "basins.nc"],
     "five_blocks": ["mean_distance.nc", "chains.nc"],
     "carlson_langer": ["lyapunov.nc"],
-    "unequal_blocks": ["lyapunov.nc"],
+    "unequal_blocks": ["lyapunov.nc", "agreement.nc"],
 }
 
 

@@ -36,12 +36,14 @@ def test_every_point_is_there(results):
         for initial in ("minus", "plus")
         for a in NAMES
     )
-    assert not list(results.rglob(".*"))
+    hidden = {path.name for path in results.rglob(".*")}
+    sealed = {path.name for folder in ("summary", "figures", ".") for path in (results / folder).glob("*.*")}
+    assert hidden <= {f".{name}.seal" for name in sealed}
 
 
 def test_mean_distance_summary(results):
     with xr.open_dataset(results / "summary" / "mean_distance.nc") as summary:
-        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 3}
+        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 4}
         assert summary["a"].values.tolist() == GRID
         for law in ("linearized", "nonlinear"):
             run = simulate(law, 0.2, "plus", **OPTIONS)

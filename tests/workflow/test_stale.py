@@ -25,7 +25,7 @@ FIGURES = tuple(
     for name in (
         *("friction_laws", "mean_distance", "bifurcation", "distance", "lyapunov", "agreement", "basin_fractions"),
         *("basins", "edges", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion", "phases"),
-        "windows",
+        *("windows", "rotation", "sketch"),
     )
 )
 OF_SUMMARIES = tuple(name for name in FIGURES if name not in ("figure_distance", "figure_motion"))
@@ -172,7 +172,8 @@ KEYS = [
     ({"transient": 120, "window": 180}, (*POINTS, "two_blocks")),
     ({"batches": 5, "lyapunov_alignment": 50}, POINTS),
     ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
-    ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks")),
+    ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "figure_sketch")),
+    ({"section": {"of": "block", "block": 2}}, (*POINTS, "attractors_of_law")),
     ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
     ({"start": "tested"}, (*POINTS, "attractors_of_law", "two_blocks")),
     ({"step": 0.002, "basins.threads": 2, "chains.blocks": [2, 3], "chains.time_limit": 900}, ()),
@@ -292,7 +293,7 @@ def test_results_know_their_sources(finished):
     from burridge_knopoff.provenance.sources import source_fingerprint
 
     summaries = sorted((finished.folder / "results/tiny/summary").glob("*.nc"))
-    assert len(summaries) == 15
+    assert len(summaries) == 16
     for path in summaries:
         attributes = open_summary(path).attrs
         assert attributes["source_fingerprint"] == source_fingerprint(attributes["source_module"])

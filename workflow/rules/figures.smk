@@ -54,7 +54,7 @@ for figure in DESCRIPTIONS:
             script=figure.script,
             figure=figure.name,
             caption=figure.caption_of,
-            folder=f"{RESULTS}/points",
+            folder=lambda wildcards: f"{RESULTS}/points",
             runs=STUDY.shown_runs if figure.of_runs else None,
             of_points=POINT_SOURCES if figure.of_runs else None,
             from_study={name: getattr(STUDY, name) for name in figure.from_study},

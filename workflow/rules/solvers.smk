@@ -46,7 +46,7 @@ rule solvers:
     group:
         group("summaries")
     params:
-        folder=RESULTS,
+        folder=lambda wildcards: RESULTS,
         points={**STUDY.points, "a": STUDY.compared},
         of_points=POINT_SOURCES,
         others={

@@ -29,7 +29,7 @@ CLAIMS_MADE = (
 SUMMARY_FILES = {"points": {"points": rules.points.input}, "models": {}}
 SUMMARY_PARAMS = {
     "points": {
-        "folder": f"{RESULTS}/points",
+        "folder": lambda wildcards: f"{RESULTS}/points",
         "points": STUDY.points,
         "of_points": POINT_SOURCES,
     },

@@ -208,6 +208,6 @@ def _sections(
 
 def _many(sections: list[np.ndarray], points: int) -> np.ndarray:
     """Return which sections have more points than so many, in the second half of the run."""
-    from burridge_knopoff.summaries.bifurcation import distinct
+    from burridge_knopoff.summaries.along_attractor import distinct
 
     return np.array([distinct(velocity[len(velocity) // 2 :]) > points for velocity in sections], dtype=bool)

@@ -57,6 +57,12 @@ YES_OR_NO = flag("i1", {0: "no", 1: "yes"})
 KIND = flag("i1", {0: "stop", 1: "start"})
 DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 
+#: Long name and attributes of the period of a motion.
+PERIOD = (
+    "period of the closed orbit on which the motion is or to which it is locked, NaN if none is known",
+    {"comment": "inf where the motion attracts as a closed orbit does but has not repeated in the time it was seen"},
+)
+
 #: The time of each row of a dimension that has no coordinate variable of its own.
 TIMES = {"sample": "time", "event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
 

@@ -23,19 +23,20 @@ OTHER_SHADES = (OTHER_COLOR, "#666666", "#cccccc", "#444444")
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch: its own for those that are found at the most values of a, grey for the others.
+    """Return the colour of each branch: its own for those that most states reach over all a, grey for the others.
 
-    The number of a branch decides its colour, so that files of one model agree; where two would have the same, the one
-    found at more values keeps it, and the other one takes the next that is free.
+    The number of a branch decides its colour, so that files of one model agree; where two would have the same, the
+    lower one keeps it, and the other one takes the next that is free.
     """
-    branch = attractors["branch"].values
-    # Both sides of a branch are counted once.
-    sizes = {int(n): int((branch == n).any(axis=-1).sum()) for n in np.unique(branch) if n > 0}
-    ranked = sorted(sizes, key=lambda n: (-sizes[n], n))
+    branch, reached = (attractors[name].values for name in ("branch", "basin_count"))
+    # Where no states are drawn, and of equal basins, the one found at more values of a comes first.
+    present = {int(n): branch == n for n in np.unique(branch) if n > 0}
+    sizes = {n: (int(reached[where].sum()), int(where.any(axis=-1).sum())) for n, where in present.items()}
+    ranked = sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n))
     colors = {0: COLORS[0]} if (branch == 0).any() else {}
     own = len(COLORS) - 1
     free = dict.fromkeys(range(own))
-    for number in ranked[:own]:
+    for number in sorted(ranked[:own]):
         place = min(free, key=lambda k: (k - number + 1) % own)
         del free[place]
         colors[number] = COLORS[1 + place]

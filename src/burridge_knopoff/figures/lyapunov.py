@@ -95,7 +95,7 @@ def _frame(lyapunov: xarray.Dataset) -> tuple[float, float]:
     """
     exponent = lyapunov["lyapunov_exponent"].values
     error = 3.0 * lyapunov["lyapunov_error"].fillna(0.0).values
-    first, second = (exponent - error)[..., 0], exponent[..., :2][..., -1]
+    first, second = (exponent - error)[..., :1], exponent[..., 1:2]
     lowest = [-0.5 * LEAST_DEPTH, *first[np.isfinite(first)].tolist()]
     if np.isfinite(second).any():
         lowest.append(float(np.quantile(second[np.isfinite(second)], 0.1)))

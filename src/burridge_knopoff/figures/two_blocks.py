@@ -20,6 +20,7 @@ from burridge_knopoff.figures.style import (
     legend_below,
     legend_entries,
     marker,
+    say,
     show_all,
     styled,
 )
@@ -76,6 +77,8 @@ def draw_panels(upper: Axes, lower: Axes, two_blocks: xarray.Dataset) -> list[Ar
             )  # fmt: skip
     upper.set_ylabel(r"$\langle J\rangle$")
     show_all(upper, a)
+    if two_blocks["mean_distance"].isnull().all():
+        say(upper, "no motion that a state ends on is known")
     agrees = two_blocks["agrees"].transpose("other_law", "state", "a").values
     states = agrees.shape[1]
     picture, handles = np.ones((states, len(a), 3)), legend_entries([upper])[0]

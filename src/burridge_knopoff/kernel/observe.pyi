@@ -8,9 +8,9 @@ from burridge_knopoff.kernel.record import Record
 class Observer:
     @property
     def section_only(self) -> bool: ...
-    begin: float
     @property
     def section(self) -> int: ...
+    begin: float
     @property
     def transient(self) -> float: ...
     @property

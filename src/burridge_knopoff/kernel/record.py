@@ -3,7 +3,7 @@
 import cython
 import numpy as np
 
-from burridge_knopoff import values
+from burridge_knopoff.values import MOST_NUMBERS
 
 
 class Record:
@@ -22,7 +22,7 @@ class Record:
     def __init__(self, width: int) -> None:
         self.width = width
         self.count = 0
-        self.most = int(values.MOST_NUMBERS) // (width + 1)
+        self.most = int(MOST_NUMBERS) // (width + 1)
         self.full = False
         self.time = np.zeros(1024)
         self.value = np.zeros((1024, width))

@@ -34,8 +34,8 @@ def find_attractors(
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index among them that each initial state reaches.
 
-    law, a, chain, v, contact : as `simulate` takes them: `find_attractors(law, a)`, or `find_attractors(model,
-        settings)` with a `Model` in the place of both
+    law, a, chain, v, contact : as `simulate` takes them; a `Model` stands in the place of law and a, and settings may
+        follow it
     settings : how attractors are searched for, and how many initial states are drawn; by_name : some of them, or all,
         by name (see `SearchSettings`)
     motion : how kinds of motion are told apart

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from burridge_knopoff import values
 from burridge_knopoff.kernel.event_driven import EventDriven
 from burridge_knopoff.kernel.events import EventLog
 from burridge_knopoff.kernel.exponents import Exponents
@@ -20,7 +19,7 @@ from burridge_knopoff.kernel.vector import WIDTH
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import instance_of, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
 NEVER = 1e300
 
@@ -126,7 +125,7 @@ class Runner:
             ("window", self.observer.crossings, "a shorter one"),
         ):
             if table.full:
-                most = f"{values.MOST_NUMBERS:.0e} numbers to keep by τ = {self.clock:.6g}"
+                most = f"{MOST_NUMBERS:.0e} numbers to keep by τ = {self.clock:.6g}"
                 raise ValueError(f"{key}: got more than {most}, expected {remedy}")
         return status
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.orbits.symmetry import Symmetry
-from burridge_knopoff.stability.returns import Returns, instant_of, orbit_length, stops_alike, visit
+from burridge_knopoff.stability.period import orbit_length
+from burridge_knopoff.stability.returns import Returns, instant_of, stops_alike, visit
 from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.stability.steady import SteadyMotion
 from burridge_knopoff.stability.tuning import TUNING, Tuning

@@ -7,9 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from burridge_knopoff.stability.returns import orbit_length, sections
 from burridge_knopoff.stability.settings import MotionSettings
-from burridge_knopoff.stability.tuning import TUNING
+from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 # A period counts if the section shows it at least this many times.
 REPETITIONS = 3
@@ -102,3 +101,30 @@ def _misfit(sequence: np.ndarray, period: int) -> float:
     judged = max(len(sequence) - len(sequence) // 2, REPETITIONS * period) // period * period
     turns = sequence[len(sequence) - judged :].reshape(-1, period, *sequence.shape[1:])
     return float(np.ptp(turns, axis=0).max())
+
+
+def sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
+    """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
+
+    stops : of each block, shape (blocks,)
+
+    By shares, which do not depend on how long the motion is seen: of the pairs of mirror blocks that do not hardly ever
+    stop the outermost one, and of that the first block, or the one that stops if only one of them does.
+    """
+    pairs = stops + stops[::-1]
+    outer = int(np.argmax(pairs >= tuning.seldom * pairs.max()))
+    inner = len(stops) - 1 - outer
+    fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
+    if stops[fewer] >= tuning.seldom * stops[more]:
+        return outer + 1, outer + 1
+    return more + 1, fewer + 1
+
+
+def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
+    """Return after how many returns a closed orbit repeats within the tolerance; `longest` if it takes more."""
+    settled = returns[len(returns) // 3 :]
+    before = settled[-min(longest, len(settled) // 2) : -1][::-1]
+    for length in np.flatnonzero(np.abs(before - settled[-1]).max(axis=1) <= tolerance).tolist():
+        if np.abs(settled[length + 1 :] - settled[: -length - 1]).max() <= tolerance:
+            return length + 1
+    return longest

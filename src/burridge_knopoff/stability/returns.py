@@ -11,6 +11,7 @@ from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.nearness import distance, spacing_of
+from burridge_knopoff.stability.period import orbit_length, sections
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
 # A velocity of this modulus is rounding.
@@ -108,23 +109,6 @@ def returns_of(
     )
 
 
-def sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
-    """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
-
-    stops : of each block, shape (blocks,)
-
-    By shares, which do not depend on how long the motion is seen: of the pairs of mirror blocks that do not hardly ever
-    stop the outermost one, and of that the first block, or the one that stops if only one of them does.
-    """
-    pairs = stops + stops[::-1]
-    outer = int(np.argmax(pairs >= tuning.seldom * pairs.max()))
-    inner = len(stops) - 1 - outer
-    fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
-    if stops[fewer] >= tuning.seldom * stops[more]:
-        return outer + 1, outer + 1
-    return more + 1, fewer + 1
-
-
 def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) -> bool:
     """Tell whether each pair of mirror blocks has the same share of all stops in two motions.
 
@@ -132,13 +116,3 @@ def stops_alike(first: np.ndarray, second: np.ndarray, tuning: Tuning = TUNING) 
     """
     shares = [(stops + stops[::-1]) / stops.sum() for stops in (first, second)]
     return bool(np.abs(np.subtract(*shares)).max() <= tuning.same_stops)
-
-
-def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:
-    """Return after how many returns a closed orbit repeats within the tolerance; `longest` if it takes more."""
-    settled = returns[len(returns) // 3 :]
-    before = settled[-min(longest, len(settled) // 2) : -1][::-1]
-    for length in np.flatnonzero(np.abs(before - settled[-1]).max(axis=1) <= tolerance).tolist():
-        if np.abs(settled[length + 1 :] - settled[: -length - 1]).max() <= tolerance:
-            return length + 1
-    return longest

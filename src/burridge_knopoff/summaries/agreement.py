@@ -11,7 +11,7 @@ import scipy
 import xarray
 
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
+from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
 from burridge_knopoff.stability.motion import (
     CHAOS,
     OPEN,
@@ -25,7 +25,6 @@ from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 from burridge_knopoff.summaries.reached import reached
-from burridge_knopoff.summaries.slots import PERIOD
 
 # The last bit of a product of vectors depends on where in memory they lie.
 DIGITS = 12

@@ -17,13 +17,13 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
+from burridge_knopoff.running.section import Section
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
-from burridge_knopoff.summaries.along_attractor import along_attractor
-from burridge_knopoff.summaries.bifurcation import distinct
+from burridge_knopoff.summaries.along_attractor import along_attractor, distinct
 from burridge_knopoff.summaries.equilibrium import sliding_attracts
 from burridge_knopoff.summaries.slots import (
     NOTHING,
@@ -104,7 +104,7 @@ def one_law(
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit))
-    values.update(_followed(found, values["initial_branch"], values["initial_side"]))
+    values.update(_followed(found, values["initial_branch"], values["initial_side"], motion.section))
     values.update(_rounded(found, initial, settings.label_limit, start))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
@@ -179,7 +179,7 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
     return values
 
 
-def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray) -> dict[str, np.ndarray]:
+def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
     """Return what a run along each attractor shows that an initial state reaches, shape of both (…, a)."""
     sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
     values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
@@ -187,7 +187,7 @@ def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray) -> dict
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
         for slot, index in enumerate(branch_order(found, place)):
             if (found.branch[place][index], found.side[place][index]) in wanted:
-                one = along_attractor(found.models[place], found.attractors[place][index].motion.instant())
+                one = along_attractor(found.models[place], found.attractors[place][index].motion.instant(), section)
                 values["section_count"][k, slot] = distinct(one.section)
                 values["section_velocity_mean"][k, slot] = one.section.mean() if len(one.section) else np.nan
                 values["velocity_correlation"][k, slot] = one.velocity_correlation

@@ -18,8 +18,6 @@ from burridge_knopoff.summaries.points import Grid, read_point
 #: slowest crossing of the default study has 1e-4.
 ROUNDING = 1e-9
 
-# Velocities on the section within which two of its points are one.
-SAME_VELOCITY = 1e-6
 #: Why a bifurcation diagram of a law and a state is empty.
 NEVER_UPWARD = "W never crosses 0 upward: the section is never reached"
 STAYS = "W stays at 0: the blocks slide uniformly"
@@ -80,8 +78,3 @@ def section_points(dataset: xarray.Dataset, law: str, initial: str, direction: i
     chosen = np.repeat(chosen, dataset["crossing_count"].values)
     chosen &= dataset["crossing_direction"].values == direction
     return a[chosen], dataset["crossing_velocity"].values[chosen]
-
-
-def distinct(velocity: np.ndarray) -> int:
-    """Return how many section points W', shape (n,), differ by more than SAME_VELOCITY."""
-    return int(np.count_nonzero(np.diff(np.sort(velocity)) > SAME_VELOCITY)) + 1 if len(velocity) else 0

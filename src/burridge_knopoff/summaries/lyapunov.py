@@ -10,12 +10,11 @@ import xarray
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
-from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
+from burridge_knopoff.dataset.variables import PERIOD, YES_OR_NO, Variable, flag
 from burridge_knopoff.stability.motion import MotionKind, motion_of_run, zero_exponents
 from burridge_knopoff.stability.period import SECTION
 from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
-from burridge_knopoff.summaries.slots import PERIOD
 
 _AXES = ("law", "initial", "a")
 VARIABLES = {

@@ -11,6 +11,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.continuation import Continuation
@@ -40,7 +41,7 @@ def one_law(
     """Return the attractors of one law at all values of a; arguments as in `attractors.one_law`."""
     count = len(found.models)
     values = slot_values(found, range(count), settings.lifetime, "value")
-    values["section_velocity"] = _sections(found, settings.window)
+    values["section_velocity"] = _sections(found, settings.window, motion.section)
     values["a"] = np.array([model.a for model in found.models])
     values["in_grid"] = np.isin(np.arange(count), found.grid)
     model = found.models[0]
@@ -49,11 +50,12 @@ def one_law(
     return summary(title, VARIABLES, values, slot_coordinates(model.blocks), about, module=__name__)
 
 
-def _sections(found: Continuation, window: float) -> np.ndarray:
+def _sections(found: Continuation, window: float, section: Section) -> np.ndarray:
     """Return W' at the first crossings of W = 0 on each attractor, shape (value, attractor, crossing)."""
     once = Settings(
-        transient=0.0, window=window, batches=2, sampling=window, trajectory=0.0, events="none", lyapunov_exponents=0
-    )
+        transient=0.0, window=window, batches=2, sampling=window, trajectory=0.0, events="none", lyapunov_exponents=0,
+        section=section,
+    )  # fmt: skip
     shape = len(found.models), max(1, *map(len, found.attractors)), CROSSINGS
     velocity = np.full(shape, np.nan)
     for place, model in enumerate(found.models):

@@ -8,16 +8,12 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.steady import EXPONENTS
 
-PERIOD = (
-    "period of the closed orbit on which the motion is or to which it is locked, NaN if none is known",
-    {"comment": "inf where the motion attracts as a closed orbit does but has not repeated in the time it was seen"},
-)
 NOTHING = {"comment": "-1 where there is none or it is undetermined"}
 
 # What is 0, not −1, in an empty slot.

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray
-from scipy.signal import find_peaks, periodogram
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
@@ -15,13 +14,11 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.contacts import longest_spacing
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.together import new_ensemble
-from burridge_knopoff.summaries.correlation import correlation, is_constant
+from burridge_knopoff.summaries.correlation import correlation
+from burridge_knopoff.summaries.frequency import leading_frequency
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 STOP, START = 0, 1
-
-# The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
-PADDING = 8
 
 AGAIN = "followed once more from the first stop: in chaos another trajectory than that of the run, soon"
 
@@ -149,23 +146,3 @@ def stick_fraction(time: np.ndarray, kind: np.ndarray, start: float, end: float,
     edge = np.clip(np.concatenate([[start], time, [end]]), start, end)
     stuck = np.concatenate([[before], kind == STOP])
     return float(np.diff(edge)[stuck].sum()) / (end - start)
-
-
-def leading_frequency(values: np.ndarray, duration: float) -> float:
-    """Return the frequency of the highest peak of the spectrum of equidistant samples that last for `duration`.
-
-    The mean is taken off, a Hann window put on, and the peak's place is that of the parabola through the logarithms of
-    the power around it. NaN if the values are constant, or no peak has a full cycle within the duration.
-    """
-    if is_constant(values) or len(values) < 4:
-        return math.nan
-    interval = duration / (len(values) - 1)
-    length = PADDING * len(values)
-    frequency, power = periodogram(values, 1.0 / interval, window="hann", nfft=length, detrend="constant")
-    peaks = find_peaks(power)[0]
-    peaks = peaks[frequency[peaks] * duration >= 1.0]
-    if not len(peaks):
-        return math.nan
-    top = peaks[np.argmax(power[peaks])]
-    left, middle, right = (math.log(power[k]) for k in (top - 1, top, top + 1))
-    return float(frequency[top] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
