@@ -12,7 +12,8 @@ import xarray
 
 from burridge_knopoff.report.numbers import exact
 from burridge_knopoff.running.status import ENDS, Status
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.stability.motion import Motion, MotionKind, words_of
+from burridge_knopoff.stability.settings import MotionSettings
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.words import with_error
@@ -71,8 +72,7 @@ def embedded_runs(
         "mean_distance_error": _nested(mean_distance["mean_distance_error"].values),
         "status": mean_distance["status"].values.tolist(),
         "kind": agreement["kind"].values.tolist(),
-        "points": lyapunov["section_period"].values.tolist(),
-        "periods": _nested(agreement["period"].values),
+        "kind_text": _kind_texts(study, agreement, lyapunov),
         "exponents": _nested(exponent),
         "exponent_errors": _nested(error),
         "mean_distance_text": _with_errors(*(mean_distance[f"mean_distance{end}"].values for end in ("", "_error"))),
@@ -82,14 +82,22 @@ def embedded_runs(
         "arguments": shlex.join(commands.arguments),
         "results": f"results/{study.name}",
         "statuses": list(ENDS.values()),
-        "longest": study.config["motion"]["longest_period"] / min(1.0, study.config["v"] / 0.1),
-        "quasiperiodic": int(MotionKind.QUASIPERIODIC),
-        "kinds": {str(int(kind)): kind.words for kind in MotionKind},
     }
 
 
 def _nested(values: np.ndarray) -> Any:
     return exact(values.item()) if values.ndim == 0 else [_nested(np.asarray(item)) for item in values]
+
+
+def _kind_texts(study: Study, agreement: xarray.Dataset, lyapunov: xarray.Dataset) -> Any:
+    """Return kinds of motion in words, in nested lists."""
+    settings = MotionSettings(**study.config["motion"]).at_speed(study.config["v"])
+    kind, period, points = agreement["kind"].values, agreement["period"].values, lyapunov["section_period"].values
+    texts = [
+        words_of(Motion(MotionKind(one), count, time), settings)
+        for one, count, time in zip(kind.flat, points.flat, period.flat, strict=True)
+    ]
+    return np.array(texts, dtype=object).reshape(kind.shape).tolist()
 
 
 def _with_errors(values: np.ndarray, errors: np.ndarray) -> Any:

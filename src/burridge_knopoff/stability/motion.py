@@ -138,10 +138,8 @@ def motion_of(run: Mapping[str, Any], mean_distance: float, settings: MotionSett
     Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is within its error; and
     uniform sliding that attracts, of which no exponent is 0 and the section points are rounding.
     """
-    exponent, error = run["lyapunov_exponent"], _certain(run["lyapunov_exponent"], run["lyapunov_error"])
-    if _is_at_rest(exponent, error, settings):
-        return Motion(MotionKind.UNDETERMINED)
-    return motion_with(*period_of(run, settings), mean_distance, exponent, error, settings)
+    exponents = run["lyapunov_exponent"], run["lyapunov_error"]
+    return motion_with(*period_of(run, settings), mean_distance, *exponents, settings)
 
 
 def motion_with(
@@ -154,6 +152,8 @@ def motion_with(
 ) -> Motion:
     """Return the kind of motion that repeats after so many section points and such a time; see `motion_of`."""
     error = _certain(exponent, error)
+    if _is_at_rest(exponent, error, settings):
+        return Motion(MotionKind.UNDETERMINED)
     positive = _is_positive(exponent, error, settings)
     if points:
         return Motion(closed_kind(mean_distance, period, settings), points, period, positive)

@@ -17,13 +17,6 @@ const commandsOf = ({ law, initial, a }) => {
   };
 };
 
-/** Return a kind of motion in words: what counts as quasiperiodic may be locked with a longer period. */
-const kindWords = (kind, points, period) => {
-  if (kind !== runs.quasiperiodic) return runs.kinds[kind] + (points > 0 ? `, section points repeat after ${points}` : "");
-  const locked = typeof period === "number" ? `; locked with a period of ${short(period)}` : "";
-  return `quasiperiodic within ${short(runs.longest)} time units${locked}`;
-};
-
 /** Return rows [name, value] of the picked run; values are text or elements. */
 function rowsOf({ law, initial, a }) {
   const at = (name) => runs[name][law][initial][a];
@@ -32,7 +25,7 @@ function rowsOf({ law, initial, a }) {
     ["Run", `${runs.laws[law]} law, initial state ${runs.initial[initial]}, a = ${runs.texts[a]}`],
     ["⟨J⟩", at("mean_distance_text")],
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
-    ["Kind of motion", kindWords(at("kind"), at("points"), at("periods"))],
+    ["Kind of motion", at("kind_text")],
     ["Lyapunov exponents", exponents.length ? element("ul", {}, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
     ...comparedRows({ law, initial, a }),
     ["File", element("a", { href: commandsOf({ law, initial, a }).path, id: "run-file" }, commandsOf({ law, initial, a }).path)],
