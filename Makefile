@@ -22,8 +22,8 @@ study: announce setup
 
 # Snakemake itself begins with the time that its jobs will take.
 announce:
-	@test -e .venv/kernel || echo "make: sets up .venv and compiles the kernel (a minute or two, once)," \
-		"then runs the default study on two cores (twenty minutes to an hour; results/paper/report.html)"
+	@test -e .venv/kernel || echo "make: sets up .venv and compiles the kernel (a minute, once)," \
+		"then runs the default study on two cores (under ten minutes if they are quick; results/paper/report.html)"
 
 setup: .venv/kernel
 
@@ -138,12 +138,13 @@ site: .venv/kernel .venv/site
 	$(BIN)/sphinx-build --fail-on-warning --fresh-env --quiet -c docs -d build/doctrees . build/site
 	@echo build/site/index.html
 
-# The figures of docs/ and the ledger in docs/claims.md, from the default study and its chains; the tables of keys; the
-# tutorial as a notebook.
+# The figures of docs/ and the ledger in docs/claims.md, from the default study at a greater depth, with its verdicts at
+# both depths and with longer chains; the tables of keys; the tutorial as a notebook.
 docs: setup .venv/site
-	$(BIN)/snakemake -c2 chains
 	$(BIN)/snakemake -c2
-	$(BIN)/python docs/refresh.py results/paper
+	$(BIN)/snakemake -c2 chains --configfile config/paper_fine.yaml
+	$(BIN)/snakemake -c2 --configfile config/paper_fine.yaml
+	$(BIN)/python docs/refresh.py results/paper_fine results/paper
 	$(BIN)/python docs/keys.py
 	$(BIN)/python docs/notebook.py
 

@@ -1,4 +1,7 @@
-"""Bring the ledger of claims and the figures of the documentation up to date with a finished study: `make docs`."""
+"""Bring the ledger of claims and the figures of the documentation up to date with finished studies: `make docs`.
+
+The first is the study that docs/ is printed from, the second the same at the depth of `make`.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ from burridge_knopoff.provenance.files import write_text
 DOCS = Path(__file__).parent
 PAGE = DOCS / "claims.md"
 LEDGER = DOCS / "claims.json"
+DEPTHS = DOCS / "depths.json"
 README = DOCS.parent / "README.md"
 BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
@@ -24,11 +28,32 @@ WIDTH = 1400
 COLORS = 96
 
 
-def page(text: str, content: dict) -> str:
+def page(text: str, content: dict, depths: dict[str, dict]) -> str:
     """Return the text of docs/claims.md with its tables replaced by those of a ledger."""
     before, rest = text.split(BEGIN)
     after = rest.split(END)[1]
-    return f"{before}{BEGIN}\n{as_markdown(content, 'figures')}{END}{after}"
+    return f"{before}{BEGIN}\n{compared(depths)}\n\n{as_markdown(content, 'figures')}{END}{after}"
+
+
+def verdicts(content: dict) -> dict:
+    """Return the depth of a ledger and its verdicts, by the name of the claim."""
+    return {"depth": content["depth"], "verdicts": {claim["name"]: claim["verdict"] for claim in content["claims"]}}
+
+
+def compared(depths: dict[str, dict]) -> str:
+    """Return what the verdicts at the second depth are, beside those at the first."""
+    (fine, here), (name, there) = depths.items()
+    other = [
+        f"{claim}: {verdict}, not {here['verdicts'][claim]}"
+        for claim, verdict in there["verdicts"].items()
+        if verdict != here["verdicts"][claim]
+    ]
+    said = f"differ in {len(other)}: {'; '.join(other)}" if other else "are the same"
+    text = (
+        f"The tables are those of `config/{fine}.yaml`. All {len(there['verdicts'])} verdicts of `config/{name}.yaml` "
+        f"({there['depth']}) {said}."
+    )
+    return textwrap.fill(text, 120, break_on_hyphens=False)
 
 
 def headline(content: dict) -> str:
@@ -63,11 +88,13 @@ def figure_names() -> set[str]:
     return {name for text in pages for name in re.findall(r"figures/(\w+)\.png", text.read_text(encoding="utf-8"))}
 
 
-def main(results: Path) -> None:
-    """Copy the ledger and the figures of a study into docs/."""
-    content = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
+def main(results: Path, default: Path) -> None:
+    """Copy the ledger and the figures of a study into docs/, and compare its verdicts with those of another depth."""
+    read = [json.loads((study / "summary/claims.json").read_text(encoding="utf-8")) for study in (results, default)]
+    content, depths = read[0], {one["study"]: verdicts(one) for one in read}
     write_text(LEDGER, as_json(content))
-    write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content))
+    write_text(DEPTHS, as_json(depths))
+    write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content, depths))
     write_text(README, readme(README.read_text(encoding="utf-8"), content))
     for name in sorted(figure_names()):
         source = results / f"figures/{name}.png"
@@ -81,4 +108,4 @@ def main(results: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(*map(Path, sys.argv[1:]))

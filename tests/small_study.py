@@ -50,7 +50,7 @@ SMALL = {
     "refine": {"resolution": 1.0},
     "attractors": {
         "samples": 2,
-        "fraction_samples": 10,
+        "fraction_width": 0.25,
         "lifetime": 1000,
         "transient": 100,
         "window": 100,

@@ -10,7 +10,7 @@ from tests.optional import SETTINGS
 
 
 def test_the_tests_run_with_nothing_but_what_the_readme_names(repository, tmp_path):
-    needed = re.search(r"## Run it\n\n(.*?)\n\n", (repository / "README.md").read_text(), re.DOTALL)[1]
+    needed = re.search(r"\*\*Requirements\*\*: (.*?)\n\n", (repository / "README.md").read_text(), re.DOTALL)[1]
     names = {name for words in re.findall(r"`(.*?)`", needed) for name in words.split()}
     compiler = Path(sysconfig.get_config_var("CC").split()[0]).name
     # In place of `make test`: it tells what it is given.

@@ -56,8 +56,8 @@ def test_everything_but_the_rooms_of_a_study_can_be_imported(installed, tmp_path
     assert [name for name in missing if not name.startswith(OF_STUDY)] == []
 
 
-def test_the_python_of_the_readme_runs(installed, tmp_path, repository):
-    texts = [block.text for block in blocks((repository / "README.md").read_text()) if block.info == "python"]
+def test_the_python_of_the_page_on_results_runs(installed, tmp_path, repository):
+    texts = [block.text for block in blocks((repository / "docs/results.md").read_text()) if block.info == "python"]
     # A session reads the files of a study.
     texts = [text for text in texts if not text.startswith(">>>")]
     assert texts

@@ -19,7 +19,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 from burridge_knopoff.study.job_log import failure, interrupted
 from burridge_knopoff.study.yaml_file import ConfigError
 from snakemake_logger_plugin_study.closing import closing_lines
-from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost
+from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost, first_figures
 from snakemake_logger_plugin_study.past import write_past
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import (
@@ -119,6 +119,8 @@ class LogHandler(LogHandlerBase):
                 job.state = RUNNING
             case LogEvent.JOB_FINISHED if done := self._run.jobs.get(record.job_id):
                 done.end, done.state = time.monotonic(), DONE
+                if done.name in PLAN.first and (words := first_figures(self._run, PLAN.first)):
+                    self._say(words)
             case LogEvent.JOB_ERROR if failed := self._run.jobs.get(record.jobid):
                 failed.state = FAILED
             case LogEvent.ERROR:

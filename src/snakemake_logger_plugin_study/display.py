@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console, Group
@@ -73,6 +74,15 @@ def outlook(run: Run, now: float) -> str:
     """Return how many jobs failed, how many cannot run for that, and the time left."""
     counts = ((len(run.of(FAILED)), "failed"), (len(run.blocked()), "cannot run"))
     return ", ".join([*(f"{count} {what}" for count, what in counts if count), f"{about(run.time_left(now))} left"])
+
+
+def first_figures(run: Run, rules: Sequence[str]) -> str:
+    """Return where the figures of some rules lie if all of them are made, and nothing if not."""
+    jobs = [job for job in run.jobs.values() if job.name in rules]
+    if any(job.state != DONE for job in jobs):
+        return ""
+    names = sorted({Path(path).stem for job in jobs for path in job.output})
+    return f"the figures of the paper are in {run.results}/figures: {', '.join(names)}"
 
 
 class Lines(threading.Thread):

@@ -19,6 +19,7 @@ from snakemake_logger_plugin_study.run import Job, Run
 class Plan:
     """What the Snakefile says: of a study, whether it is to run or not, and of a run once it begins.
 
+    first : rules of the figures that a reader wants first
     record : writes that the study was run with its config, also where nothing is to be done
     workflow : Snakemake's own. No event tells which jobs need which: this is the one place that looks inside Snakemake.
     """
@@ -27,6 +28,7 @@ class Plan:
     workflow: Any = None
     study: Any = None
     record: Callable[[], None] = lambda: None
+    first: list[str] = field(default_factory=list)
     run: Run = field(default_factory=Run)
 
     def announce(self) -> None:

@@ -303,9 +303,11 @@ CASES: list[tuple[str, str, Alteration]] = [
         FAILS,
         both(
             alter("edges", "kind", EdgeKind.UNDETERMINED, edge=[13, 14]),
-            alter("edges", "motion_before", QUASIPERIODIC, edge=[14, 15]),
+            alter("edges", "motion_before", QUASIPERIODIC, edge=[14, 15, 16, 17, 18]),
         ),
     ),
+    # Tori at two of twelve places may be chance.
+    ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "motion_before", QUASIPERIODIC, edge=[14, 15])),
     # Chaos that was there before, an edge that is passed, and what is not known before are no beginnings of chaos.
     ("locking_precedes_chaos", HOLDS, alter("edges", "motion_before", TRANSIENT, edge=13)),
     ("locking_precedes_chaos", HOLDS, alter("edges", "motion_before", UNDETERMINED, edge=13)),

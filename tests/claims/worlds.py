@@ -245,7 +245,8 @@ def _refined() -> xarray.Dataset:
         "branch": (slots, np.where(there, 1, -1).astype("i2")),
         "kind": (slots, np.where(there, np.where(a > 0.1, CHAOTIC, QUASIPERIODIC)[..., None], -1).astype("i1")),
     }
-    return xarray.Dataset(data, {"law": list(LAWS)})
+    depth = {"fraction_width": 0.02, "refine_resolution": 6e-4, "refine_longest_period": 500.0}
+    return xarray.Dataset(data, {"law": list(LAWS)}, depth)
 
 
 def _rotation() -> xarray.Dataset:

@@ -33,7 +33,7 @@ def said(capsys, *arguments):
 
 def test_attractors(capsys, tmp_path):
     out = tmp_path / "attractors.nc"
-    command = ["attractors", *GIVEN, *OPTIONS, "--fraction-samples", "40", "--initial", "plus"]
+    command = ["attractors", *GIVEN, *OPTIONS, "--fraction-width", "0.15", "--initial", "plus"]
     printed = said(capsys, *command, "--out", str(out))
     found, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
     written = open_summary(out)

@@ -21,12 +21,12 @@ def test_fractions_of_no_states_and_sweeps_of_no_attractors():
         {
             "branch": (names, np.full((1, 2, 1), -1)),
             "basin_count": (names, np.zeros((1, 2, 1), dtype=int)),
+            "sample_count": (names[:2], np.zeros((1, 2), dtype=int)),
             "sweep_mean_distance": (sweeps, np.full((1, 2, 1, 2), np.nan)),
             "branch_number": ("number", np.zeros(0, dtype=int)),
             "branch_name": ("number", np.zeros(0, dtype=str)),
         },
         {"law": ["linearized"], "a": [0.1, 0.2], "direction": ["upward", "downward"]},
-        {"fraction_samples": 0},
     )
     assert words(basin_fractions.draw(attractors)) == [["no states were sampled"], ["no attractor to follow"]]
 

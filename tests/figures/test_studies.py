@@ -22,9 +22,9 @@ def figures_of(small):
     study, found, grid = small.study, small.found, small.grid
     law, initial = study.config["figures"]["law"], study.initial[0]
     point = to_dataset(run(study.model(law, 0.2), grid.initial[initial], grid.settings[law]))
-    for described in figure_descriptions():
-        figure = described.in_study(found)
-        if figure is None or (figure.condition and not getattr(study, figure.condition)):
+    for figure in figure_descriptions():
+        missing = not figure.of_runs and not set(figure.inputs) <= set(found)
+        if missing or (figure.condition and not getattr(study, figure.condition)):
             continue
         taken = [{initial: point}] if figure.of_runs else [found[name] for name in figure.inputs]
         draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw

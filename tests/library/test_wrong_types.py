@@ -23,7 +23,7 @@ from burridge_knopoff import (
 MODEL = Model(Chain(3), law_of("linearized", 0.0865))
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
 QUICK = {"transient": 0, "window": 1, "batches": 2}
-SEARCH = SearchSettings(samples=1, fraction_samples=1, transient=100, window=100, time_limit=200)
+SEARCH = SearchSettings(samples=1, fraction_width=0.49, transient=100, window=100, time_limit=200)
 WRONG = (
     object(),
     {1, 2},

@@ -25,7 +25,7 @@ POOR = {
     "study": "poor",
     "a": [0.1, 0.2],
     "window": 100,
-    "attractors": {**SMALL["attractors"], "fraction_samples": 2, "lifetime": 500},
+    "attractors": {**SMALL["attractors"], "fraction_width": 0.4, "lifetime": 500},
     "basins": {"a": {"linearized": [], "nonlinear": []}},
 }
 

@@ -7,6 +7,7 @@ import numpy as np
 from burridge_knopoff import Attractor, MotionKind, SteadyMotion, Symmetry
 from burridge_knopoff.stability.returns import Returns
 
+CLOSED = (MotionKind.PERIODIC, MotionKind.SYNCHRONIZED)
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
 #: Returns of no motion in particular.
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
@@ -27,6 +28,7 @@ def stand_in(
         "stop_rate": np.array([0.1, 0.2, 0.1]),
         "kind": MotionKind.PERIODIC,
         "section_period": 1,
+        "period": 10.0 if told.get("kind", MotionKind.PERIODIC) in CLOSED else np.nan,
         "exponent": np.array([0.0, -0.1, -0.2]),
     }
     of_attractor = {"radius": 0.01, "close_returns": 8, **of_attractor}

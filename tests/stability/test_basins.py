@@ -19,7 +19,7 @@ from burridge_knopoff.summaries import all_laws, attractors, basins
 from tests.stability.stand_in import shown
 from tests.stability.test_attractors import SETTINGS
 
-SEARCH = replace(SETTINGS, samples=25, fraction_samples=25)
+SEARCH = replace(SETTINGS, samples=25, fraction_width=0.18)
 PLANE = BasinSettings(pixels=16, pairs=300, tiles=1)
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 FOUND = (SEARCH, MOTION, "moving")

@@ -88,7 +88,7 @@ def same(one, other):
 
 def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
     """Synchrony loses its stability between these two; the antiphase orbit is there at both."""
-    settings = SearchSettings(samples=6, fraction_samples=20)
+    settings = SearchSettings(samples=6, fraction_width=0.2)
     found = continue_attractors(models((0.0862, 0.09)), settings, refine=Refine(1.0))
     means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
     assert means == [[0.0, 0.14, 0.19], [0.02, 0.02, 0.14, 0.19]]
@@ -98,7 +98,7 @@ def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
 def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
     """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
     monkeypatch.setattr(fractions, "PART", 30)
-    settings = SearchSettings(samples=10, fraction_samples=50, transient=1000.0, window=800.0, pushes=4)
+    settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, pushes=4)
 
     def found(a_values, **share):
         states = list(PAPER_STATES.values())

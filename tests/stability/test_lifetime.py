@@ -94,15 +94,16 @@ def find(monkeypatch, tell):
             return starts
 
         monkeypatch.setattr(lifetime, "moved", moved)
-        labels = []
+        first, later = [], []
         for when, nowhere, early in rounds:
-            labels.append((np.where(np.isnan(when), -1, 0), np.nan_to_num(when)))
+            first.append((np.where(np.isnan(when), -1, 0), np.nan_to_num(when), np.zeros((len(when), 6))))
             ends = np.zeros(int(np.isnan(when).sum()), int)
             ends[:nowhere] = -1
-            labels += [(ends, None), (np.array(early, int), None)]
-        asked = tell(lifetime, "label", labels)
+            later += [(ends, None), (np.array(early, int), None)]
+        followed, asked = tell(lifetime, "label_together", first), tell(lifetime, "label", later)
         lives = lifetimes(MODEL, attractors, SETTINGS)
-        return lives, runs + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
+        calls = [(len(position), time_limit, len(known)) for _, known, position, *_, time_limit in followed]
+        return lives, runs + calls + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
 
     return found
 
@@ -124,7 +125,7 @@ def test_trajectories_that_have_left_are_counted_with_their_times(find):
     # Nine are few: more are followed.
     assert found == [Lifetime(9, (19 + MANY) * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
     asked = [call for call in asked if 0 < call[0] <= 32]
-    assert asked == [(26, LATE + TIME), (7, LATE), (32, LATE + TIME, 1), (26, 50.0, 2), (7, 50.0, 2)]
+    assert asked == [(7, LATE), (32, LATE + TIME, 1), (26, 50.0, 2), (7, 50.0, 2)]
 
 
 def test_of_chaos_that_is_over_soon_all_captures_count(find):
@@ -141,13 +142,13 @@ def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
     found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), ALL_STAY)
     assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
     assert found[0].lasts(SETTINGS.lifetime)
-    assert asked[:2] == [(31, LATE + TIME), (MANY, LATE + TIME)]
+    assert asked[:2] == [(32, LATE + TIME, 1), (MANY, LATE + TIME, 1)]
 
 
 def test_a_change_to_the_mirror_image_is_no_end(find):
     found, asked = find([chaos(1), chaos(0)], ([NEVER] * 32, 0, []))
     assert found == [Lifetime(0, 32 * TIME)] * 2
-    assert asked == [(32, TIME), (32, TIME, 0), (32, 50.0, 2), (0, 50.0, 2)]
+    assert asked == [(32, TIME, 0), (32, 50.0, 2), (0, 50.0, 2)]
 
 
 def test_motion_that_is_not_chaotic_has_no_lifetime(find):
@@ -171,7 +172,7 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
 def test_what_attracts_slowly_is_waited_for(find, rate, radius, way):
     slow = stand_in(partner=1, **{**CAUGHT, "exponent": np.array([0.0, -rate, -1.0]), "radius": radius})
     _, asked = find([chaos(), slow], ([NEVER] * 32, 0, []))
-    assert asked[0] == (32, pytest.approx(2.0 * (way + 20.0) + TIME))
+    assert asked[0] == (32, pytest.approx(2.0 * (way + 20.0) + TIME), 1)
 
 
 def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
@@ -192,11 +193,12 @@ def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
     """At twice the speed of the paper they are pushed by up to twice a tenth of the resolution."""
     fast, away = Model(Chain(3), MODEL.law, 0.2), []
     for seed in (3, 3, 4):
-        never, nowhere = (np.full(32, -1), np.zeros(32)), (np.zeros(32, int), None)
-        asked = tell(lifetime, "label", [never, nowhere, (np.zeros(0, int), None)])
+        asked = tell(lifetime, "label_together", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+        tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
         wide = stand_in(kind=MotionKind.CHAOTIC, radius=0.021)
         lifetimes(fast, [wide], replace(SETTINGS, seed=seed, lifetime=100.0))
-        away.append([np.abs(start.vector() - chaos().motion.returns).max(axis=1).min() for start in asked[0][2]])
+        states = np.concatenate(asked[0][2:4], axis=1)
+        away.append([np.abs(state - chaos().motion.returns).max(axis=1).min() for state in states])
     assert 1.8e-4 < max(away[0]) <= 2e-4
     assert away[0] == away[1] != away[2]
 
@@ -204,11 +206,12 @@ def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
 def test_thin_chaos_is_begun_on_and_known_however_small_its_radius(tell):
     """Pushes are far smaller than the radius; what is as near to the set as its returns are to each other is on it."""
     thin = stand_in(kind=MotionKind.CHAOTIC, radius=1e-6, spacing=0.01)
-    never, nowhere = (np.full(32, -1), np.zeros(32)), (np.zeros(32, int), None)
-    asked = tell(lifetime, "label", [never, nowhere, (np.zeros(0, int), None)])
+    followed = tell(lifetime, "label_together", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+    asked = tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
     (found,) = lifetimes(MODEL, [thin], SETTINGS)
     assert found.ends == 0
     returns = thin.motion.returns
-    away = [min(np.abs(start.vector() - row).max() for row in returns) for start in asked[0][2]]
+    states = np.concatenate(followed[0][2:4], axis=1)
+    away = [min(np.abs(state - row).max() for row in returns) for state in states]
     assert 0.9e-8 < max(away) <= 1e-8
-    assert [one.radius for one in asked[1][1]] == [pytest.approx(TUNING.spacings * 0.01)]
+    assert [one.radius for one in asked[0][1]] == [pytest.approx(TUNING.spacings * 0.01)]

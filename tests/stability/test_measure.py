@@ -13,6 +13,9 @@ from burridge_knopoff.stability.steady import measure
 from burridge_knopoff.stability.tuning import TUNING
 from tests.stability.stand_in import ROWS, stand_in
 
+#: Growth in front of the longer windows is tested on its own.
+LONG = replace(TUNING, growth_window=0.0)
+
 
 def model(threshold=1.0, v=0.1):
     return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08), v)
@@ -41,7 +44,7 @@ def test_weak_chaos_is_looked_for_in_a_longer_window(tell, kind, exponent, longe
     }
     asked = tell(steady, "measure_once", [first, replace(first, **later) if longer is not None else None])
     sought = tell(steady, "locked_orbit", [None, None])
-    found = measure(model(), None, 50.0, 30.0, MOTION)
+    found = measure(model(), None, 50.0, 30.0, MOTION, LONG)
     assert found.kind == expected
     assert [told[2:4] for told in asked] == [(50.0, 30.0), (50.0, 600.0)][: 1 if longer == "not asked" else 2]
     if longer != "not asked":
@@ -82,7 +85,7 @@ def test_growth_that_is_too_fast_for_a_torus_is_looked_at_longer(tell, kind, exp
         exponents, errors = np.array([told[0], 0.0, -0.2]), np.array([told[1], 1.0, 1.0])
         run = SimpleNamespace(status="completed", lyapunov_exponent=exponents, lyapunov_error=errors)
     asked = tell(steady, "run", [] if told == "not asked" else [run])
-    found = measure(model(), None, 50.0, 30.0, MOTION)
+    found = measure(model(), None, 50.0, 30.0, MOTION, LONG)
     assert found.kind == (MotionKind.CHAOTIC if chaotic else kind)
     assert found.exponent.tolist() == ([exponent, 0.0, -0.1] if isinstance(told, str) else [told[0], 0.0, -0.2])
     assert found.returns is first.returns
@@ -99,7 +102,7 @@ def test_far_from_synchrony_no_distance_is_measured_once_more(tell, mean, known)
     first = stand_in(kind=MotionKind.QUASIPERIODIC, mean_distance=mean, exponent=np.array([6e-4])).motion
     asked = tell(steady, "measure_once", [first, None])
     tell(steady, "locked_orbit", [None])
-    measure(model(), None, 50.0, 30.0, MOTION)
+    measure(model(), None, 50.0, 30.0, MOTION, LONG)
     assert [told[6:] for told in asked] == [(), (known,)]
 
 
@@ -120,7 +123,7 @@ def test_weak_chaos_is_no_torus():
     """In six million time units its largest exponent is (5.9 ± 0.2)e-5, in 240 000 it is hidden by its error."""
     chosen = Model(Chain(3), law_of("linearized", 0.21234375))
     state = InitialState("on it", (-0.664833, -0.559658, -0.757225), (0.0, 0.092584, 0.021104))
-    found = measure(chosen, chosen.begin(state), 3000.0, 12_000.0, MOTION)
+    found = measure(chosen, chosen.begin(state), 3000.0, 12_000.0, MOTION, LONG)
     assert found.kind == MotionKind.CHAOTIC
     assert found.exponent[0] == pytest.approx(5.9e-5, abs=1e-5)
 
@@ -142,7 +145,7 @@ def test_what_is_locked_is_no_torus(monkeypatch, tell, kind, soon, threshold, me
     asked = tell(steady, "measure_once", [first, *seen, replace(first, mean_distance=mean + 1e-4)])
     sought = tell(steady, "locked_orbit", [orbit] if soon else [None, orbit])
     monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([-0.5, 0.1])))
-    found = measure(orbit.model, None, 50.0, 30.0, MOTION)
+    found = measure(orbit.model, None, 50.0, 30.0, MOTION, LONG)
     assert len(sought) == (1 if soon else 2)
     assert found.kind == expected
     # The second exponent is that of the multiplier, in a period of 2000.
@@ -181,7 +184,7 @@ def test_a_motion_that_ends_on_a_closed_orbit_is_not_that_orbit(monkeypatch, tel
     tell(steady, "measure_once", [first, longer, after] if by_exponent else [first, after])
     tell(steady, "locked_orbit", [None] if by_exponent else [orbit])
     monkeypatch.setattr(steady, "multipliers", lambda orbit: SimpleNamespace(whole=np.array([0.5, 0.1])))
-    found = measure(model(v=v), None, 50.0, 30.0, MOTION)
+    found = measure(model(v=v), None, 50.0, 30.0, MOTION, LONG)
     assert found.kind == (MotionKind.PERIODIC if stays else MotionKind.UNDETERMINED)
     if stays:
         assert found.left_for is None
@@ -203,7 +206,7 @@ def test_what_has_moved_on_in_the_longer_window_still_drifts(tell, kind, moved, 
     first = stand_in(kind=MotionKind.QUASIPERIODIC, exponent=np.zeros(3), returns=ROWS.copy(), spacing=0.0).motion
     tell(steady, "measure_once", [first, replace(first, kind=kind, returns=ROWS + moved)])
     tell(steady, "locked_orbit", [None, None])
-    found = measure(model(), None, 50.0, 30.0, MOTION)
+    found = measure(model(), None, 50.0, 30.0, MOTION, LONG)
     assert (found.left_for is not None) == drifts
     if drifts:
         assert found.left_for.vector() == pytest.approx(ROWS[-1] + moved)
@@ -214,6 +217,6 @@ def test_slower_motion_has_smaller_exponents(tell):
     names = ("zero_exponent", "chaotic_exponent", "period_tolerance")
     for v, share in ((0.05, 0.5), (0.2, 1.0)):
         asked = tell(steady, "measure_once", [None])
-        assert measure(model(v=v), None, 50.0, 30.0, MOTION) is None
+        assert measure(model(v=v), None, 50.0, 30.0, MOTION, LONG) is None
         ratios = [getattr(asked[0][4], name) / getattr(MOTION, name) for name in names]
         assert ratios == pytest.approx([share] * 3)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.figures.description import study_figures
 from burridge_knopoff.study.study import load_study
 
 STATES = {"minus": {}, "plus": {}}
@@ -35,11 +35,7 @@ def test_what_is_left_out_has_no_values_of_a():
 
 
 def test_figures_of_a_study_without_attractors():
-    figures = {figure.name: figure for figure in figure_descriptions()}
-    some = ["mean_distance", "bifurcation"]
-    assert figures["edges"].in_study(some) is figures["bifurcation"].in_study(["mean_distance"]) is None
-    assert figures["distance"].in_study([]) == figures["distance"]
-    plain, whole = (figures["mean_distance"].in_study(names) for names in (some, [*some, "attractors"]))
-    assert (plain.inputs, whole.inputs) == (("mean_distance",), ("mean_distance", "attractors"))
-    assert "by branch" in whole.caption_of({})
-    assert "by branch" not in plain.caption_of({})
+    study = load_study({**CONFIG, "without": ["attractors"]}, "some.yaml")
+    names = {figure.name for figure in study_figures(study, ())}
+    assert {"mean_distance", "bifurcation", "distance"} <= names
+    assert not {"edges", "branches_reached", "bifurcation_refined", "chains"} & names

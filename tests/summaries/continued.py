@@ -8,7 +8,7 @@ from burridge_knopoff.stability.lifetime import Lifetime
 from tests.stability.stand_in import stand_in
 
 STATES = [InitialState("here", (0.0,) * 3, (0.1,) * 3), InitialState("back", (0.0,) * 3, (0.1, -0.1, 0.1))]
-SETTINGS = SearchSettings(samples=9, fraction_samples=4, time_limit=123.0, lifetime=500.0)
+SETTINGS = SearchSettings(samples=9, fraction_width=0.33, time_limit=123.0, lifetime=500.0)
 
 
 def continuation(law):

@@ -26,7 +26,7 @@ def test_laws_are_put_together_under_common_numbers(one_law):
     assert found["close_returns"].values[0].tolist() == [[8, -1], [8, -1], [-1, -1]]
     assert found["basin_count"].values[0].tolist() == [[2, 0], [1, 0], [0, 0]]
     assert "law" not in found.attrs
-    assert found.attrs["fraction_samples"] == 4
+    assert found["sample_count"].values[0].tolist() == [4, 4, 4]
     assert found["branch_number"].values.tolist() == [0, 1, 2]
 
 

@@ -104,7 +104,7 @@ def test_states_that_round_to_an_initial_state_are_all_corners_of_its_box():
 
 def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():
     """Linearized: at 0.05 some states that round to plus synchronize, which plus does not."""
-    search = SearchSettings(samples=12, fraction_samples=0, transient=1000, window=1000, seed=3)
+    search = SearchSettings(samples=12, fraction_width=0.5, transient=1000, window=1000, seed=3)
     models = [Model(Chain(3), law_of("linearized", a)) for a in (0.05, 0.08)]
     states = [PAPER_STATES["minus"], PAPER_STATES["plus"]]
     found = continue_attractors(models, search, refine=Refine(1.0), starts=states)

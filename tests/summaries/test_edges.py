@@ -65,7 +65,7 @@ def at_all_values(found):
     values["in_grid"] = "value", [1] * len(A) + [-1]
     for name, low in (("lifetime_low", 1e5), ("lifetime_high", np.inf)):
         values[name] = xr.where(values["kind"] == MotionKind.CHAOTIC, low, np.nan)
-    return values
+    return values.assign_attrs(refine_longest_period=500.0)
 
 
 @pytest.fixture(scope="module")
@@ -90,6 +90,7 @@ def told(rows, in_grid):
     slots |= dict.fromkeys(("side", "symmetry", "section_period"), np.zeros((len(rows), 2), int))
     slots["period"] = np.full((len(rows), 2), np.nan)
     values = xr.Dataset({name: (("value", "attractor"), item) for name, item in slots.items()})
+    values.attrs["refine_longest_period"] = 500.0
     values = values.assign(a=("value", np.arange(float(len(rows)))), in_grid=("value", in_grid))
     reached = [[10 * k, 10 * k + 1] for k in range(1, sum(in_grid) + 1)]
     there = xr.Dataset(dict.fromkeys(("upward_branch", "downward_branch"), (("a", "attractor"), reached)))

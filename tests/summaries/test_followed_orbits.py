@@ -36,8 +36,9 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
 
     monkeypatch.setattr(followed_orbits, "closed_motion", closed_motion)
     monkeypatch.setattr(followed_orbits, "half", alone)
-    slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4}
+    slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4, "period": [6.0] * 4}
     one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
+    one.attrs["refine_longest_period"] = 500.0
     names, position = ("value", "attractor", "block"), np.zeros((1, 4, 3))
     position[0, :, 0] = range(4)
     one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
@@ -71,7 +72,12 @@ def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, 
     kind = np.full((5, 2), MotionKind.PERIODIC)
     kind[3] = MotionKind.CHAOTIC
     slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}
+    slots["period"] = np.full((5, 2), 6.0)
     one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
+    one.attrs["refine_longest_period"] = 500.0
     one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
     told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
     assert followed_orbits._places(one, told) == expected
+    # What is longer is not followed.
+    one["period"][0] = 501.0
+    assert followed_orbits._places(one, told) == [place for place in expected if place[0] != 0]

@@ -87,7 +87,7 @@ def test_attractors_and_basins(results):
         assert there["branch"].values[0] == 0
         assert there["mean_distance"].values[0] < 1e-6
         counted = there["basin_count"].sum() + there["undetermined_count"]
-        assert counted == attractors.attrs["fraction_samples"] == 6
+        assert counted == there["sample_count"] > 0
         # Both runs are on an attractor that is known.
         assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
         branches = set(there["branch"].values.tolist())

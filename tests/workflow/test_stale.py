@@ -188,7 +188,7 @@ KEYS = [
     ({"agreement.relative_tolerance": 0.2, "agreement.standard_errors": 2}, ("agreement", "two_blocks")),
     ({"figures.a": 0.05}, ("figure_motion", "figure_distance", "figure_friction_laws")),
     ({"figures.law": "nonlinear"}, ("figure_motion", "figure_distance", "figure_stick_slip")),
-    ({"attractors.samples": 7, "attractors.fraction_samples": 9}, ("attractors_of_law",)),
+    ({"attractors.samples": 7, "attractors.fraction_width": 0.2}, ("attractors_of_law",)),
     ({"attractors.seed": 2, "attractors.lifetime": 900}, ("attractors_of_law", "two_blocks")),
     ({"refine.resolution": 0.5}, ("attractors_of_law",)),
     ({"basins.pixels": 9}, ("basin_tile",)),

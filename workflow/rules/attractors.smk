@@ -17,8 +17,8 @@ rule attractors_of_law:
         f"{RESULTS}/logs/attractors/{{law}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/attractors/{{law}}.tsv"
-    # The longest jobs of a study: before all others that fit into the cores that are free.
-    priority: 10
+    # The longest jobs of a study: right after the points and the figures of the paper.
+    priority: 2
     threads: SHARED_CORES
     resources:
         # Set by a profile where threads are the width of a group: `cores` of workflow/profiles/slurm.

@@ -9,18 +9,22 @@ SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
 )
 
 
+# The figures of the paper; of the logger's own words they are the first.
+OF_PAPER = [figure for figure in DESCRIPTIONS if figure.paper]
+PLAN.first = [f"figure_{figure.name}" for figure in OF_PAPER]
+
+
+rule curves:
+    input:
+        pictures(OF_PAPER),
+    message:
+        f"the figures of the paper are in {FIGURES}"
+
+
 # Without those of the optional stage.
 rule figures:
     input:
-        [
-            expand(
-                f"{FIGURES}/{figure.file}.{{format}}",
-                initial=STUDY.initial,
-                format=("pdf", "png"),
-            )
-            for figure in DESCRIPTIONS
-            if "chains" not in figure.inputs
-        ],
+        pictures([figure for figure in DESCRIPTIONS if "chains" not in figure.inputs]),
 
 
 for figure in DESCRIPTIONS:
@@ -48,6 +52,8 @@ for figure in DESCRIPTIONS:
             f"{RESULTS}/logs/figure_{figure.file}.log",
         benchmark:
             f"{RESULTS}/benchmarks/figure_{figure.file}.tsv"
+        # What a reader wants first runs first.
+        priority: 4 if figure.paper else 0
         group:
             group("figures")
         params:

@@ -16,6 +16,7 @@ rule simulate:
         f"{RESULTS}/logs/simulate/{{law}}/{{initial}}/a{{a}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/simulate/{{law}}/{{initial}}/a{{a}}.tsv"
+    priority: 3
     group:
         fixed_group("points", POINTS)
     resources:

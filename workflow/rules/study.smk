@@ -261,3 +261,15 @@ def kept_folder(what, *decides):
     decides : all that decides it but the values of a
     """
     return f".snakemake/kept/{STUDY.name}/{what}/{identity(json.dumps(decides))}"
+
+
+def pictures(figures):
+    """Return the files of some figures."""
+    return [
+        expand(
+            f"{FIGURES}/{figure.file}.{{format}}",
+            initial=STUDY.initial,
+            format=("pdf", "png"),
+        )
+        for figure in figures
+    ]

@@ -1,5 +1,11 @@
 # Summaries of points, and of models alone: a netCDF file a question, by the module of its name in burridge_knopoff.summaries.
+from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.study.stages import TEXTS
+
+# What the figures of the paper show comes first.
+OF_PAPER_FIGURES = {
+    name for figure in figure_descriptions() if figure.paper for name in figure.inputs
+}
 
 # What a summary is of; what else it reads; keys of the config that it uses; texts beside it, {suffix: result}.
 SUMMARIES = {
@@ -79,6 +85,7 @@ for name, row in SUMMARIES.items():
             f"{RESULTS}/logs/{name}.log",
         benchmark:
             f"{RESULTS}/benchmarks/{name}.tsv"
+        priority: 4 if name in OF_PAPER_FIGURES else 0
         group:
             group("summaries")
         resources:

@@ -12,7 +12,7 @@ rule two_blocks:
     benchmark:
         f"{RESULTS}/benchmarks/two_blocks.tsv"
     # A long job that waits for nothing: begun early, so that it is not left alone at the end.
-    priority: 5
+    priority: 1
     threads: SHARED_CORES
     resources:
         cpus_per_task=lambda wildcards, threads: threads,

@@ -63,6 +63,8 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
         "",
         f"All {sum(every.values())}, with those that repeat others or follow from them: {_counts(every)}.",
     ]
+    if content["depth"]:
+        lines += ["", f"Depth of the search for attractors: {content['depth']}."]
     for topic, claims in by_topic(content["claims"]).items():
         lines += [
             "",

@@ -52,6 +52,18 @@ def _told(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[t
     return replace(verdict, changes="; ".join(changes), turns=found)
 
 
+def _depth(evidence: Evidence) -> str:
+    """Return how deep the study looked at attractors, in words; nothing where it did not."""
+    try:
+        attrs = evidence.summary("refined").attrs
+    except NotTestableError:
+        return ""
+    return (
+        f"95 % intervals of basin fractions ±{100.0 * attrs['fraction_width']:g} %, changes along a located within "
+        f"{attrs['refine_resolution']:g}, closed orbits followed up to a period of {attrs['refine_longest_period']:g}"
+    )
+
+
 def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collection[str]) -> dict[str, Any]:
     """Return the judged claims as the content of claims.json, which docs/data.md describes.
 
@@ -67,6 +79,7 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
+        "depth": _depth(evidence),
         **provenance(__name__),
         "counts": {name: sum(verdict.verdict == name for verdict in verdicts.values()) for name in VERDICTS},
         "independent_counts": {name: independent.count(name) for name in VERDICTS},

@@ -20,6 +20,7 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.orbits.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import CHAOS, REGULAR, MotionKind
+from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.branch_changes import Change
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
@@ -85,7 +86,8 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     beginning of chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change. A
     torus may be chaos that is weaker than the search resolves, or lock between the values of a, which the verdict says.
     A closed orbit that is too long to be followed to the edge, as in a tongue of a torus, is counted as one as well:
-    another value of a may show the torus.
+    another value of a may show the torus. A closer search finds more places, so that those of a study are a sample: the
+    claim fails if the 95 % interval of the share lies below `loose_share`.
 
     loose_share : share of the beginnings of chaos from which on the claim holds loosely
     """
@@ -113,6 +115,14 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         if not share_is_decided(count[""], len(places) - count[TORUS], len(places), loose_share):
             raise NotTestableError(
                 f"before chaos there is {UNFOLLOWED} at {count[UNFOLLOWED]} of {len(places)} places ({name})"
+            )
+        possible = len(places) - count[TORUS]
+        most = fraction_interval(possible, len(places))[2]
+        if share < loose_share <= most:
+            raise NotTestableError(
+                f"a closed orbit comes before chaos at {count['']} to {possible} of {len(places)} places ({name}), and "
+                f"the 95 % interval of that share reaches {most:.2f}: whether it is {loose_share:g} is not resolved "
+                f"with changes along a located within {evidence.summary('refined').attrs['refine_resolution']:g}"
             )
         verdicts.append(by_share(share, loose_share))
         texts.append(f"{count['']} of {len(places)} ({name})")

@@ -23,8 +23,8 @@ from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 DESCRIPTION = """Look for all attractors of a model from initial states drawn in a box, and say what each is.
 What no drawn state reaches is not found; docs/attractors.md tells how the search works."""
 
-EXAMPLES = """  bk attractors --law linearized --a 0.08 --samples 100 --fraction-samples 500 --out attractors.nc
-  bk attractors --law nonlinear --a 0.05 --samples 20 --fraction-samples 100 --lifetime 1000 --initial plus
+EXAMPLES = """  bk attractors --law linearized --a 0.08 --samples 100 --fraction-width 0.05 --out attractors.nc
+  bk attractors --law nonlinear --a 0.05 --samples 20 --fraction-width 0.1 --lifetime 1000 --initial plus
 """
 
 
@@ -32,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of a search."""
     add_model(parser)
     add_state(parser, "drawn states only")
-    add_search(parser, "fraction_samples")
+    add_search(parser, "fraction_width")
     parser.add_argument("--out", metavar="FILE", help="write them as netCDF as well, in the form of attractors.nc")
 
 
@@ -65,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     starts = [] if state is None else [state]
     found = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
-    count, drawn = int((found["branch"] >= 0).sum()), search.fraction_samples
+    count, drawn = int((found["branch"] >= 0).sum()), int(found["sample_count"].sum())
     print(f"{said_of(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
     names = ("", "_low", "_high")
     shares = np.stack([100.0 * found[f"basin_fraction{name}"].values[0, 0][:count] for name in names], axis=1)

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)
     plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}
-    search = asdict(search_of(options)) | {"fraction_samples": options.samples}
+    search = asdict(search_of(options)) | {"fraction_width": 0.1}
     motion = settings_of(MotionSettings, options)
     basins, attractors = burridge_knopoff.basin_map(model, None, state, **plane, **search, motion=motion)
     branch, side = (basins[name].values[0] for name in ("branch", "side"))

@@ -55,7 +55,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
 
 def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     a = attractors["a"].values
-    if not attractors.attrs["fraction_samples"]:
+    if not attractors["sample_count"].any():
         say_nothing(panel, "no states were sampled")
         return
     for name, color, interval in fraction_curves(attractors, colors):

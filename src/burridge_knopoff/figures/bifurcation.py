@@ -33,10 +33,6 @@ below. W is the sum of the positions relative to uniform sliding, or one of them
 what it is stands in `bifurcation.nc`. Crossings slower than 10⁻⁹ are not shown: they are
 uniform sliding itself, by rounding.
 """
-OPTIONAL = {
-    "attractors": "At values of a in between, where some attractor changes: the section of the attractor",
-    "refined": "that the initial state reaches at the nearest value of the grid at which it is the same branch.",
-}
 
 # Values of a beyond which points are so small that a cloud of many can be told apart; those of few are to be seen.
 FEW = 30

@@ -63,7 +63,7 @@ def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> It
 
     colors : of all branches, as of `branch_colors`
     """
-    names, samples = branch_names(attractors), int(attractors.attrs["fraction_samples"])
+    names, samples = branch_names(attractors), attractors["sample_count"].values.tolist()
     branch, count = attractors["branch"].values, attractors["basin_count"].values
     own = [([number], names[number], color) for number, color in sorted(colors.items()) if color != OTHER_COLOR]
     others = [number for number, color in colors.items() if color == OTHER_COLOR]
@@ -72,8 +72,7 @@ def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> It
         there = members.any(axis=1)
         if there.any():
             hits = np.where(members, count, 0).sum(axis=1)
-            known = {hit: fraction_interval(hit, samples) for hit in set(hits.tolist())}
-            interval = np.array([known[hit] for hit in hits.tolist()])
+            interval = np.array([fraction_interval(*pair) for pair in zip(hits.tolist(), samples, strict=True)])
             interval[~there] = np.nan
             yield name, color, interval
 
@@ -81,7 +80,7 @@ def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> It
 def undetermined_share(attractors: xarray.Dataset) -> np.ndarray:
     """Return the share of the sampled states whose attractor is undetermined, shape (a,); NaN where there are none."""
     with np.errstate(invalid="ignore"):
-        share = attractors["undetermined_count"].values / int(attractors.attrs["fraction_samples"])
+        share = attractors["undetermined_count"].values / attractors["sample_count"].values
     return np.where(share > 0.0, share, np.nan)
 
 

@@ -5,7 +5,6 @@ A module of this folder that assigns CAPTION is a figure. It has a function `dra
 TITLE, CATEGORY : in words; PAPER : figures of the paper that it shows again, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
 INPUTS : names of the summaries that `draw` takes, in order; or `runs` alone, the point files of single runs by state
-OPTIONAL : names of those that it takes besides if the study has them, and what is seen of each
 FROM_STUDY : names of properties of `Study` that it takes besides
 CONDITION : property of `Study` without which there is no such figure
 FILE : name of the picture if it is not that of the module
@@ -15,7 +14,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,7 +34,6 @@ class Description:
     category: str
     caption: str
     inputs: tuple[str, ...]
-    optional: Mapping[str, str] = field(default_factory=dict)
     from_study: tuple[str, ...] = ()
     condition: str = ""
     paper: str = ""
@@ -55,14 +53,6 @@ class Description:
         """Return the caption of one picture, in one paragraph, with what the paper has of it."""
         paper = f" Compare the paper's {self.paper}." if self.paper else ""
         return _filled(f"{' '.join(self.caption.split())}{paper}", wildcards)
-
-    def in_study(self, summaries: Collection[str]) -> Description | None:
-        """Return the figure as a study with some summaries has it; None if one that it needs is missing."""
-        if not self.of_runs and not set(self.inputs) <= set(summaries):
-            return None
-        there = {name: text for name, text in self.optional.items() if name in summaries}
-        caption = "\n".join([self.caption, *there.values()])
-        return replace(self, caption=caption, inputs=(*self.inputs, *there), optional={})
 
     def title_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the title of one picture."""
@@ -87,11 +77,10 @@ def study_figures(study: Study, of_chains: Collection[str]) -> list[Description]
     of_chains : summaries of longer chains that there can be, besides those of the study's stages
     """
     figures = []
-    for described in figure_descriptions():
-        there = of_chains if "chains" in described.inputs else study.stage_summaries
-        in_every_study = {*described.inputs, *described.optional} - OPTIONAL_SUMMARIES
-        figure = described.in_study(in_every_study.union(there))
-        if figure and (not figure.condition or getattr(study, figure.condition)):
+    for figure in figure_descriptions():
+        there = of_chains if "chains" in figure.inputs else study.stage_summaries
+        missing = set(figure.inputs) & OPTIONAL_SUMMARIES - set(there)
+        if not missing and (not figure.condition or getattr(study, figure.condition)):
             figures.append(figure)
     return figures
 
@@ -101,8 +90,8 @@ def picture_names(states: Collection[str]) -> set[str]:
     return {_filled(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
 
 
-def described_picture(file: str, summaries: Collection[str]) -> tuple[str, str]:
-    """Return title and caption of a picture by the name of its file, in a study with some summaries.
+def described_picture(file: str) -> tuple[str, str]:
+    """Return title and caption of a picture by the name of its file.
 
     Raises ValueError if no figure makes it.
     """
@@ -110,7 +99,6 @@ def described_picture(file: str, summaries: Collection[str]) -> tuple[str, str]:
         head, wildcard, _ = figure.file.partition("{initial}")
         if file == figure.file or (wildcard and file.startswith(head)):
             wildcards = {"initial": file.removeprefix(head)}
-            figure = figure.in_study(summaries) or figure
             return figure.title_of(wildcards), figure.caption_of(wildcards)
     raise ValueError(f"{file}: no figure of that name")
 
@@ -122,6 +110,6 @@ def _described(path: Path) -> Description | None:
             constants[node.targets[0].id] = node.value
     if "CAPTION" not in constants:
         return None
-    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "OPTIONAL", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
+    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
     told = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
     return Description(path.stem, **{"file": path.stem, **told})

@@ -1,4 +1,4 @@
-"""⟨J⟩ against a for each initial state and law, the paper's Figs. 3a and 3b, with the attractors behind it."""
+"""⟨J⟩ against a for each initial state and law, the paper's Figs. 3a and 3b; attractors may stand behind it."""
 
 from __future__ import annotations
 
@@ -29,16 +29,6 @@ CAPTION = """\
 The time average ⟨J⟩ of the phase-space distance between the end blocks against a, for each law: runs from each initial
 state (black, bars of three standard errors).
 """
-OPTIONAL = {
-    "attractors": """\
-Coloured points: the attractors that were found, by branch; a branch has the same number, in brackets, and colour in all
-figures, and branches that are found at few values of a are grey. Below: the branch on which each initial state ends, a
-row for each state and convention: contact one_sided, where a stuck block holds against any backward pull, or symmetric,
-where it does not; start moving, where all blocks slip at τ = 0, or tested, where those that friction can hold are
-stuck. The state is pushed if the motion before does not attract (white: undetermined); a run above may not get there
-within its time.
-"""
-}
 
 # Each initial state has a marker; colours are left to the branches.
 MARKERS = "ovs^Dphx"

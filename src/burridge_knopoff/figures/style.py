@@ -272,3 +272,5 @@ def write_figure(figure: Figure, *paths: str | Path, seals: Mapping[str, Mapping
             draw = getattr(canvas(figure), f"print_{path.suffix[1:]}")
             write = partial(draw, metadata=metadata)
             write_sealed(path, write, seals[str(path)]) if seals else write_whole(path, write)
+        # The places of all axes are those of the first file: to find them takes as long as drawing.
+        figure.set_layout_engine("none")

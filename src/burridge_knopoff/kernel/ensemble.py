@@ -112,8 +112,11 @@ class Ensemble:
         returns: Sequence[int],
         section: Sequence[int],
         end: float,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return which cloud each state comes close to, −1 for none by time `end`, and when that was certain.
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return which cloud each state comes close to, when that was certain, and where the others are in the end.
+
+        Labels and times have the shape (n,): −1 where a state comes close to no cloud by time `end`. The states at that
+        time, (x_i, U_i'), have the shape (n, 2 blocks): NaN where a label was certain before.
 
         position, velocity, stuck : x_i, U_i' and which blocks stick, shape (n, blocks)
         clouds : Clouds of states (x_i, U_i') at stops of one block each
@@ -128,11 +131,12 @@ class Ensemble:
         self.section = np.array(section, dtype=np.intp)
         self.streak = np.zeros((LANES, clouds.count), dtype=np.intp)
         self.label_of = labels
-        self.samples = Samples(n, [], self.blocks)
+        self.samples = samples = Samples(n, [end], self.blocks)
         self.lanes.kept = 0
         self.end = end
         self._begin(position, velocity, stuck, times, np.zeros(n, dtype=np.intc), np.zeros(n, dtype=np.int64))
-        return labels, times
+        last = samples.results()
+        return labels, times, np.concatenate([last["position"][:, 0], last["velocity"][:, 0]], axis=1)
 
     def run(
         self, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray, times: Sequence[float], events: int = 0

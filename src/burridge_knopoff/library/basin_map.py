@@ -65,7 +65,8 @@ def basin_map(
 
     state = given_state(initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
-    options = {"samples": samples, "seed": seed, "fraction_samples": samples, **search}
+    # A map shows the shares of the basins itself.
+    options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
     settings = settings_of(SearchSettings, None, options)
     plane = BasinSettings(
         pixels=pixels,

@@ -37,7 +37,7 @@ class RunSettings(TypedDict, total=False):
 class SearchOptions(TypedDict, total=False):
     """Settings of a search by name: fields of `SearchSettings`, where their ranges, defaults and meanings stand."""
 
-    fraction_samples: int
+    fraction_width: float
     position: Sequence[float]
     velocity: Sequence[float]
     transient: float

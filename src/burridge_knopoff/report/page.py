@@ -81,9 +81,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
             left_out = str(error)
     # One after the other: each takes some 100 MB while it is compressed.
     pictures = {
-        name: read_picture(path, list(summaries))
-        for name, path in sources.figures.items()
-        if not (left_out and name == OPTIONAL)
+        name: read_picture(path) for name, path in sources.figures.items() if not (left_out and name == OPTIONAL)
     }
     commands = Commands(study, arguments)
     sections = section_counts(summaries["bifurcation"])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,12 +25,10 @@ class Picture:
     height: int
 
 
-def read_picture(path: str | Path, summaries: Collection[str] = ()) -> Picture:
+def read_picture(path: str | Path) -> Picture:
     """Read a figure; its pixels are kept, in a format that takes less than half the room of PNG.
 
     The effort is chosen for speed and memory: all of it would save a fifth of the room, in twenty times the time.
-
-    summaries : names of those that the study has
 
     Raises BadFile if it is not a picture, ValueError if no figure of that name is known.
     """
@@ -41,7 +38,7 @@ def read_picture(path: str | Path, summaries: Collection[str] = ()) -> Picture:
             shown = opened.convert("RGB")
     except (OSError, SyntaxError) as error:
         raise BadFile(path, f"is not a readable picture ({error})") from None
-    title, caption = described_picture(name, summaries)
+    title, caption = described_picture(name)
     content = io.BytesIO()
     shown.save(content, "WEBP", lossless=True, quality=10, method=1)
     data = "data:image/webp;base64," + base64.b64encode(content.getvalue()).decode()

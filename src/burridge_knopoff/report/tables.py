@@ -19,16 +19,17 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
     rows = []
     names = branch_names(attractors)
     a = attractors["a"].values
-    samples = int(attractors.attrs["fraction_samples"])
     for law in attractors["law"].values:
         one = attractors.sel(law=law)
+        samples = one["sample_count"].values
+        drawn = bool(samples.any())
         branch = one["branch"].values
         for number in sorted({int(n) for n in np.unique(branch) if n >= 0}):
             members = branch == number
             there = members.any(axis=1)
             where = a[there]
             distance = one["mean_distance"].values[members]
-            fraction = np.where(members, one["basin_count"].values, 0).sum(axis=1) / max(samples, 1)
+            fraction = np.where(members, one["basin_count"].values, 0).sum(axis=1) / np.maximum(samples, 1)
             largest = int(fraction[there].argmax())
             rows.append(
                 {
@@ -38,7 +39,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
                     "values": f"{len(where)} of {len(a)}",
                     "distance": span(f"{distance.min():.4f}", f"{distance.max():.4f}"),
                     "kinds": ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[members])),
-                    "fraction": f"{fraction[there][largest]:.3f} (a = {text(where[largest])})" if samples else "–",
+                    "fraction": f"{fraction[there][largest]:.3f} (a = {text(where[largest])})" if drawn else "–",
                 }
             )
     return rows

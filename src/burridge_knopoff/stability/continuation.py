@@ -79,6 +79,7 @@ def continue_attractors(
 
     Raises ValueError if an initial state does not fit the models.
     """
+    tuning = replace(tuning, longest_followed=refine.longest_period)
     with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion, tuning) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)

@@ -29,14 +29,15 @@ def label(
     """
     if not len(attractors) or not len(starts):
         return np.full(len(starts), UNDETERMINED, dtype=np.intc), np.zeros(len(starts))
-    return label_together(
-        model,
-        attractors,
-        np.array([start.position for start in starts]),
-        np.array([start.velocity for start in starts]),
-        np.array([start.stuck for start in starts]),
-        time_limit,
+    return label_together(model, attractors, *arrays(starts), time_limit)[:2]
+
+
+def arrays(starts: Sequence[Instant]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return positions, velocities and which blocks stick of states, each of shape (n, blocks)."""
+    position, velocity, stuck = (
+        np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity", "stuck")
     )
+    return position, velocity, stuck
 
 
 def label_together(
@@ -46,15 +47,19 @@ def label_together(
     velocity: np.ndarray,
     stuck: np.ndarray,
     time_limit: float,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Do the work of `label` for states x_i, U_i' and which blocks stick, each of shape (n, blocks).
+
+    The third array has the states at the time limit, shape (n, 2 blocks), NaN where a label was certain before.
 
     A state has reached an attractor when enough of its successive returns, at the stops of its block, lie within
     the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these, or any other
     without patience, if it gets there within the attractor's patience.
     """
 
-    def first(attractors: Sequence[Attractor], states: np.ndarray | slice, end: float) -> tuple[np.ndarray, np.ndarray]:
+    def first(
+        attractors: Sequence[Attractor], states: np.ndarray | slice, end: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         clouds = Clouds(
             [attractor.motion.returns for attractor in attractors],
             2 * model.blocks,
@@ -65,16 +70,16 @@ def label_together(
         begun = position[states], velocity[states], stuck[states].astype(np.intc)
         return new_ensemble(model).label(*begun, clouds, returns, section, end)
 
-    labels, times = first(attractors, slice(None), time_limit)
+    labels, times, last = first(attractors, slice(None), time_limit)
     prompt = [index for index, attractor in enumerate(attractors) if not attractor.patience]
     for index, attractor in enumerate(attractors):
         near = np.flatnonzero(labels == index)
         if not (attractor.patience and prompt and len(near)):
             continue
-        others, when = first([attractors[k] for k in prompt], near, min(attractor.patience, time_limit))
+        others, when, _ = first([attractors[k] for k in prompt], near, min(attractor.patience, time_limit))
         gone = others != UNDETERMINED
         labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
-    return labels, times
+    return labels, times, last
 
 
 def moved(model: Model, starts: Sequence[Instant], time: float) -> list[Instant]:
@@ -141,7 +146,7 @@ def label_states(
 
     def work(first: int, last: int) -> None:
         part = slice(first, last)
-        labels[part], times[part] = label_together(
+        labels[part], times[part], _ = label_together(
             model, attractors, offset[part], velocity[part], stuck[part], time_limit
         )
 

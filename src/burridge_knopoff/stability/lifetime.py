@@ -17,9 +17,9 @@ from functools import partial
 import numpy as np
 import scipy.special
 
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.stability.attractor import Attractor, pushed
-from burridge_knopoff.stability.labels import UNDETERMINED, label, moved
+from burridge_knopoff.stability.labels import UNDETERMINED, arrays, label, label_together, moved
 from burridge_knopoff.stability.motion import CHAOS
 from burridge_knopoff.stability.returns import instant_of
 from burridge_knopoff.stability.sampling import CONFIDENCE
@@ -106,7 +106,7 @@ def _followed(
     # Chaos is left at a constant rate, and so is, once the first have had the time for it, the state of not being
     # certain of another attractor: what comes before that time says nothing.
     late = max((_capture_time(model, other, tuning) for other in others), default=0.0)
-    gone, when = label(model, others, starts, late + time)
+    gone, when, last = label_together(model, others, *arrays(starts), late + time)
     known = gone != UNDETERMINED
 
     # The radius of thin chaos may be smaller than the distances within it: by that it does not know its own states.
@@ -117,14 +117,13 @@ def _followed(
         for k, one in enumerate(attractors)
     ]
 
-    def nowhere(chosen: np.ndarray, at: float) -> np.ndarray:
-        """Return which of the chosen trajectories come from where they are at a time to nothing that is known."""
-        there = moved(model, [starts[k] for k in chosen], at) if len(chosen) else []
+    def nowhere(chosen: np.ndarray, there: list[Instant]) -> np.ndarray:
+        """Return which of the chosen trajectories come from where they are to nothing that is known."""
         return chosen[label(model, sets, there, settings.time_limit)[0] == UNDETERMINED]
 
     # A trajectory that reaches no known set has left at an unknown time; some had left already by then.
-    lost = nowhere(np.flatnonzero(~known), late + time)
-    early = nowhere(lost, late)
+    lost = nowhere(np.flatnonzero(~known), [instant_of(state) for state in last[~known]])
+    early = nowhere(lost, moved(model, [starts[k] for k in lost], late) if len(lost) else [])
     if count - np.count_nonzero(known & (when <= late)) - len(early) < tuning.fewest_left:
         # Chaos that is as short as that: captures are all that is seen.
         spent = np.where(known, when, late + time)

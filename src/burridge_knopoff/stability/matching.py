@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 from burridge_knopoff.orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.labels import UNDETERMINED
+from burridge_knopoff.stability.motion import REGULAR, MotionKind
 from burridge_knopoff.stability.nearness import distance
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 
@@ -109,7 +110,8 @@ def unchanged(
 ) -> dict[int, int]:
     """Return {key in `after`: key in `before`} of the sets that are one, and of one kind, symmetry and period."""
     found = matched(before, after, scale, tuning)
-    return {new: old for new, old in found.items() if _features(before[old]) == _features(after[new])}
+    longest = tuning.longest_followed
+    return {new: old for new, old in found.items() if _features(before[old], longest) == _features(after[new], longest)}
 
 
 def differing(
@@ -123,9 +125,12 @@ def differing(
     )
 
 
-def _features(outline: Outline) -> tuple[int, int, int]:
-    attractor = outline.attractor
-    return attractor.motion.kind, attractor.symmetry, attractor.motion.section_period
+def _features(outline: Outline, longest: float) -> tuple[int, int, int]:
+    """Return kind, symmetry and section points of a motion; one for a torus and all orbits longer than `longest`."""
+    attractor, motion = outline.attractor, outline.attractor.motion
+    if motion.kind in REGULAR and not motion.period <= longest:
+        return MotionKind.QUASIPERIODIC, 0, 0
+    return motion.kind, attractor.symmetry, motion.section_period
 
 
 def branches(

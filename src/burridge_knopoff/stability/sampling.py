@@ -40,6 +40,20 @@ def sampled_states(
     ]
 
 
+def most_states(width: float) -> int:
+    """Return how many states give any fraction a confidence interval of that half width."""
+    count = 0 if width >= 0.5 else math.ceil(0.5 / width)
+    while count and half_width(count // 2, count) > width:
+        count = math.ceil(1.01 * count)
+    return count
+
+
+def half_width(hits: int, count: int) -> float:
+    """Return half the width of the confidence interval of hits/count; 0.5 for no trials."""
+    _, low, high = fraction_interval(hits, count)
+    return 0.5 * (high - low) if count else 0.5
+
+
 @cache
 def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
     """Return the fraction hits/count and its Wilson confidence interval (low, high); NaN for no trials.

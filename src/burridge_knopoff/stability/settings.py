@@ -116,9 +116,12 @@ class SearchSettings:
         Whole(0, 1_000_000),
         "initial states drawn at each a, from which attractors are looked for, besides those that are given",
     ] = 200
-    fraction_samples: Annotated[
-        int, Whole(0, 10_000_000), "initial states drawn anew at each a, for the basin fractions"
-    ] = 5000
+    fraction_width: Annotated[
+        float,
+        Number(5e-4, 0.5),
+        "half the width of the 95 % interval of each basin fraction; states are drawn anew at each a until all have "
+        "it, 0.5 draws none",
+    ] = 0.02
     seed: Annotated[int, SEED, "seed of all random numbers of the search"] = 1
     position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
     velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
@@ -181,6 +184,11 @@ class Refine:
         "neighbouring values of a at which kind, period, symmetry or set of the attractors differ are at most this far "
         "apart; a step of the grid, or more, puts none in",
     ] = 1e-4
+    longest_period: Annotated[
+        float,
+        TIME,
+        "period up to which closed orbits are followed along a; whether a torus is locked to a longer one is no change",
+    ] = 500.0
 
     def __post_init__(self) -> None:
         check_fields(self)

@@ -123,10 +123,11 @@ def measure(
     transient : in which the perturbations turn into the directions of the exponents
 
     Where only the errors of the exponents leave open which kind it is, it may be locked to a closed orbit that attracts
-    too slowly for them to show it, which is looked for. If there is none the motion is measured in a longer window,
-    which shows smaller exponents: they are judged by thresholds smaller by the root of the ratio of the windows. Longer
-    orbits are looked for in that one; where there is none either, and perturbations have grown faster than on a torus,
-    the exponents are measured in the longest window, in which it is chaos if the largest is beyond its error.
+    too slowly for them to show it, which is looked for. If there is none, the growth of perturbations in a longer
+    window tells regular motion from chaos. Where that leaves it open, the motion is measured in one that is longer
+    still: it shows smaller exponents, which are judged by thresholds smaller by the root of the ratio of the windows.
+    Longer orbits are looked for in that one; where there is none either, and perturbations have grown faster than on a
+    torus, the exponents are measured in the longest window: it is chaos if the largest is beyond its error there.
 
     If the closed orbit has another ⟨J⟩, or the returns have moved on by the end of the longer window, the motion was on
     its way: its kind is left open, and `left_for` is set.
@@ -144,6 +145,10 @@ def measure(
         # The usual window is part of the longer one, in which ⟨J⟩ is that share of it at least: far from synchrony.
         far = found.mean_distance / tuning.longer_window > settings.synchronization_threshold
         scaled, known = settings.scaled(tuning.longer_window**-0.5), found.mean_distance if far else None
+        if far and tuning.growth_window:
+            grown = _told_by_growth(model, found, start, transient, tuning.growth_window * window, settings, tuning)
+            if grown is not None:
+                return grown
         longer = measure_once(model, start, transient, seen, scaled, tuning, known)
     if longer is not None:
         # The returns stay those of the usual window: their number decides how attractors are told apart.
@@ -165,6 +170,34 @@ def measure(
     if later is None or not _differ(found, later, model, settings, tuning):
         return found
     return replace(usual, left_for=last)
+
+
+def _told_by_growth(
+    model: Model,
+    found: SteadyMotion,
+    start: Instant,
+    transient: float,
+    window: float,
+    settings: MotionSettings,
+    tuning: Tuning,
+) -> SteadyMotion | None:
+    """Return a motion far from synchrony as what the growth of perturbations in a window shows it to be; None if open.
+
+    Two exponents are enough; the others stay those of the usual window.
+    """
+    seen = measure_once(model, start, transient, window, settings, tuning, found.mean_distance, exponents=2)
+    if seen is None or not seen.is_open:
+        return None
+    growth = seen.exponent[0] * window
+    exponent = np.concatenate([seen.exponent, found.exponent[2:]])
+    if growth >= tuning.chaotic_growth:
+        mean = judged_distance(found.mean_distance, model.chain.is_mirror_symmetric)
+        return replace(found, kind=chaotic_kind(mean, settings), exponent=exponent)
+    if growth > tuning.regular_growth * np.log1p(window / transient):
+        return None
+    if _has_drifted(found, seen, model, tuning):
+        return replace(found, left_for=seen.instant())
+    return replace(found, kind=MotionKind.QUASIPERIODIC, period=seen.period, exponent=exponent)
 
 
 def _has_drifted(found: SteadyMotion, longer: SteadyMotion, model: Model, tuning: Tuning) -> bool:
@@ -198,7 +231,7 @@ def _with_weak_chaos(
     return replace(motion, kind=chaotic_kind(mean, settings) if chaotic else motion.kind, exponent=exponent)
 
 
-def _options(transient: float, window: float, settings: MotionSettings) -> Settings:
+def _options(transient: float, window: float, settings: MotionSettings, exponents: int = EXPONENTS) -> Settings:
     """Return the settings of a run in which a motion is measured."""
     return Settings(
         transient=transient,
@@ -208,7 +241,7 @@ def _options(transient: float, window: float, settings: MotionSettings) -> Setti
         trajectory=0.0,
         event_window=window,
         section=settings.section,
-        lyapunov_exponents=EXPONENTS,
+        lyapunov_exponents=exponents,
         lyapunov_alignment=transient,
     )
 
@@ -228,13 +261,14 @@ def measure_once(
     settings: MotionSettings,
     tuning: Tuning,
     mean_distance: float | None = None,
+    exponents: int = EXPONENTS,
 ) -> SteadyMotion | None:
     """Do the work of `measure` in one window, by settings that are for the speed of the driver already.
 
-    mean_distance : what ⟨J⟩ is taken for instead of being measured
+    mean_distance : what ⟨J⟩ is taken for instead of being measured; exponents : how many are computed
     """
     known = mean_distance is not None
-    options = _options(transient, window, settings)
+    options = _options(transient, window, settings, exponents)
     trajectory = run(model, start, options, section_only=known, stops_only=True)
     mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":

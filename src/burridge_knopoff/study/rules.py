@@ -172,7 +172,6 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
     two_blocks = chains["two_blocks"]
     for key, numbers in (
         ("attractors.samples", 2 * blocks * attractors["samples"]),
-        ("attractors.fraction_samples", 2 * blocks * attractors["fraction_samples"]),
         ("basins.pixels", maps * basins["pixels"] ** 2),
         ("basins.tiles", 2 * blocks * rows * basins["pixels"]),
         ("basins.pairs", 2 * blocks * _STATES_OF_A_PAIR * basins["pairs"]),

@@ -149,10 +149,10 @@ def digest(dataset: xarray.Dataset) -> str:
             ends, means = span(f"{where[0]:g}", f"{where[-1]:g}"), span(f"{mean.min():.4f}", f"{mean.max():.4f}")
             lines.append(
                 f"{law}, {name}: at {len(where)} of {len(a)} values of a, {ends}; <J> {means}; {kinds}; "
-                f"{largest if dataset.attrs['fraction_samples'] else 'no states sampled for its basin'}"
+                f"{largest if one['sample_count'].any() else 'no states sampled for its basin'}"
             )
         undetermined = one["undetermined_count"].values
-        total = int(dataset.attrs["fraction_samples"]) * len(a)
+        total = int(one["sample_count"].sum())
         line = f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
         sliding = one["sliding_attracts"].values == 1
         for where, words in (

@@ -56,6 +56,7 @@ VARIABLES = {
     ),
     "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
     "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
+    "sample_count": Variable(("a",), "i4", "initial states drawn for the basin fractions"),
     "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit"),
     "sliding_attracts": _V(
         ("a",),
@@ -100,7 +101,7 @@ def one_law(
     """
     models = [found.models[k] for k in found.grid]
     values = slot_values(found, found.grid, settings.lifetime, "a")
-    values.update(_basins(found, settings.fraction_samples))
+    values.update(_basins(found))
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
     values.update(_reached(found, initial, settings.label_limit))
@@ -135,17 +136,22 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
     }
 
 
-def _basins(found: Continuation, samples: int) -> dict[str, np.ndarray]:
+def _basins(found: Continuation) -> dict[str, np.ndarray]:
     """Return how many of the drawn states reach each attractor, and their fraction with its interval."""
     values = empty(
-        VARIABLES, {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors))}, "basin", "undet"
+        VARIABLES,
+        {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors))},
+        "basin",
+        "undet",
+        "sample_count",
     )
     for k, (place, reached) in enumerate(zip(found.grid, found.samples, strict=True)):
+        values["sample_count"][k] = len(reached)
         values["undetermined_count"][k] = np.count_nonzero(reached == UNDETERMINED)
         for slot, index in enumerate(branch_order(found, place)):
             hits = int(np.count_nonzero(reached == index))
             values["basin_count"][k, slot] = hits
-            interval = fraction_interval(hits, samples)
+            interval = fraction_interval(hits, len(reached))
             for name, value in zip(("", "_low", "_high"), interval, strict=True):
                 values[f"basin_fraction{name}"][k, slot] = value
     return values

@@ -15,9 +15,6 @@ from burridge_knopoff.stability.motion import REGULAR, MotionKind
 if TYPE_CHECKING:
     import xarray
 
-# Share by which the period of a closed orbit differs between two neighbouring values of a at most.
-SAME_PERIOD = 0.01
-
 
 class Change(IntEnum):
     """What a branch of attractors does at an edge, numbered as in netCDF files.
@@ -55,10 +52,10 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
 
     attractors, refined : those of one law at the values of the grid, and at all
 
-    A change is one of the kind of motion, of mirror symmetry, or of the number of section points of periodic motion; a
-    closed orbit whose period passes `longest_period` has not changed. Of a mirror pair one is looked at. The first and
-    the last value of a are no ends. Between values of the grid a branch that does not change is not looked for; so it
-    has ended only where it is absent from the grid.
+    A change is one of the kind of motion, of mirror symmetry, or of the number of section points of periodic motion;
+    but a torus and the orbits longer than `Refine.longest_period` to which it is locked are one motion. Of a mirror
+    pair one is looked at. The first and the last value of a are no ends. Between values of the grid a branch that does
+    not change is not looked for; so it has ended only where it is absent from the grid.
     """
     slots = slots_of_branches(refined)
     grid = np.flatnonzero(refined["in_grid"].values[: len(slots)] == 1)
@@ -107,13 +104,18 @@ def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
 def _differ(refined: xarray.Dataset, *places: tuple[int, int]) -> bool:
     """Tell whether the motions at two values of a and slots are no longer the same."""
     before, after = (_features(refined, *place) for place in places)
-    periods = np.array([refined["period"].values[place] for place in places])
-    one_orbit = np.isfinite(periods).all() and np.ptp(periods) <= SAME_PERIOD * periods.max()
-    regular = {before[0], after[0]} == {*REGULAR} and before[1] == after[1]
-    return before != after and not (regular and one_orbit)
+    return before != after
 
 
 def _features(refined: xarray.Dataset, k: int, slot: int) -> tuple[int, ...]:
     kind, symmetry = (int(refined[name].values[k, slot]) for name in ("kind", "symmetry"))
+    if kind in REGULAR and not is_followed(refined, k, slot):
+        return int(MotionKind.QUASIPERIODIC), 0, 0
     period = int(refined["section_period"].values[k, slot]) if kind == MotionKind.PERIODIC else 0
     return kind, symmetry, period
+
+
+def is_followed(refined: xarray.Dataset, k: int, slot: int) -> bool:
+    """Tell whether a motion is a closed orbit that is short enough to be followed along a."""
+    closed = refined["kind"].values[k, slot] in (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
+    return bool(closed and refined["period"].values[k, slot] <= refined.attrs["refine_longest_period"])

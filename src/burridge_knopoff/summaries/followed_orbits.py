@@ -20,9 +20,8 @@ from burridge_knopoff.orbits.periodic import PeriodicOrbit
 from burridge_knopoff.orbits.stretch import Half, Stretch, half
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.closed_motion import closed_motion
-from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.returns import instant_of
-from burridge_knopoff.summaries.branch_changes import BranchChange
+from burridge_knopoff.summaries.branch_changes import BranchChange, is_followed
 
 #: How closed orbits are followed, and how many unstable ones beyond an edge, for the figure.
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
@@ -104,9 +103,10 @@ def followed(
 
 
 def _places(one: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]:
-    """Return where the attractors of one law are closed orbits: on the grid of a, and beside changes."""
-    branch, side, kind = (one[name].values for name in ("branch", "side", "kind"))
-    closed = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)) & (branch >= 0) & (side >= 0)
+    """Return where the attractors of one law are closed orbits to be followed: on the grid of a, and beside changes."""
+    branch, side = (one[name].values for name in ("branch", "side"))
+    closed = np.array([[is_followed(one, *at) for at in np.ndindex(branch.shape)]]).reshape(branch.shape)
+    closed &= (branch >= 0) & (side >= 0)
     wanted = np.repeat(one["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
     for change in changes:
         for k, slot in ((change.low, change.before), (change.high, change.after)):

@@ -46,6 +46,7 @@ def one_law(
     values["in_grid"] = np.isin(np.arange(count), found.grid)
     model = found.models[0]
     about = {**attractors.search_attributes(model, settings, motion, start), "refine_resolution": refine.resolution}
+    about["refine_longest_period"] = refine.longest_period
     title = f"Attractors at refined values of a, {model.law.name} friction law"
     return summary(title, VARIABLES, values, slot_coordinates(model.blocks), about, module=__name__)
 

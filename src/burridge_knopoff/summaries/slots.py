@@ -17,7 +17,7 @@ from burridge_knopoff.stability.steady import EXPONENTS
 NOTHING = {"comment": "-1 where there is none or it is undetermined"}
 
 # What is 0, not −1, in an empty slot.
-_COUNTS = ("side", "initial_side", "section_period", "basin_count", "undetermined_count", "in_grid")
+_COUNTS = ("side", "initial_side", "section_period", "basin_count", "sample_count", "undetermined_count", "in_grid")
 
 #: What a branch is called, over all numbers of branches of a file.
 NAMES = {
