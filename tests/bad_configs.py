@@ -1,4 +1,4 @@
-"""Configs that are not allowed, as they would stand in a file, and what the one line says: key, value, what is allowed.
+"""Bad configs, as they would stand in a file, and what the one line says: `key: got X, expected Y`.
 
 tests/study/bad_changes.py has more of them, as changes to a good one.
 """
@@ -13,12 +13,12 @@ BLOCKS = "[{}]".format(", ".join(["0.1"] * 1025))
 # name of the case: (content of the file, words of the line)
 BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # The file.
-    "empty": ("", ["nothing is not allowed as a config", "keys with values"]),
-    "comment": ("# nothing yet\n", ["nothing is not allowed"]),
-    "null": ("null\n", ["nothing is not allowed"]),
-    "text": ("hello world\n", ["'hello world' is not allowed as a config"]),
-    "number": ("3\n", ["3 is not allowed as a config"]),
-    "list": ("- study\n- a\n", ["['study', 'a'] is not allowed as a config"]),
+    "empty": ("", ["got nothing, expected keys with values"]),
+    "comment": ("# nothing yet\n", ["got nothing, expected"]),
+    "null": ("null\n", ["got nothing, expected"]),
+    "text": ("hello world\n", ["got 'hello world', expected keys"]),
+    "number": ("3\n", ["got 3, expected keys"]),
+    "list": ("- study\n- a\n", ["got ['study', 'a'], expected keys"]),
     "documents": (f"{GOOD}---\n{GOOD}", ["not YAML (line 4)", "another document"]),
     "binary": (b"\x00\x01\xff\xfe\x80\x81", ["cannot be read: not UTF-8 text"]),
     "latin1": (GOOD.encode() + "# é".encode("latin1"), ["not UTF-8 text"]),
@@ -37,7 +37,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "object": (f"{GOOD}v: !!python/object/apply:os.system ['touch made']\n", ["not YAML (line 4)", "python/object"]),
     "tag": (f"{GOOD}v: !speed 0.1\n", ["not YAML (line 4)", "!speed"]),
     "alias": (f"{GOOD}v: *speed\n", ["not YAML (line 4)", "alias"]),
-    "set": (f"study: x\na: !!set {{0.1, 0.2}}\n{STATES}", ["0.1 (line 2) is not allowed as a key"]),
+    "set": (f"study: x\na: !!set {{0.1, 0.2}}\n{STATES}", ["got 0.1 (line 2) as a key"]),
     "pairs": (f"study: x\n{GRID}initial: !!omap [minus: {{}}]\n", ["initial: [('minus', {})]", "named entries"]),
     "bytes": (f"study: !!binary aGVsbG8=\n{GRID}{STATES}", ["study: b'hello'"]),
     "date": (f"{GOOD}v: 2020-01-01\n", ["v: datetime.date(2020, 1, 1)", "a number"]),
@@ -57,9 +57,9 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "key_of_two_lines": (f'{GOOD}"a\\nb": 1\n', ["'a\\nb': unknown key"]),
     "key_with_space": (f'{GOOD}"window ": 1\n', ["'window ': unknown key"]),
     "long_key": (f"{GOOD}{'k' * 900}: 1\n", ["kkk", "unknown key"]),
-    "number_as_key": (f"{GOOD}7: 1\n", ["7 (line 4) is not allowed as a key"]),
-    "yes_as_key": (f"study: x\n{GRID}initial: {{on: {{}}}}\n", ["on (line 3) is not allowed as a key"]),
-    "list_as_key": (f"{GOOD}? [a, b]\n: 1\n", ["(line 4) is not allowed as a key"]),
+    "number_as_key": (f"{GOOD}7: 1\n", ["got 7 (line 4) as a key"]),
+    "yes_as_key": (f"study: x\n{GRID}initial: {{on: {{}}}}\n", ["got on (line 3) as a key"]),
+    "list_as_key": (f"{GOOD}? [a, b]\n: 1\n", ["(line 4) as a key, expected text"]),
     "missing": (f"{GRID}{STATES}", ["study: missing"]),
     # Names.
     "slash": (f"study: a/b\n{GRID}{STATES}", ["study: 'a/b'", "letters, digits"]),
@@ -80,10 +80,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "sixties": (f"{GOOD}window: 1:30\n", ["window: '1:30'", "a number"]),
     "underline": (f"{GOOD}window: 7_000\n", ["window: '7_000'", "a number"]),
     "not_a_number": (f"{GOOD}v: .nan\n", ["v: nan", "a number"]),
-    "infinite": (f"{GOOD}window: .inf\n", ["window: inf", "≤ 1e+09"]),
-    "overflow": (f"{GOOD}window: 1.0e+400\n", ["window: inf", "≤ 1e+09"]),
-    "huge": (f"{GOOD}window: 1.0e+12\n", ["window: 1000000000000.0", "≤ 1e+09"]),
-    "negative": (f"{GOOD}transient: -3000\n", ["transient: -3000", "> 0"]),
+    "infinite": (f"{GOOD}window: .inf\n", ["window: inf", " 1e+09"]),
+    "overflow": (f"{GOOD}window: 1.0e+400\n", ["window: inf", " 1e+09"]),
+    "huge": (f"{GOOD}window: 1.0e+12\n", ["window: 1000000000000.0", " 1e+09"]),
+    "negative": (f"{GOOD}transient: -3000\n", ["transient: -3000", "above 0"]),
     "text_for_number": (f"{GOOD}step: '1e-4'\n", ["step: '1e-4'", "a number"]),
     "comma": (f"{GOOD}step: 0,001\n", ["step: '0,001'", "a number"]),
     "yes_for_number": (f"{GOOD}v: yes\n", ["v: True", "a number"]),
@@ -91,11 +91,11 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "half_batch": (f"{GOOD}batches: 2.5\n", ["batches: 2.5", "a whole number"]),
     # Grids.
     "no_values": (f"study: x\na: []\n{STATES}", ["a: []", "at least 1"]),
-    "large_a": (f"study: x\na: [0.1, 101]\n{STATES}", ["a[1]: 101", "≤ 100"]),
-    "value_twice": (f"study: x\na: [0.1, {{from: 0, to: 0.2, step: 0.1}}]\n{STATES}", ["a: 0.1 is listed twice"]),
+    "large_a": (f"study: x\na: [0.1, 101]\n{STATES}", ["a[1]: 101", " 100"]),
+    "value_twice": (f"study: x\na: [0.1, {{from: 0, to: 0.2, step: 0.1}}]\n{STATES}", ["a: 0.1 twice"]),
     "one_name": (
         f"study: x\na: [0.1, 0.10001]\n{STATES}",
-        ["a: 0.1 and 0.10001 share the file name a0.1000.nc", "a_digits"],
+        ["a: got 0.1 and 0.10001, which share the file name a0.1000.nc", "a_digits"],
     ),
     "crooked": (f"study: x\na: [{{from: 0, to: 1, step: 0.3}}]\n{STATES}", ["a[0].step: 0.3", "divide"]),
     "falling": (f"study: x\na: [{{from: 1, to: 0, step: 0.1}}]\n{STATES}", ["a[0].to: 0", "at least from"]),
@@ -108,9 +108,9 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # Laws and chains.
     "unknown_law": (
         f"{GOOD}laws: {{cubic: {{}}}}\n",
-        ["laws.cubic: 'cubic' is not allowed", f"{' | '.join(LAWS)}, or a formula"],
+        ["laws.cubic: got 'cubic', expected", f"{' | '.join(LAWS)}, or a formula"],
     ),
-    "unknown_kind": (f"{GOOD}laws: {{mine: {{law: cubic}}}}\n", ["laws.mine.law: 'cubic' is not allowed", *LAWS]),
+    "unknown_kind": (f"{GOOD}laws: {{mine: {{law: cubic}}}}\n", ["laws.mine.law: got 'cubic', expected", *LAWS]),
     "unknown_number": (
         f"{GOOD}laws: {{stribeck: {{sigm: 0.1}}}}\n",
         ["laws.stribeck.sigm: not a number", "sigma | eta"],
@@ -123,21 +123,24 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         f"{GOOD}laws: {{stribeck: {{sigma: small}}}}\n",
         ["laws.stribeck.sigma: 'small'", "a finite number"],
     ),
-    "formula_syntax": (f"{GOOD}laws: {{m: {{formula: 1 -}}}}\n", ["laws.m: '1 -' is not allowed", "not a formula"]),
-    "formula_number": (f"{GOOD}laws: {{m: {{formula: 1}}}}\n", ["laws.m.formula: 1 is not allowed: text"]),
+    "formula_syntax": (
+        f"{GOOD}laws: {{m: {{formula: 1 -}}}}\n",
+        ["laws.m: got '1 -' at a = 0.1, expected", "not a formula"],
+    ),
+    "formula_number": (f"{GOOD}laws: {{m: {{formula: 1}}}}\n", ["laws.m.formula: got 1, expected text"]),
     "formula_name": (f"{GOOD}laws: {{m: {{formula: 1 - b*u}}}}\n", ["laws.m: ", "b: unknown name"]),
     "formula_unused": (f"{GOOD}laws: {{m: {{formula: 1 - a*u, b: 2}}}}\n", ["laws.m.b: not in the formula"]),
     "formula_law": (
         f"{GOOD}laws: {{m: {{formula: 1 - a*u, law: linearized}}}}\n",
-        ["laws.m.law: not allowed beside formula"],
+        ["laws.m: got law and formula, expected one"],
     ),
-    "formula_call": (f"{GOOD}laws: {{m: {{formula: open(u)}}}}\n", ["laws.m: 'open(u)'", "not allowed in a formula"]),
+    "formula_call": (f"{GOOD}laws: {{m: {{formula: open(u)}}}}\n", ["laws.m: got 'open(u)'", "expected"]),
     "formula_lines": (f'{GOOD}laws: {{m: {{formula: "1 - a*(u\\n)"}}}}\n', ["laws.m: ", "not a formula"]),
     "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "at u = 0 it is 1.1"]),
     "formula_none": (f"{GOOD}laws: {{m: {{formula: a*u}}}}\n", ["laws.m: ", "at u = 0 it is 0"]),
     "formula_pole_for_two_blocks": (
         f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\n",
-        ["chains.two_blocks.a: 0.34 is not allowed", "laws.m: ", "at a = 0.34", "not analytic"],
+        ["chains.two_blocks.a: got 0.34, at which ", "laws.m: ", "at a = 0.34", "not analytic"],
     ),
     "formula_pole": (f"{GOOD}laws: {{m: {{formula: 1/(1 - a*u)}}}}\n", ["laws.m: ", "at a = 0.1", "not analytic"]),
     "formula_at_one_a": (
@@ -146,18 +149,18 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "law_speed": (
         f"{GOOD}laws: {{m: {{formula: log(3 - a*u)/log(3)}}}}\nv: 40\n",
-        ["laws.m: ", "v: 40.0 is not allowed: the law m", "not analytic"][1:],
+        ["v: got 40.0, expected one up to ten times which the law m is analytic"],
     ),
     "springs": (f"{GOOD}chain: {{coupling: [1, 2, 3]}}\n", ["chain.coupling: 3 numbers for 2 springs"]),
     "ring_springs": (f"{GOOD}chain: {{coupling: [1, 2], ends: ring}}\n", ["chain.coupling: 2 numbers for 3 springs"]),
     "pulls": (f"{GOOD}chain: {{pulling: [1, 2]}}\n", ["chain.pulling: 2 numbers for 3 blocks"]),
     "pull_word": (f"{GOOD}chain: {{pulling: all}}\n", ["chain.pulling: 'all'", "neighbours"]),
     "thresholds": (f"{GOOD}chain: {{threshold: [1]}}\n", ["chain.threshold: 1 numbers for 3 blocks"]),
-    "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: 0 is not allowed: a number ≥ 1e-06"]),
+    "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: got 0, expected a number between 1e-06 and 1e+06"]),
     "spring_text": (f"{GOOD}chain: {{coupling: [1, stiff]}}\n", ["chain.coupling[1]: 'stiff'", "a number"]),
     "spring_word": (
         f"{GOOD}chain: {{coupling: stiff}}\n",
-        ["chain.coupling: 'stiff'", "a number ≥ 1e-06 and ≤ 1e+06 or a list"],
+        ["chain.coupling: 'stiff'", "a number between 1e-06 and 1e+06 or a list"],
     ),
     "ends": (f"{GOOD}chain: {{ends: closed}}\n", ["chain.ends: 'closed'", "open | ring"]),
     "chain_key": (f"{GOOD}chain: {{blocks: 3}}\n", ["chain.blocks: unknown key", "coupling"]),
@@ -167,16 +170,19 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # States, and what does not fit together.
     "unknown_state": (
         f"study: x\n{GRID}initial: {{middle: {{}}}}\n",
-        ["initial.middle: unknown initial state", "minus | plus"],
+        ["initial.middle: got no position and velocity", "minus | plus"],
     ),
-    "no_velocity": (f"study: x\n{GRID}initial: {{m: {{position: [0, 0]}}}}\n", ["initial.m.velocity: missing"]),
+    "no_velocity": (
+        f"study: x\n{GRID}initial: {{m: {{position: [0, 0]}}}}\n",
+        ["initial.m.velocity: got none, expected"],
+    ),
     "many_blocks": (
         f"study: x\n{GRID}initial: {{m: {{position: {BLOCKS}, velocity: {BLOCKS}}}}}\n",
         ["initial.m.position: [0.1,", "at most 1024"],
     ),
     "two_lengths": (
         f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, 0]}}, plus: {{}}}}\n",
-        ["initial: all states of a study", "m: 2, plus: 3"],
+        ["initial: got different numbers of positions", "m: 2, plus: 3"],
     ),
     "backward": (
         f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, -0.1]}}}}\n",

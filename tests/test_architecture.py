@@ -22,17 +22,17 @@ def floors():
 
 
 def imports(path):
-    """Return the rooms that a file imports from, leaving out what only a type checker reads."""
-    tree = ast.parse(path.read_text())
-    checked = [node for node in ast.walk(tree) if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)]
-    skipped = {id(inner) for node in checked for inner in ast.walk(node)}
+    """Return the rooms that a file imports from, for types too, or by a name in a text."""
     rooms = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module and id(node) not in skipped:
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = []
+        if isinstance(node, ast.ImportFrom) and node.module:
             module = node.module.removeprefix("cython.cimports.")
-            if module.startswith("burridge_knopoff."):
-                rooms.add(module.split(".")[1])
-    return rooms
+            names = [f"{module}.{alias.name}" for alias in node.names] if module == "burridge_knopoff" else [module]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            names = re.findall(r"^burridge_knopoff(?:\.\w+)+$", node.value)
+        rooms |= {name.split(".")[1] for name in names if name.startswith("burridge_knopoff.")}
+    return rooms & ROOMS
 
 
 def room_of(path):

@@ -60,7 +60,9 @@ def whole(tmp_path_factory):
             state, settings = study.state(initial), study.settings(law, solver)
             write_point(run(study.model(law, grid.a[a]), state, settings), path)
     write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
-    write_study_record(results, study, config_file, read_yaml(config_file), "--configfile small.yaml", {})
+    write_study_record(
+        results, study.config, study.grid, config_file, read_yaml(config_file), "--configfile small.yaml", {}
+    )
     return results
 
 
@@ -334,7 +336,7 @@ def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     assert main(["check", str(results)]) == 1
     file.write_text(given)
     study = load_study(read_yaml(file), "small.yaml")
-    write_study_record(results, study, "small.yaml", read_yaml(file), "--configfile small.yaml", {})
+    write_study_record(results, study.config, study.grid, "small.yaml", read_yaml(file), "--configfile small.yaml", {})
     capsys.readouterr()
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out

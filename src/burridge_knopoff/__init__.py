@@ -5,7 +5,7 @@ The library is what is imported from here; `help` of each name has its shapes, u
 The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built in, `FormulaLaw` for one of one's own);
 an `InitialState` to begin from, an `Instant` on the way.
 
-Runs: `simulate` makes a `Trajectory` by `Settings`, seen on a `Section`; `sweep` makes many of them along a;
+Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them along a;
 `open_study` reads those of a study.
 
 Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
@@ -25,7 +25,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-__version__ = "0.1.0"
+from burridge_knopoff.version import __version__ as __version__
+
 __all__ = [
     "Attractor",
     "BranchOrbit",
@@ -44,6 +45,7 @@ __all__ = [
     "Orbit",
     "OrbitError",
     "PeriodicOrbit",
+    "Run",
     "SearchSettings",
     "Section",
     "Settings",
@@ -72,6 +74,7 @@ if TYPE_CHECKING:
     from burridge_knopoff.library.basin_map import basin_map
     from burridge_knopoff.library.find_attractors import find_attractors
     from burridge_knopoff.library.open_study import open_study
+    from burridge_knopoff.library.run import Run
     from burridge_knopoff.library.simulate import simulate
     from burridge_knopoff.library.sweep import sweep
     from burridge_knopoff.model.chain import Chain
@@ -120,6 +123,7 @@ _HOME = {
     "Settings": "running.settings",
     "SteadyMotion": "stability.steady",
     "Symmetry": "orbits.symmetry",
+    "Run": "library.run",
     "Trajectory": "running.trajectory",
     "basin_map": "library.basin_map",
     "closed_motion": "stability.closed_motion",

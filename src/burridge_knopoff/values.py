@@ -1,4 +1,4 @@
-"""Values that are given: which of them are numbers, and the one line that refuses what is not allowed."""
+"""Input checks: which values are numbers, and the one line that refuses a value."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
 
 
 def refusal(key: str, value: Any, allowed: object) -> ValueError:
-    """Return the error of a value that is not allowed: key, value, what is."""
-    return ValueError(f"{key}{': ' if key else ''}{shown(value)} is not allowed: {allowed}")
+    """Return the error of a refused value: `key: got X, expected Y`."""
+    return ValueError(f"{key}{': ' if key else ''}got {shown(value)}, expected {allowed}")
 
 
 def cut(text: str, longest: int = LONGEST) -> str:

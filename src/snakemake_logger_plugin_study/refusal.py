@@ -69,7 +69,7 @@ def several_files(paths: Sequence[str | Path]) -> str:
     """Return what is said where --configfile has more than one file: Snakemake takes targets after it for files."""
     first, second = map(display_path, paths[:2])
     return (
-        f"--configfile: {second} is not allowed as a second file: one file is one study; "
+        f"--configfile: got {second} as a second file, expected one file: one file is one study; "
         f"a target stands before it, as in snakemake {second} --configfile {first}"
     )
 
@@ -94,6 +94,6 @@ def checked_cores(arguments: Sequence[str]) -> int:
         if not (equals and _NAME.fullmatch(name)):
             short = f"; {name} has its place in the config file" if len(name) == 1 else ""
             raise ConfigError(
-                f"--config: {shown(entry)} is not allowed: key=value, the key of two letters or more{short}"
+                f"--config: got {shown(entry)}, expected key=value, the key of two letters or more{short}"
             )
     return int(options.cores) if options.cores.isdecimal() else 0

@@ -27,7 +27,8 @@ def folder(tmp_path_factory):
     results = folder / "results" / "paper"
     given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
     given |= {"transient": 10, "window": 20, "batches": 2}
-    write_study_record(results, run_study(results, given).study, folder / "paper.yaml", given, "", {})
+    study = run_study(results, given).study
+    write_study_record(results, study.config, study.grid, folder / "paper.yaml", given, "", {})
     return folder
 
 

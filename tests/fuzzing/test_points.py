@@ -9,8 +9,8 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.summaries.points import read_run

@@ -57,5 +57,5 @@ def test_a_mirror_image_that_is_no_friction_is_refused():
 
 
 def test_laws_at_different_a_are_not_blended():
-    with pytest.raises(ValueError, match=r"a: 0\.3 is not allowed: that of the first law, 0\.2"):
+    with pytest.raises(ValueError, match=r"a: got 0\.3, expected that of the first law, 0\.2"):
         blend(law_of("linearized", 0.2), law_of("nonlinear", 0.3), 0.5)

@@ -56,7 +56,7 @@ def test_labels_are_those_of_whole_runs():
     ],
 )
 def test_bad_input_is_refused_in_one_line(options, words):
-    with refused(words, match="not allowed|not known|not a setting"):
+    with refused(words, match="expected|not known|not a setting"):
         basin_map(**{"law": "linearized", "a": 0.08, "pixels": 2, "samples": 3, **options})
 
 

@@ -125,11 +125,11 @@ def test_as_v_falls_to_0_the_law_is_the_linearized_one():
 @pytest.mark.parametrize(
     ("speed", "time", "message"),
     [
-        (arb(0, 1000), arb(1), "1 \\+ aU' = .*: not allowed: above 0"),
-        (arb("nan"), arb(1), "not allowed|no box"),
-        (arb(0), arb(1000), "time .*: not allowed: from 0 to 100"),
-        (arb(0), arb("nan"), "time nan: not allowed: from 0 to 100"),
-        (arb(0), arb(-1), "time -1.*: not allowed: from 0 to 100"),
+        (arb(0, 1000), arb(1), "1 \\+ aU': got .*, expected above 0"),
+        (arb("nan"), arb(1), "expected|no box"),
+        (arb(0), arb(1000), "time: got .*, expected 0 to 100"),
+        (arb(0), arb("nan"), "time: got nan, expected 0 to 100"),
+        (arb(0), arb(-1), "time: got -1.*, expected 0 to 100"),
     ],
 )
 def test_what_has_no_bound_is_refused(speed, time, message):
@@ -140,7 +140,7 @@ def test_what_has_no_bound_is_refused(speed, time, message):
 def test_a_step_that_no_box_holds_is_refused(monkeypatch):
     """Picard's operator over so long a time maps no box into itself."""
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
-    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known|1 \+ aU' = .*: not allowed"):
+    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known|1 \+ aU': got"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb(1))
     # Wide enough at the first try, and still not to be believed: what is mapped lies beyond it.
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 4))

@@ -33,7 +33,7 @@ def test_an_edited_or_a_moved_config_keeps_its_folder(tmp_path, monkeypatch, con
 def test_another_config_of_the_same_name_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     recorded(tmp_path)
-    with pytest.raises(ValueError, match="study: '.*' is not allowed") as error:
+    with pytest.raises(ValueError, match="study: got '.*', expected") as error:
         check_owner(tmp_path, "other.yaml", {"study": "mine", "a": [0.1], "window": 9})
     message = str(error.value)
     assert "\n" not in message

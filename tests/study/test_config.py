@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.provenance.command import difference
+from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.study.study import all_points, load_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from tests.bad_configs import BAD_FILES
@@ -39,7 +39,9 @@ def test_what_is_no_number_of_its_range_gets_one_line(key):
     """It names the value, the kind of number and both ends."""
     low, high = RANGE_OF[key]
     whole, least = low.isdigit(), float(low.strip(">"))
-    ends = [f"≥ {low} and ≤ {high:.0f}"] if whole else [f"{'>' if '>' in low else '≥'} {least:g}", f"≤ {high:g}"]
+    above = ">" in low
+    first, last = (low, f"{high:.0f}") if whole else (f"{least:g}", f"{high:g}")
+    ends = f"above {first} and at most {last}" if above else f"between {first} and {last}"
     if whole:
         wrong = [int(least) - 1, int(high) + 1, 2.5, 7.0]
     else:
@@ -48,7 +50,7 @@ def test_what_is_no_number_of_its_range_gets_one_line(key):
     *sections, name = key.split(".")
     for value in (*wrong, math.nan, math.inf, True, "1e-6", "long"):
         changes = reduce(lambda inside, section: {section: inside}, reversed(sections), {name: value})
-        words = f"config/test.yaml: {key}: {value!r} is not allowed: a {'whole ' * whole}number ", *ends
+        words = f"config/test.yaml: {key}: got {value!r}, expected a {'whole ' * whole}number ", ends
         with refused(*words, error=ConfigError):
             load(**changes)
 

@@ -77,19 +77,19 @@ CONFIG = ["--configfile", "study.yaml"]
 LINES = {
     "target_behind_configfile": (
         [*CONFIG, "points"],
-        ["--configfile: points is not allowed as a second", "a target stands before"],
+        ["--configfile: got points as a second", "a target stands before"],
     ),
-    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: study.yaml is not allowed as a second"]),
-    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: study.yaml is not allowed as a second"]),
+    "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: got study.yaml as a second"]),
+    "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: got study.yaml as a second"]),
     "missing": (["--configfile", "missing.yaml"], ["missing.yaml: cannot be read: No such file"]),
     "folder": (["--configfile", "."], ["cannot be read: it is not a regular file"]),
     "device": (["--configfile", "/dev/zero"], ["/dev/zero: cannot be read: it is not a regular file"]),
     "space": (["--configfile", "my study.yaml"], ["my study.yaml: cannot be read"]),
     "umlaut": (["--configfile", "Größe.yaml"], ["Größe.yaml: cannot be read"]),
     "long": (["--configfile", "x" * 300], ["xxx: cannot be read: File name too long"]),
-    "no_value": ([*CONFIG, "--config", "window"], ["--config: 'window' is not allowed: key=value"]),
-    "no_key": ([*CONFIG, "--config", "=7000"], ["--config: '=7000' is not allowed"]),
-    "short_key": ([*CONFIG, "--config", "a=0.1"], ["--config: 'a=0.1' is not allowed", "two letters"]),
+    "no_value": ([*CONFIG, "--config", "window"], ["--config: got 'window', expected key=value"]),
+    "no_key": ([*CONFIG, "--config", "=7000"], ["--config: got '=7000', expected"]),
+    "short_key": ([*CONFIG, "--config", "a=0.1"], ["--config: got 'a=0.1', expected", "two letters"]),
     "unknown_key": ([*CONFIG, "--config", "windows=7000"], ["--config: windows: unknown key"]),
     "bad_value": ([*CONFIG, "--config", "window=long"], ["--config: window: 'long'", "a number"]),
     "not_finite": ([*CONFIG, "--config", "window=nan"], ["window: nan", "a number"]),
@@ -132,9 +132,9 @@ def test_a_folder_of_results_belongs_to_its_config(tmp_path):
         write_text(results / "study.json", json.dumps({**record, "config_file": owner}))
         run = study.run("-n", f"{POINTS}/plus/a0.0800.nc")
         assert run.returncode == code
-        assert (
-            "study.yaml: study: 'tiny' is not allowed: results/tiny has the results of other.yaml" in run.stderr
-        ) is (code == 1)
+        assert ("study.yaml: study: got 'tiny', expected results/tiny has the results of other.yaml" in run.stderr) is (
+            code == 1
+        )
         assert [path.name for path in results.rglob("*")] == ["study.json"]
 
 

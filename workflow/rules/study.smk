@@ -100,7 +100,8 @@ def record_study():
     """Record in the folder of results what the study is, if there are any or some are to be made."""
     write_study_record(
         RESULTS,
-        STUDY,
+        STUDY.config,
+        STUDY.grid,
         CONFIG_FILE,
         WRITTEN,
         shlex.join(ARGUMENTS),
@@ -232,7 +233,7 @@ def other_length_config(laws=STUDY.laws):
     key = STUDY.single_length_key
     if key:
         raise ConfigError(
-            f"chain.{key}: {STUDY.config['chain'][key]} is not allowed for chains of another length: one number"
+            f"chain.{key}: got {STUDY.config['chain'][key]}, expected one number for chains of another length"
         )
     return model_config(laws)
 

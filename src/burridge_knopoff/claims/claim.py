@@ -163,7 +163,7 @@ def _claim(name: str, item: Mapping[str, Any]) -> Claim:
         parameters[key] = _parameter(key, parameters[key], kind, f"{place}.{key}")
     for state in np.atleast_1d(parameters.get("initial", [])):
         if state not in PAPER_STATES:
-            raise ValueError(f"{place}.initial: {state!s} is not allowed: {' | '.join(PAPER_STATES)}")
+            raise ValueError(f"{place}.initial: got {state!s}, expected {' | '.join(PAPER_STATES)}")
     if parameters.get("loose", np.inf) < parameters.get("tolerance", 0.0):
         raise refusal(f"{place}.loose", parameters["loose"], "at least tolerance")
     statement, where = (" ".join(item[key].split()) for key in ("statement", "place"))

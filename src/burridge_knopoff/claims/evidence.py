@@ -178,7 +178,7 @@ class Evidence:
         middle = 0.5 * (low + high)
         critical, error = self.critical_a(law)
         if abs(critical - middle) > error + COMPUTED_WITHIN:
-            raise ValueError(f"orbits.nc: critical_a: {critical!r} is not allowed: proof.nc has {low!r} to {high!r}")
+            raise ValueError(f"orbits.nc: critical_a: got {critical!r}, expected {low!r} to {high!r} by proof.nc")
         # Rounded or not, the middle lies between the two, as a_c does.
         return middle, high - low
 

@@ -16,7 +16,7 @@ from types import ModuleType
 # One run is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from burridge_knopoff import __version__
+from burridge_knopoff.version import __version__
 
 DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model)."
 

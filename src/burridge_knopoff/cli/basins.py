@@ -54,7 +54,9 @@ def run(options: argparse.Namespace) -> int:
 
     out, attractors_out = options.out, options.attractors_out
     if out and attractors_out and os.path.realpath(out) == os.path.realpath(attractors_out):
-        raise ValueError(f"--attractors-out: {shown(attractors_out)} is not allowed: --out writes the map there")
+        raise ValueError(
+            f"--attractors-out: got {shown(attractors_out)}, expected another file: --out writes the map there"
+        )
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)
     plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}

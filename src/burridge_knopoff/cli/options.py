@@ -18,8 +18,8 @@ from burridge_knopoff.model.fields import REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, Whole
-from burridge_knopoff.provenance.command import CHAIN_OPTIONS
 from burridge_knopoff.provenance.files import check_target
+from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.values import shown
 
 _T = TypeVar("_T")
@@ -35,7 +35,7 @@ def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Calla
         with contextlib.suppress(ValueError):
             if re.fullmatch(pattern, text):
                 return read(text)
-        raise argparse.ArgumentTypeError(f"{shown(text)} is not allowed: {words}")
+        raise argparse.ArgumentTypeError(f"got {shown(text)}, expected {words}")
 
     return value
 
@@ -184,7 +184,7 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
         name, given = OWN, (given[0] or usual.position, given[1] or usual.velocity)
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
-            f"initial: {shown(name)} is not allowed with other numbers than the paper's: another name, or none"
+            f"initial: got {shown(name)} with other numbers than the paper's, expected another name, or none"
         )
     return initial_state(name, *given)
 

@@ -22,9 +22,9 @@ from burridge_knopoff.dataset.variables import (
     fill,
     flag,
 )
-from burridge_knopoff.provenance.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.provenance.seal import write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
+from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
 

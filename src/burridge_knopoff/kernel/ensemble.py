@@ -185,7 +185,7 @@ class Ensemble:
         """Run all trajectories, with what is known of each at its end in these arrays."""
         if not np.shape(position) == np.shape(velocity) == np.shape(stuck) == (len(position), self.blocks):
             shapes = ", ".join(str(np.shape(values)) for values in (position, velocity, stuck))
-            raise ValueError(f"position, velocity, stuck: shapes {shapes} are not allowed: each (n, {self.blocks})")
+            raise ValueError(f"position, velocity, stuck: got shapes {shapes}, expected (n, {self.blocks}) for each")
         self.position = np.ascontiguousarray(position, dtype=float)
         self.velocity = np.ascontiguousarray(velocity, dtype=float)
         self.stuck = np.ascontiguousarray(stuck, dtype=np.intc)

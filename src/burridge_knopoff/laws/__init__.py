@@ -49,7 +49,7 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
         raise ValueError(f"{name}.name: not a number of a law")
     if "formula" in values:
         if "law" in values:
-            raise ValueError(f"{name}.law: not allowed beside formula")
+            raise ValueError(f"{name}: got law and formula, expected one of them")
         return FormulaLaw(a, values.pop("formula"), name=name, **values)
     kind = values.pop("law", name)
     if not isinstance(kind, str) or kind not in LAWS:

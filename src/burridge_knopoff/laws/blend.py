@@ -21,7 +21,7 @@ def blend(first: Law, second: Law, share: float) -> MadeLaw:
     Raises ValueError for laws at different a, and as `Law` does.
     """
     if first.a != second.a:
-        raise ValueError(f"a: {second.a!r} is not allowed: that of the first law, {first.a!r}")
+        raise ValueError(f"a: got {second.a!r}, expected that of the first law, {first.a!r}")
     formula = f"{1.0 - share!r}*({_with_numbers(first)}) + {share!r}*({_with_numbers(second)})"
     return MadeLaw(first.a, formula, name="blend")
 

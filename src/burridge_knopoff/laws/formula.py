@@ -82,7 +82,7 @@ class _Reader:
                 return self._power(self.read(left), self.read(right))
             case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
                 return self._function(name, self.read(argument))
-        raise FormulaError(f"{ast.unparse(node)[:40]}: not allowed in a formula: {SYNTAX}")
+        raise FormulaError(f"{ast.unparse(node)[:40]} cannot stand in a formula: {SYNTAX}")
 
     def _power(self, base: Term, exponent: Term) -> Term:
         if exponent.is_number:

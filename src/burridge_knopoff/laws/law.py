@@ -75,7 +75,7 @@ class Law:
         for key in numbers:
             if key in ("a", "u"):
                 place = joined(self.name, key)
-                raise ValueError(f"{place}: not allowed as the name of a number: it has its meaning already")
+                raise ValueError(f"{place}: got a name that is taken, expected another one for a number")
             if key not in known:
                 raise ValueError(f"{joined(self.name, key)}: not in the formula {shown(self.formula)}")
         for key, value in {"a": a, **numbers}.items():
@@ -90,7 +90,7 @@ class Law:
             self._check()
         except FormulaError as error:
             raise ValueError(
-                f"{self.name}: {shown(self.formula)} is not allowed as friction at a = {self.a:g}: {error}"
+                f"{self.name}: got {shown(self.formula)} at a = {self.a:g}, expected a law of friction: {error}"
             ) from None
 
     def _check(self) -> None:

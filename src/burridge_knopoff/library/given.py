@@ -34,7 +34,7 @@ def given_state(given: Initial) -> InitialState:
     """
     state = given if isinstance(given, InitialState) else _state(given)
     if PAPER_STATES.get(state.name, state) != state:
-        raise refusal("initial.name", state.name, "the paper's state of that name is another one")
+        raise refusal("initial.name", state.name, "another name: the paper has a different state of that name")
     return state
 
 
@@ -47,7 +47,7 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
         pair = _plain(given)
         lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
         if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(f"initial: {shown(given)} is not allowed: {_FORMS}, each one number a block")
+            raise ValueError(f"initial: got {shown(given)}, expected {_FORMS}, each one number a block")
         numbers = dict(zip(("position", "velocity"), lists, strict=True))
     return InitialState(**_KEYS.form(numbers, "initial"))
 
@@ -70,10 +70,10 @@ def given_model(
     """
     if isinstance(law, Model):
         if any(own is not None for own in (a, chain, v, contact)):
-            raise ValueError("a, chain, v, contact: not allowed beside a model, which has its own")
+            raise ValueError("a, chain, v, contact: got some beside a model, expected none: the model has its own")
         return law
     if a is None:
-        raise ValueError("a: None is not allowed without a Model: a number ≥ 0")
+        raise ValueError("a: got None without a Model, expected a number of at least 0")
     if isinstance(law, Mapping):
         law = law_of(law.get("law", "formula"), a, law)
     chain = Chain(blocks) if chain is None else chain

@@ -7,29 +7,29 @@ from typing import Any, Unpack, overload
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
 from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.run import Run
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Instant, Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.running.trajectory import Trajectory
 
 
 @overload
 def simulate(
     law: Model, initial: Initial | Instant, settings: Settings | None, /, **by_name: Unpack[RunSettings]
-) -> Trajectory: ...
+) -> Run: ...
 
 
 @overload
 def simulate(
     law: Model, initial: Initial | Instant, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
-) -> Trajectory: ...
+) -> Run: ...
 
 
 @overload
 def simulate(
     law: Model, *, initial: Initial | Instant = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
-) -> Trajectory: ...
+) -> Run: ...
 
 
 @overload
@@ -43,7 +43,7 @@ def simulate(
     v: float = ...,
     contact: str = ...,
     **by_name: Unpack[RunSettings],
-) -> Trajectory: ...
+) -> Run: ...
 
 
 @shows(Settings)
@@ -57,8 +57,8 @@ def simulate(
     v: float | None = None,
     contact: str | None = None,
     **by_name: Any,
-) -> Trajectory:
-    """Run one simulation and return its trajectory: `simulate(law, a, initial)` or `simulate(model, initial)`.
+) -> Run:
+    """Run one simulation: `simulate(law, a, initial)` or `simulate(model, initial)`.
 
     law, a : a law and its friction parameter: the name of a law that is built in (a is 0.08 if none is given), a
         `Law` (its own a), or {"formula": "1 - c*a*u", "c": 0.5}; or in the place of both a `Model`, which has its own
@@ -91,8 +91,8 @@ def simulate(
     elif not (a is None or isinstance(a, int | float)):
         # By position: simulate(model, initial, settings).
         if initial is not None and settings is not None:
-            raise ValueError("settings: not allowed twice")
+            raise ValueError("settings: got two, expected one")
         a, initial, settings = None, a, settings if initial is None else initial
     state = initial if isinstance(initial, Instant) else given_state("minus" if initial is None else initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
-    return run(model, state, settings_of(Settings, settings, by_name))
+    return Run(**vars(run(model, state, settings_of(Settings, settings, by_name))))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
 from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
@@ -62,7 +63,7 @@ def sweep(
     chosen = settings_of(Settings, settings, by_name)
     values = np.asanyarray(a, dtype=object).ravel().tolist()
     if not values:
-        raise ValueError("a: no value is not allowed: at least one")
+        raise ValueError("a: got no value, expected at least one")
     if cores is not None:
         cores = Whole(1, 1024).form(cores, "cores")
     if isinstance(law, Model):
@@ -71,14 +72,14 @@ def sweep(
         models = [given_model(law, value, len(state.position), chain, v, contact) for value in values]
     value, count = Counter(model.a for model in models).most_common(1)[0]
     if count > 1:
-        raise ValueError(f"a: {shown(value)} is not allowed twice")
+        raise ValueError(f"a: got {shown(value)} twice, expected each value once")
     for model in models:
         chosen.check_chain(model.chain)
         model.begin(state, chosen.start)
 
     def one(model: Model) -> xarray.Dataset:
         try:
-            return _numbers(run(model, state, chosen).to_dataset())
+            return _numbers(to_dataset(run(model, state, chosen)))
         except (ValueError, MemoryError) as error:
             raise type(error)(f"a = {model.a!r}: {error}") from error
 

@@ -63,7 +63,7 @@ def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
     """Return the error of a key that is not known: where it stands, what may be meant, what is allowed."""
     meant = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
     hint = f" (did you mean {meant[0]}?)" if meant else ""
-    return ValueError(f"{joined(place, name)}: unknown key{hint}; allowed here: {', '.join(allowed)}")
+    return ValueError(f"{joined(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
 
 
 _T = TypeVar("_T")

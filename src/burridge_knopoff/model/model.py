@@ -62,7 +62,7 @@ class Model:
         fastest = FASTEST * self.v
         if fastest > FASTEST and not self.law.tape.is_analytic(0.0, fastest):
             raise ValueError(
-                f"v: {self.v!r} is not allowed: the law {self.law.name} is not analytic up to ten times that speed"
+                f"v: got {self.v!r}, expected one up to ten times which the law {self.law.name} is analytic"
             )
 
     @property
@@ -106,13 +106,13 @@ class Model:
         OneOf(STARTS).form(start, "start")
         if len(initial.position) != self.blocks:
             raise ValueError(
-                f"blocks: {self.blocks} is not allowed for initial state {initial.name!r}, "
-                f"which has {len(initial.position)} positions"
+                f"blocks: got {self.blocks}, expected {len(initial.position)}, the number of positions of the initial "
+                f"state {initial.name!r}"
             )
         if self.contact == "one_sided" and min(initial.velocity) < 0.0:
             raise ValueError(
-                f"velocity: {min(initial.velocity)!r} is not allowed under contact one_sided: "
-                "blocks only slip forward (≥ 0); contact symmetric allows backward slip"
+                f"velocity: got {min(initial.velocity)!r}, expected at least 0 under contact one_sided: blocks only "
+                "slip forward; contact symmetric lets them slip backward"
             )
         stuck = self.starts_stuck(np.array(initial.position), start)
         position = np.array(initial.position) - self.sliding_offset

@@ -1,7 +1,7 @@
 """Ranges: what a setting may be. Each gives a value the one form of settings, or refuses it, and says itself in words.
 
 The form of 3 is 3.0 where a number need not be whole, that of a list is a tuple, and none has the types of numpy. A
-refusal is a ValueError of one line: key, value, what is allowed; the key is that of the part at fault, as
+refusal is a ValueError of one line, `key: got X, expected Y`; the key is that of the part at fault, as
 `initial.minus.position[1]`.
 """
 
@@ -24,7 +24,7 @@ class Range:
     """What a setting may be; `str(range)` says it."""
 
     def form(self, value: Any, key: str) -> Any:
-        """Return a value in its form; raises ValueError, one line, if it is not allowed."""
+        """Return a value in its form; raises ValueError, one line, if it does not fit."""
         fitting = self._fit(value, key)
         if fitting is None:
             raise refusal(key, value, self)
@@ -37,7 +37,7 @@ class Range:
 
 @dataclass(eq=False, repr=False)
 class Number(Range):
-    """A number from `least` to `most`, or, with `above`, more than `least`; True and False are none.
+    """A number from `least` to `most`, or, with `above`, more than `least`; True and False are no numbers.
 
     or_zero : whether 0 is allowed as well, outside the limits
     """
@@ -55,9 +55,22 @@ class Number(Range):
         return number if fits else None
 
     def __str__(self) -> str:
-        limits = [f"{'>' if self.above else '≥'} {self.least:g}"] if self.least > -HUGE else []
-        limits += [f"≤ {self.most:g}"] if self.most < HUGE else []
-        return f"{'0 or ' * self.or_zero}a {'' if limits else 'finite '}number {' and '.join(limits)}".rstrip()
+        return f"{'0 or ' * self.or_zero}a {limited('number', self.least, self.most, self.above)}"
+
+
+def limited(noun: str, least: float, most: float, above: bool = False) -> str:
+    """Return a number and its limits in words; `above` if the lower one is none of them."""
+    if least <= -HUGE:
+        return f"finite {noun}" if most >= HUGE else f"{noun} of at most {_plain(most)}"
+    if most >= HUGE:
+        return f"{noun} {'above' if above else 'of at least'} {_plain(least)}"
+    if above:
+        return f"{noun} above {_plain(least)} and at most {_plain(most)}"
+    return f"{noun} between {_plain(least)} and {_plain(most)}"
+
+
+def _plain(limit: float) -> str:
+    return str(limit) if isinstance(limit, int) else f"{limit:g}"
 
 
 class Whole(Number):
@@ -69,7 +82,7 @@ class Whole(Number):
         return int(value) if is_whole else None
 
     def __str__(self) -> str:
-        return f"a whole number ≥ {self.least} and ≤ {self.most}"
+        return f"a {limited('whole number', self.least, self.most)}"
 
 
 @dataclass(eq=False, repr=False)

@@ -54,8 +54,8 @@ class Family:
 
     def __init__(self, model: Model) -> None:
         if not has_orbit(model.chain):
-            found = f"{model.blocks} blocks" + ", not symmetric in a mirror," * (model.blocks == 3)
-            raise OrbitError(f"chain: {found} are not allowed: the orbit is that of 3 blocks, symmetric in a mirror")
+            found = f"{model.blocks} blocks" + ", not symmetric in a mirror" * (model.blocks == 3)
+            raise OrbitError(f"chain: got {found}, expected 3 blocks, symmetric in a mirror")
         self.model = model
         self.known: dict[float, Orbit] = {}
         for a in SEEDS:

@@ -43,7 +43,7 @@ class OrbitError(ValueError):
     ...     synchronized_orbit(Model(Chain(4), law_of("linearized", 0.08)))
     ... except OrbitError as error:
     ...     print(error)
-    chain: 4 blocks are not allowed: the orbit is that of 3 blocks, symmetric in a mirror
+    chain: got 4 blocks, expected 3 blocks, symmetric in a mirror
     """
 
 

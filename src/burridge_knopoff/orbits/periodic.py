@@ -245,7 +245,7 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     return_time, symmetry = Number(0.0, LONGEST, above=True).form(return_time, "return_time"), Symmetry(symmetry)
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(
-            f"symmetry: {symmetry.name.lower()!r} is not allowed in a chain that is not its own mirror image"
+            f"symmetry: got {symmetry.name.lower()!r}, expected asymmetric in a chain that is not its own mirror image"
         )
     mapping = ReturnMap(model, symmetry)
     mapping.end(guess, return_time)

@@ -47,7 +47,7 @@ def limits(ball: arb) -> tuple[float, float]:
     Raises ProofError for a ball that is not finite.
     """
     if not ball.is_finite():
-        raise ProofError(f"{ball}: a number without a bound is not allowed: a finite ball")
+        raise ProofError(f"got {ball}, expected a finite ball")
     low, high = float(ball.lower()), float(ball.upper())
     while not arb(low) <= ball.lower():
         low = math.nextafter(low, -math.inf)

@@ -25,5 +25,5 @@ def flow_of(model: Model) -> Flow:
         with arithmetic():
             return Nonlinear(arb(repr(model.v)))
     raise ProofError(
-        f"law {model.law.name}: {model.law.formula!r} is not allowed: {LinearizedLaw.formula} | {NonlinearLaw.formula}"
+        f"law {model.law.name}: got {model.law.formula!r}, expected {LinearizedLaw.formula} | {NonlinearLaw.formula}"
     )

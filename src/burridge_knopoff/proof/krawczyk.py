@@ -86,7 +86,7 @@ def enclose(
         inner = _krawczyk(equations, outer, parameters, inverse)
         for k, (box, mapped) in enumerate(zip(outer, inner, strict=True)):
             if not box.contains_interior(mapped):
-                raise ProofError(f"unknown {k + 1}: {mapped} is not allowed: in the interior of {box}")
+                raise ProofError(f"unknown {k + 1}: got {mapped}, expected it in the interior of {box}")
         # The box is so much smaller by now that derivatives in its middle are better than those that it began with.
         inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
         for _ in range(SHRINKING):

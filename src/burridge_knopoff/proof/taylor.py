@@ -107,7 +107,7 @@ class _Path:
     def __call__(self, time: Any) -> State:
         whole = time[0] if isinstance(time, arb_series) else arb(time)
         if not 0 <= whole.upper() < LONGEST:
-            raise ProofError(f"time {whole}: not allowed: from 0 to {LONGEST}")
+            raise ProofError(f"time: got {whole}, expected 0 to {LONGEST}")
         first, last = (math.floor(end) for end in limits(whole / STEP))
         found = None
         for number in range(max(first, 0), last + 1):
@@ -163,7 +163,7 @@ class _Path:
 def _positive(value: Any) -> Any:
     """Return 1 + aU'; raises ProofError where it may come to 0, at which friction is not defined."""
     if not _parts(value)[0] > 0:
-        raise ProofError(f"1 + aU' = {_parts(value)[0]}: not allowed: above 0")
+        raise ProofError(f"1 + aU': got {_parts(value)[0]}, expected above 0")
     return value
 
 

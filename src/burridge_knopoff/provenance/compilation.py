@@ -34,5 +34,5 @@ def vector_flags() -> tuple[str, ...]:
     if lanes is None:
         return ("-march=native",)
     if lanes not in LEVELS:
-        raise ValueError(f"BURRIDGE_KNOPOFF_LANES: {lanes!r} is not allowed: {' | '.join(LEVELS)}")
+        raise ValueError(f"BURRIDGE_KNOPOFF_LANES: got {lanes!r}, expected {' | '.join(LEVELS)}")
     return (LEVELS[lanes],)

@@ -10,13 +10,10 @@ import subprocess
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
-
-if TYPE_CHECKING:
-    from burridge_knopoff.study.study import Study
 
 NAME = "study.json"
 
@@ -44,7 +41,8 @@ def git_commit() -> str:
 
 def write_study_record(
     results: str | Path,
-    study: Study,
+    config: Mapping[str, Any],
+    grid: Mapping[str, float],
     config_file: str | Path,
     given: dict[str, Any],
     arguments: str,
@@ -52,13 +50,14 @@ def write_study_record(
 ) -> None:
     """Record a study in its folder of results; a record that says the same already stays untouched.
 
+    config, grid : with all defaults, and {name in file names: value of a}
     config_file, given : its config as it was given, and what that file holds
     arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
     files : {name below the folder: what the file should be, see `provenance.seal`}, without points, whose commands tell
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, study.config, study.grid, files)
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -120,9 +119,9 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
         return
     differs = ", ".join(key for key in {**known, **given} if known.get(key) != given.get(key))
     raise ValueError(
-        f"{display_path(config_file)}: study: {Path(results).name!r} is not allowed: {results} has the results of "
-        f"{owner}, which differs ({differs}); another name, or remove "
-        f"{Path(results, NAME)} for this config to go on there"
+        f"{display_path(config_file)}: study: got {Path(results).name!r}, expected another name: {results} has the "
+        f"results of {owner}, which differs ({differs}); to continue there with this config, remove "
+        f"{Path(results, NAME)}"
     )
 
 

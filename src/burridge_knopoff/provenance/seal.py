@@ -20,7 +20,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.provenance.command import difference
+from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.record import recorded_file, remake_command, study_folder
 

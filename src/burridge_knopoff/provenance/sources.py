@@ -12,13 +12,13 @@ import re
 from functools import cache
 from pathlib import Path
 
-from burridge_knopoff import __version__
+from burridge_knopoff.version import __version__
 
 SOFTWARE = f"burridge-knopoff {__version__}"
 PACKAGE = Path(__file__).parents[1]
 
 #: Moves bytes, reads arguments and names sources: it decides no number, so that a change of it remakes nothing.
-PLUMBING = ("__init__.py", "cli/", "kernel/__init__.py", "provenance/")
+PLUMBING = ("__init__.py", "cli/", "kernel/__init__.py", "provenance/", "running/command.py", "version.py")
 #: How the kernel is compiled decides its numbers.
 COMPILATION = PACKAGE / "provenance/compilation.py"
 

@@ -61,8 +61,8 @@ class Runner:
         instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
-                "solver: 'map' is not allowed: it needs a closed form, that of a law which is a straight line, not too "
-                "steep, in a uniform chain with open ends; series | rk4"
+                "solver: got 'map', expected series | rk4: map needs a closed form, that of a friction law that is a "
+                "straight line, not too steep, in a uniform chain with open ends"
             )
         self.model = model
         # What decides its steps: a run continues step by step only under the same.
@@ -117,7 +117,7 @@ class Runner:
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
         elif until is not None or halting_block >= 0:
-            raise ValueError("solver: 'rk4' is not allowed for a run to a time or a stop: series | map")
+            raise ValueError("solver: got 'rk4', expected series | map for a run to a time or a stop")
         status = Status(self.kernel.run())
         for key, table, remedy in (
             ("events", self.log.earlier_events, "none, or a shorter transient or window"),

@@ -86,7 +86,7 @@ class Settings:
             ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
         ):
             if samples > 1e7:
-                raise refusal(key, getattr(self, key), "it asks for more than 1e7 samples")
+                raise refusal(key, getattr(self, key), "at most 1e7 samples in a run")
 
     def check_chain(self, chain: Chain) -> None:
         """Raise ValueError if the settings do not fit a chain, or ask for more than can be done."""
@@ -96,9 +96,9 @@ class Settings:
         self.section.check_chain(chain)
         longest = LONGEST_STEP / chain.highest_frequency
         if self.solver == "rk4" and self.step > longest:
-            raise refusal("step", self.step, f"at most {longest:.3g} in this chain, or events come out wrong")
+            raise refusal("step", self.step, f"at most {longest:.3g} in this chain: longer steps miss events")
         if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
-            raise refusal("step", self.step, f"transient and window in at most {MOST_STEPS / blocks:.3g} steps")
+            raise refusal("step", self.step, f"at most {MOST_STEPS / blocks:.3g} steps in transient and window")
         # How many events there will be is not known: their tables have the same limit, and end a run that passes it.
         numbers = (2.0 * blocks + 1.0) * min(self.trajectory, self.duration) / self.trajectory_sampling
         if numbers > MOST_NUMBERS:

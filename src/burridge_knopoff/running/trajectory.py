@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.running.plot import plot_run
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import Status
-
-if TYPE_CHECKING:
-    import xarray
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +35,6 @@ class Trajectory:
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
     >>> run.status, run.event_count, run.event_position.shape
     ('completed', 10, (10, 3))
-    >>> run.to_dataset().velocity.dims
-    ('trajectory_time', 'block')
     """
 
     model: Model
@@ -89,15 +81,6 @@ class Trajectory:
             f"a = {self.model.a:g}: {self.status} at tau = {self.end_time:g}, {self.event_count} events, "
             f"<J> = {self.mean_distance:.6g} +- {self.mean_distance_error:.1g}>"
         )
-
-    def plot(self) -> Figure:
-        """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run, as a notebook shows it."""
-        return plot_run(self)
-
-    def to_dataset(self) -> xarray.Dataset:
-        """Return the run as an xarray Dataset, the same as its point file."""
-        # By its name: what computes with trajectories does not depend on how files hold them.
-        return import_module("burridge_knopoff.dataset.point").to_dataset(self)
 
 
 def collect(

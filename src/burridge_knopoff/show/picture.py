@@ -27,7 +27,7 @@ WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 def check_format(path: str | Path) -> None:
     """Raise ValueError, one line, if the name of a picture has no suffix that can be drawn."""
     if Path(path).suffix not in FORMATS:
-        raise ValueError(f"{cut(str(path), 200)}: {shown(Path(path).suffix)} is not allowed: {' | '.join(FORMATS)}")
+        raise ValueError(f"{cut(str(path), 200)}: got {shown(Path(path).suffix)}, expected {' | '.join(FORMATS)}")
 
 
 def write_picture(result: Result, path: str | Path) -> str:

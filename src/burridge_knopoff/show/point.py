@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.provenance.command import CHAIN_OPTIONS
+from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.show.words import listed, paragraph

@@ -223,7 +223,7 @@ def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: W
 
 def _check_mirror(model: Model) -> None:
     if not model.chain.is_mirror_symmetric:
-        raise ValueError("chain: not allowed here: only a chain that is its own mirror image has mirror blocks")
+        raise ValueError("chain: expected one that is its own mirror image: only such a chain has mirror blocks")
 
 
 def _antisymmetric(perturbation: np.ndarray) -> np.ndarray:

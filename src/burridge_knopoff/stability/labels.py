@@ -126,12 +126,12 @@ def label_states(
     position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
     if not position.shape == velocity.shape == (*position.shape[:1], model.blocks):
         raise ValueError(
-            f"position, velocity: shapes {position.shape}, {velocity.shape} are not allowed: (n, {model.blocks}), both"
+            f"position, velocity: got shapes {position.shape}, {velocity.shape}, expected (n, {model.blocks}) for both"
         )
     slowest = 0.0 if model.contact == "one_sided" else -np.inf
     if not (np.isfinite(position).all() and np.isfinite(velocity).all() and (velocity >= slowest).all()):
         raise ValueError(
-            f"position, velocity: not allowed under {model.contact}: finite, and velocities of {slowest:g} or more"
+            f"position, velocity: expected finite numbers, and velocities of at least {slowest:g} under {model.contact}"
         )
     OneOf(STARTS).form(start, "start")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")

@@ -33,7 +33,7 @@ def block_frequencies(model: Model) -> np.ndarray:
     if ends_are_neighbours(model.chain):
         given = f"{model.chain.blocks} blocks, {model.chain.ends}"
         raise ValueError(
-            f"chain: {given}: a spring that joins the end blocks is not allowed for states by their phases"
+            f"chain: got {given}, expected no spring that joins the end blocks, for states by their phases"
         )
     return np.sqrt(model.chain.diagonal)
 

@@ -223,7 +223,7 @@ class BasinSettings:
     def __post_init__(self) -> None:
         check_fields(self)
         if self.tiles > self.pixels:
-            raise ValueError(f"tiles: {self.tiles} is not allowed: at most the {self.pixels} rows of a map")
+            raise ValueError(f"tiles: got {self.tiles}, expected at most the {self.pixels} rows of a map")
 
 
 @settings
@@ -290,7 +290,7 @@ class Sample:
         check_fields(self)
         if self.symmetric_samples > self.samples:
             raise ValueError(
-                f"symmetric_samples: {self.symmetric_samples} is not allowed: at most samples ({self.samples})"
+                f"symmetric_samples: got {self.symmetric_samples}, expected at most samples ({self.samples})"
             )
 
     def initial(self, blocks: int, a: float | None = None) -> list[InitialState]:

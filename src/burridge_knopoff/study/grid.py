@@ -24,8 +24,8 @@ def grid_of(items: Sequence[Any], digits: int) -> dict[str, float]:
         name = f"{value:.{digits}f}"
         if name in grid:
             raise ValueError(
-                f"a: {grid[name]!r} and {value!r} share the file name a{name}.nc: "
-                "values that differ within a_digits decimals are needed"
+                f"a: got {grid[name]!r} and {value!r}, which share the file name a{name}.nc; expected values that "
+                "differ within a_digits decimals"
             )
         grid[name] = value
     return grid
@@ -41,11 +41,11 @@ def values_of(items: Sequence[Any], place: str) -> list[float]:
         # Adding 0 turns -0.0 into 0.0.
         values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{place}[{position}]")
         if len(values) > MAXIMUM_POINTS:
-            raise ValueError(f"{place}: more than {MAXIMUM_POINTS} values; at most that many are allowed")
+            raise ValueError(f"{place}: got more than {MAXIMUM_POINTS} values, expected at most that many")
     values.sort()
     for value, following in pairwise(values):
         if value == following:
-            raise ValueError(f"{place}: {value!r} is listed twice, as a number or by two ranges; once is allowed")
+            raise ValueError(f"{place}: got {value!r} twice, as a number or by two ranges; expected it once")
     return values
 
 
@@ -57,5 +57,5 @@ def _range(item: Mapping[str, float], place: str) -> list[float]:
     if count >= MAXIMUM_POINTS:
         raise refusal(f"{place}.step", item["step"], f"at most {MAXIMUM_POINTS} values in a range")
     if count != int(count):
-        raise refusal(f"{place}.step", item["step"], f"it does not divide the range {item['from']!r} to {item['to']!r}")
+        raise refusal(f"{place}.step", item["step"], f"one that divides the range {item['from']!r} to {item['to']!r}")
     return [float(first + step * k) for k in range(int(count) + 1)]

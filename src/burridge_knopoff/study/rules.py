@@ -1,6 +1,6 @@
 """Rules of a config that no single key states: keys that must fit each other, and defaults that follow from others.
 
-Every function raises ValueError, one line, for what is not allowed: key, value, what is.
+Every function raises ValueError for what breaks a rule: `key: got X, expected Y`.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ def fill_states(config: Mapping[str, Any]) -> None:
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
             known = " | ".join(PAPER_STATES)
-            raise ValueError(f"initial.{name}: unknown initial state; without position and velocity: {known}")
+            raise ValueError(f"initial.{name}: got no position and velocity, which only {known} may leave out")
         for key in ("position", "velocity"):
             if state and key not in state:
-                raise ValueError(f"initial.{name}.{key}: missing; position and velocity are needed together")
+                raise ValueError(f"initial.{name}.{key}: got none, expected position and velocity together")
         if not state:
             state.update(position=list(PAPER_STATES[name].position), velocity=list(PAPER_STATES[name].velocity))
     if len({len(state["position"]) for state in states.values()}) > 1:
         counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in states.items())
-        raise ValueError(f"initial: all states of a study must have the same number of positions ({counts})")
+        raise ValueError(f"initial: got different numbers of positions ({counts}), expected one for all states")
 
 
 def fill_names(config: dict[str, Any]) -> None:
@@ -87,14 +87,18 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) 
             model = Model(chain, law, config["v"], config["contact"])
             if solver == "map" and not model.has_closed_form:
                 others = " | ".join(solver for solver in SOLVERS if solver != "map")
-                raise refusal(f"solver.{name}", "map", f"no closed form at a = {a:g}: {_reason(model)}; {others}")
+                raise refusal(f"solver.{name}", "map", f"{others}: no closed form at a = {a:g}, {_reason(model)}")
         if len(tapes) > 1 and all(tape == tapes[0] for tape in tapes):
-            raise refusal(f"laws.{name}.formula", laws[name].get("formula"), "a has no effect in it: one value of a")
+            raise refusal(
+                f"laws.{name}.formula",
+                laws[name].get("formula"),
+                "a formula on which a has an effect, or one value of a",
+            )
     chains = config["chains"]
     for key, section, names in (("chains", chains, chains["laws"]), ("chains.two_blocks", chains["two_blocks"], laws)):
         for name in names:
             for a in section["a"]:
-                with under(f"{key}.a: {a:g} is not allowed: laws."):
+                with under(f"{key}.a: got {a:g}, at which laws."):
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
         with under(f"initial.{name}."):
@@ -161,8 +165,8 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
     points = len(laws) * len(states) * values
     if points > MAXIMUM_POINTS:
         raise ValueError(
-            f"a: {points} points are not allowed ({len(laws)} laws, {len(states)} initial states, "
-            f"{values} values of a): at most {MAXIMUM_POINTS}"
+            f"a: got {points} points ({len(laws)} laws, {len(states)} initial states, {values} values of a), "
+            f"expected at most {MAXIMUM_POINTS}"
         )
     attractors, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
     oscillating = len(phases["amplitude"]) * len(phases["phase_difference"]) * phases["samples"]
@@ -181,6 +185,6 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
     ):
         if numbers > MOST_NUMBERS:
             value = reduce(getitem, key.split("."), config)
-            raise refusal(key, value, f"a job would hold {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}")
+            raise refusal(key, value, f"at most {MOST_NUMBERS:.0e} numbers held by a job, which would be {numbers:.1e}")
     if maps * basins["tiles"] > MAXIMUM_POINTS:
-        raise refusal("basins.tiles", basins["tiles"], f"{maps} maps in at most {MAXIMUM_POINTS} tiles")
+        raise refusal("basins.tiles", basins["tiles"], f"at most {MAXIMUM_POINTS} tiles in {maps} maps")

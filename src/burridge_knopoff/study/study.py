@@ -12,7 +12,7 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.orbits.loss import has_orbit
 from burridge_knopoff.proof.scope import is_covered
-from burridge_knopoff.provenance.command import simulate_command
+from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.stability.settings import BasinSettings, Sample
 from burridge_knopoff.study import rules, stages
@@ -257,7 +257,7 @@ def _study(config: Mapping[str, Any]) -> Study:
     values = list(grid.values())
     study = Study(filled, grid)
     if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:
-        raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, which it is a part of")
+        raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, of which it is a part")
     rules.fill_states(filled)
     rules.fill_chains(filled)
     rules.fill_names(filled)

@@ -41,7 +41,7 @@ class _Loader(yaml.SafeLoader):
         for key, _ in node.value:
             place = f"(line {key.start_mark.line + 1})"
             if key.tag not in (f"{_TAG}str", f"{_TAG}merge"):
-                raise ConfigError(f"{joined('', str(key.value))} {place} is not allowed as a key: text")
+                raise ConfigError(f"got {joined('', str(key.value))} {place} as a key, expected text")
             if key.value in seen:
                 raise ConfigError(f"{joined('', key.value)}: stands twice {place}; once is allowed")
             seen.add(key.value)
@@ -80,7 +80,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
     content = read_yaml(path)
     if not isinstance(content, dict):
         found = "nothing" if content is None else joined("", content)
-        raise ConfigError(f"{display_path(path)}: {found} is not allowed as a config: keys with values")
+        raise ConfigError(f"{display_path(path)}: got {found}, expected keys with values")
     return content
 
 

@@ -32,10 +32,10 @@ def coexisting_attractors(
     found = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not found.attractors[0]:
         if sliding_attracts(model):
-            raise ValueError(f"a: {model.a!r} is not allowed: no attractor was found; {SLIDING}")
+            raise ValueError(f"a: got {model.a!r}, at which no attractor was found; {SLIDING}")
         raise ValueError(
-            f"transient: {settings.transient:g} is not allowed at a = {model.a!r}: no attractor was found; longer, or "
-            f"more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples {settings.samples} "
+            f"transient: got {settings.transient:g}, and no attractor was found at a = {model.a!r}; expected longer, "
+            f"or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples {settings.samples} "
             "(at a = 0 there is none)"
         )
     parts = [one_law(found, starts, settings, motion, start)]

@@ -15,8 +15,8 @@ from burridge_knopoff.dataset.point import point_about
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.command import simulate_command
 from burridge_knopoff.provenance.seal import check_seal
+from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of

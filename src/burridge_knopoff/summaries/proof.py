@@ -161,14 +161,14 @@ def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: Sequenc
     if not abs(given.multiplier) < 1:
         raise ProofError(f"a = {given.a}: transverse perturbations are not known to fade")
     if not width(critical.a) < NARROW:
-        raise ProofError(f"a_c: an interval of width {width(critical.a)!r} is not allowed: below {NARROW!r}")
+        raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {NARROW!r}")
 
 
 def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
     """Return the variables over orbits, for one; raises ProofError if its events are others."""
     names = [f"{('lateral', 'center')[arc.ends]}_{'stop' if arc.slips[arc.ends] else 'start'}" for arc in orbit.arcs]
     if tuple(names) != EVENTS:
-        raise ProofError(f"events: {', '.join(names)} is not allowed: {', '.join(EVENTS)}")
+        raise ProofError(f"events: got {', '.join(names)}, expected {', '.join(EVENTS)}")
     with arithmetic():
         positions = [limits(model.v * place) for place in orbit.enclosure.inner[:PLACES]]
         speed = orbit.a * model.v * orbit.fastest()

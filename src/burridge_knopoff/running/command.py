@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import re
 import shlex
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from burridge_knopoff.laws import LAWS, Law
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-
-if TYPE_CHECKING:
-    from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.settings import Settings
 
 #: Options of the chain, and the field of `Chain` that each is.
 CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
-
-# A number of a law goes by its name too: `number sigma`.
-_OPTION = re.compile(r"--(number \w+|[\w-]+)[ =](.*?)(?= --|$)")
 
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
@@ -54,13 +48,3 @@ def _changed(part: Any) -> Iterator[str]:
 
 def _text(value: Any) -> str:
     return ",".join(map(repr, value)) if isinstance(value, tuple) else str(value)
-
-
-def difference(found: str, expected: str) -> str:
-    """Return in words where two commands differ: `--a 0.08 instead of --a 0.05`."""
-    one, other = (dict(_OPTION.findall(" ".join(shlex.split(text)))) for text in (found, expected))
-    for key in [*other, *one]:
-        if one.get(key) != other.get(key):
-            named = [f"--{key} {options[key]}" if key in options else f"no --{key}" for options in (one, other)]
-            return " instead of ".join(named)
-    return f"`{found}` instead of `{expected}`"

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.running.trajectory import Trajectory
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from burridge_knopoff.running.trajectory import Trajectory
 
 
 def plot_run(run: Trajectory) -> Figure:

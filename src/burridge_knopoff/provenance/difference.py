@@ -1,0 +1,19 @@
+"""Where two commands that make runs differ."""
+
+from __future__ import annotations
+
+import re
+import shlex
+
+# A number of a law goes by its name too: `number sigma`.
+_OPTION = re.compile(r"--(number \w+|[\w-]+)[ =](.*?)(?= --|$)")
+
+
+def difference(found: str, expected: str) -> str:
+    """Return in words where two commands differ: `--a 0.08 instead of --a 0.05`."""
+    one, other = (dict(_OPTION.findall(" ".join(shlex.split(text)))) for text in (found, expected))
+    for key in [*other, *one]:
+        if one.get(key) != other.get(key):
+            named = [f"--{key} {options[key]}" if key in options else f"no --{key}" for options in (one, other)]
+            return " instead of ".join(named)
+    return f"`{found}` instead of `{expected}`"
