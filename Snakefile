@@ -45,6 +45,7 @@ include: "workflow/rules/report.smk"
 
 
 rule all:
+    """Make the whole study: all points, summaries and figures, and the report."""
     default_target: True
     input:
         rules.points.input,

@@ -15,9 +15,9 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.orbits.edge_kind import EdgeKind
-from burridge_knopoff.orbits.edges import locate_edges
-from burridge_knopoff.orbits.following import follow
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edges import locate_edges
+from burridge_knopoff.periodic_orbits.following import follow
 from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.returns import instant_of

@@ -12,8 +12,8 @@ Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings
 `SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
 plane.
 
-Orbits: `closed_motion` and `find_periodic_orbit` return a `PeriodicOrbit`, `synchronized_orbit` an `Orbit`, or raise
-`OrbitError`. Their stability: `multipliers` returns `Multipliers`, `transverse_multiplier` one of them.
+Orbits: `closed_motion`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise `OrbitError`.
+Its stability: `multipliers` returns `Multipliers`.
 
 Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is that of synchrony.
 
@@ -42,7 +42,6 @@ __all__ = [
     "MotionKind",
     "MotionSettings",
     "Multipliers",
-    "Orbit",
     "OrbitError",
     "PeriodicOrbit",
     "Run",
@@ -66,7 +65,6 @@ __all__ = [
     "sweep",
     "synchronized_orbit",
     "transverse_exponent",
-    "transverse_multiplier",
 ]
 
 if TYPE_CHECKING:
@@ -80,15 +78,14 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import InitialState
     from burridge_knopoff.model.model import Instant, Model
-    from burridge_knopoff.orbits.edge_kind import EdgeKind
-    from burridge_knopoff.orbits.edges import Edge, locate_edges
-    from burridge_knopoff.orbits.family import synchronized_orbit
-    from burridge_knopoff.orbits.floquet import Multipliers, multipliers
-    from burridge_knopoff.orbits.following import Following, follow
-    from burridge_knopoff.orbits.orbit import Orbit, OrbitError, transverse_multiplier
-    from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
-    from burridge_knopoff.orbits.pseudo_arclength import BranchOrbit
-    from burridge_knopoff.orbits.symmetry import Symmetry
+    from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+    from burridge_knopoff.periodic_orbits.edges import Edge, locate_edges
+    from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
+    from burridge_knopoff.periodic_orbits.flow import OrbitError
+    from burridge_knopoff.periodic_orbits.following import Following, follow
+    from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
+    from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+    from burridge_knopoff.periodic_orbits.symmetry import Symmetry
     from burridge_knopoff.running.section import Section
     from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.trajectory import Trajectory
@@ -99,14 +96,15 @@ if TYPE_CHECKING:
     from burridge_knopoff.stability.motion import MotionKind
     from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
     from burridge_knopoff.stability.steady import SteadyMotion
+    from burridge_knopoff.stability.synchronized import synchronized_orbit
 
 _HOME = {
     "Attractor": "stability.attractor",
-    "BranchOrbit": "orbits.pseudo_arclength",
+    "BranchOrbit": "periodic_orbits.pseudo_arclength",
     "Chain": "model.chain",
-    "Edge": "orbits.edges",
-    "EdgeKind": "orbits.edge_kind",
-    "Following": "orbits.following",
+    "Edge": "periodic_orbits.edges",
+    "EdgeKind": "periodic_orbits.edge_kind",
+    "Following": "periodic_orbits.following",
     "FormulaLaw": "laws",
     "InitialState": "model.initial",
     "Instant": "model.model",
@@ -114,32 +112,30 @@ _HOME = {
     "Model": "model.model",
     "MotionKind": "stability.motion",
     "MotionSettings": "stability.settings",
-    "Multipliers": "orbits.floquet",
-    "Orbit": "orbits.orbit",
-    "OrbitError": "orbits.orbit",
-    "PeriodicOrbit": "orbits.periodic",
+    "Multipliers": "periodic_orbits.floquet",
+    "OrbitError": "periodic_orbits.flow",
+    "PeriodicOrbit": "periodic_orbits.periodic",
     "SearchSettings": "stability.settings",
     "Section": "running.section",
     "Settings": "running.settings",
     "SteadyMotion": "stability.steady",
-    "Symmetry": "orbits.symmetry",
+    "Symmetry": "periodic_orbits.symmetry",
     "Run": "library.run",
     "Trajectory": "running.trajectory",
     "basin_map": "library.basin_map",
     "closed_motion": "stability.closed_motion",
     "find_attractors": "library.find_attractors",
-    "find_periodic_orbit": "orbits.periodic",
-    "follow": "orbits.following",
+    "find_periodic_orbit": "periodic_orbits.periodic",
+    "follow": "periodic_orbits.following",
     "label_states": "stability.labels",
     "law_of": "laws",
-    "locate_edges": "orbits.edges",
-    "multipliers": "orbits.floquet",
+    "locate_edges": "periodic_orbits.edges",
+    "multipliers": "periodic_orbits.floquet",
     "open_study": "library.open_study",
     "simulate": "library.simulate",
     "sweep": "library.sweep",
-    "synchronized_orbit": "orbits.family",
+    "synchronized_orbit": "stability.synchronized",
     "transverse_exponent": "stability.chains",
-    "transverse_multiplier": "orbits.orbit",
 }
 
 

@@ -25,7 +25,7 @@ def scalar(value: Any) -> Any:
 
 
 def real_number(value: Any) -> float:
-    """Return a real number as a float, NaN for what is none, as True, a complex number or a time of numpy."""
+    """Return a real number as a float; NaN for non-numbers, as True, a complex number or a time of numpy."""
     value = scalar(value)
     if isinstance(value, bool | np.timedelta64) or not isinstance(value, int | float | np.integer | np.floating):
         return math.nan

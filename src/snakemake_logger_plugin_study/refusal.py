@@ -28,7 +28,7 @@ _REWORDED = (
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
     (
         re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE),
-        r"\1: neither a rule nor a file of this study, or of a stage that it goes without",
+        r"\1: unknown target (misspelt, or part of a stage disabled by `without`)",
     ),
 )
 

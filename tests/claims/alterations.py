@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
-from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change

@@ -4,12 +4,12 @@ import pytest
 
 from burridge_knopoff import MotionKind, Symmetry
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.orbits.edge_kind import EdgeKind
-from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability.chains import Outcome
 from burridge_knopoff.stability.uncertainty import ExponentKind
 from burridge_knopoff.summaries.branch_changes import Change
+from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide, OrbitStatus
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from matplotlib.colors import to_hex
 
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.edges import draw
-from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
 from burridge_knopoff.summaries.branch_changes import Change
 
 EDGE = ("law", "a", "a_error", "mean_distance", "kind", "change", "from_branch", "to_branch")

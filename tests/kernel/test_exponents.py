@@ -9,7 +9,7 @@ from burridge_knopoff import Chain, InitialState, Instant, Model, law_of, simula
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from tests.flows import SYMMETRIC, carry, growth_from, later, wave
-from tests.orbits.exact import exact_transverse_multiplier
+from tests.periodic_orbits.exact import exact_transverse_multiplier
 
 LAWS = ("linearized", "nonlinear")
 PLUS = PAPER_STATES["plus"]

@@ -25,7 +25,6 @@ from burridge_knopoff import (
     sweep,
     synchronized_orbit,
     transverse_exponent,
-    transverse_multiplier,
 )
 from burridge_knopoff.kernel.ensemble import Ensemble
 from burridge_knopoff.running.together import new_ensemble
@@ -90,7 +89,6 @@ def test_states_that_cannot_be_labelled(attractors, given, message):
         lambda: sweep("linearized", np.ma.array([0.05, 0.08], mask=[0, 1])),
         lambda: synchronized_orbit("linearized"),
         lambda: synchronized_orbit(Model(Chain(3, threshold=[1, 2, 3]), MODEL.law)),
-        lambda: transverse_multiplier(MODEL),
         lambda: multipliers(MODEL),
         lambda: find_attractors("linearized"),
         lambda: find_attractors(MODEL, {"samples": 3}),

@@ -71,7 +71,6 @@ def correct_calls():
         "sweep": {"law": "linearized", "a": [0.08], "initial": "minus", "settings": None, "chain": None, **QUICK},
         "synchronized_orbit": {"model": MODEL},
         "transverse_exponent": {"model": MODEL, "state": STATE, "alignment": 10.0, "window": 10.0},
-        "transverse_multiplier": {"orbit": synchronized_orbit(MODEL)},
     }
 
 

@@ -291,5 +291,5 @@ def test_snakemake_says_what_is_reworded():
     assert '"Select jobs to execute..."' in getsource(job_scheduler)
     missing = exceptions.MissingRuleException("x.nc")
     assert reworded(exceptions.format_exception_to_string(missing)) == (
-        "x.nc: neither a rule nor a file of this study, or of a stage that it goes without"
+        "x.nc: unknown target (misspelt, or part of a stage disabled by `without`)"
     )

@@ -6,8 +6,8 @@ from itertools import pairwise
 import pytest
 from flint import arb, fmpq
 
-from burridge_knopoff.orbits.orbit import multipliers
-from burridge_knopoff.orbits.transition import critical_a
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
 from burridge_knopoff.proof import critical
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.critical import prove_branch, prove_critical
@@ -19,7 +19,7 @@ from tests.proof.exact import exact_orbit
 
 @pytest.fixture(scope="module")
 def found(family):
-    return prove_critical(family.at(critical_a(family)))
+    return prove_critical(family.at(critical_a(edges_of(family))))
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_the_interval_holds_a_c_of_50_digits_and_of_the_double_code(found, famil
         assert holds(ball, number)
     assert holds(found.orbit.symmetric_multiplier, exact.symmetric)
     assert width(found.a) < 1e-50
-    assert abs(critical_a(family) - float(found.a)) < 2e-15
+    assert abs(critical_a(edges_of(family)) - float(found.a)) < 2e-15
 
 
 def test_the_multiplier_is_1_there_and_passes_it(found, family):
@@ -73,9 +73,9 @@ def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
         orbit = family.at(a)
         (piece,) = [piece for piece in branch if piece.orbit.a.contains(arb(a))]
         assert piece.orbit.period.contains(arb(orbit.period))
-        found = multipliers(orbit).real
-        assert piece.orbit.multiplier.contains(arb(float(found[0])))
-        assert piece.orbit.symmetric_multiplier.contains(arb(float(found[2])))
+        found = multipliers(orbit)
+        assert piece.orbit.multiplier.contains(arb(found.transverse.real))
+        assert piece.orbit.symmetric_multiplier.contains(arb(float(found.keeping[0].real)))
         with arithmetic():
             piece.check_holds(prove_orbit(orbit, arb(a)).enclosure, arb(a))
         assert piece.orbit.slope > 0

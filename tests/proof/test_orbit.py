@@ -9,15 +9,15 @@ from flint import arb
 from scipy.optimize import bisect
 
 from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.orbit import multipliers
+from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
 from burridge_knopoff.proof.bounds import check_positive
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.krawczyk import derivatives, enclose, part, solved
 from burridge_knopoff.proof.orbit import PLACES, arcs_of, equations, followed, prove_orbit
-from tests.orbits.exact import slipping_state
+from burridge_knopoff.stability.synchronized import synchronized_orbits
+from tests.periodic_orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit
 
@@ -48,13 +48,13 @@ def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     proved, orbit = proved_at(family, a), family.at(a)
     assert float(proved.period) == pytest.approx(orbit.period, abs=1e-13)
     slipping = (LATERAL, CENTER)[proved.arcs[-1].ends]
-    first = orbit.times(slipping, 1)[0]
+    first = next(time for time, block, kind in orbit.events if (block, kind) == (slipping, 1))
     later = [(time - first) % orbit.period for time, block, _ in orbit.events if block < 2]
     expected = [*sorted(time for time in later if time > 0.0), orbit.period]
     assert [float(time) for time in proved.event_times] == pytest.approx(expected, abs=1e-13)
-    found = multipliers(orbit).real
-    assert float(proved.multiplier) == pytest.approx(found[0], abs=1e-11)
-    assert float(proved.symmetric_multiplier) == pytest.approx(found[2], abs=1e-11)
+    found = multipliers(orbit)
+    assert float(proved.multiplier) == pytest.approx(found.transverse.real, abs=1e-11)
+    assert float(proved.symmetric_multiplier) == pytest.approx(found.keeping[0].real, abs=1e-11)
     assert (proved.arcs[0].ends == LATERAL) == (a > 0.0757)
 
 
@@ -67,7 +67,7 @@ def test_an_orbit_is_proved_for_all_a_of_a_ball(family):
         with arithmetic():
             assert wide.a.contains(arb(a))
             assert wide.period.contains(arb(orbit.period))
-            assert wide.multiplier.contains(arb(float(multipliers(orbit)[0].real)))
+            assert wide.multiplier.contains(arb(float(multipliers(orbit).transverse.real)))
     assert 1e-5 < width(wide.multiplier) < 1e-4
 
 
@@ -174,6 +174,6 @@ def test_an_orbit_on_which_not_all_blocks_stick_at_once_is_not_covered(family, a
 
 
 def test_another_law_than_the_papers_is_refused():
-    other = Family(Model(Chain(3), law_of("exponential", 0.0))).at(0.08)
+    other = synchronized_orbits(Model(Chain(3), law_of("exponential", 0.0))).at(0.08)
     with pytest.raises(ProofError, match=r"law exponential: got .*, expected 1 - a\*u \| 1/\(1 \+ a\*u\)"):
         prove_orbit(other, arb(0.08))

@@ -6,9 +6,8 @@ from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
 from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.orbit import multipliers
-from burridge_knopoff.orbits.transition import critical_a
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
 from burridge_knopoff.proof import taylor
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
@@ -17,6 +16,7 @@ from burridge_knopoff.proof.critical import prove_critical
 from burridge_knopoff.proof.krawczyk import derivatives
 from burridge_knopoff.proof.orbit import PLACES, followed, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 from tests.proof.conftest import SLIPS, changed, holds, state_of
 
 V, A = "0.1", "0.09"
@@ -151,23 +151,25 @@ def test_a_step_that_no_box_holds_is_refused(monkeypatch):
 
 @pytest.fixture(scope="module")
 def family():
-    return Family(Model(Chain(3), law_of("nonlinear", 0.0)))
+    return synchronized_orbits(Model(Chain(3), law_of("nonlinear", 0.0)))
 
 
 @pytest.fixture(scope="module")
 def found(family):
-    return prove_critical(family.at(critical_a(family)))
+    return prove_critical(family.at(critical_a(edges_of(family))))
 
 
 def test_a_c_of_the_nonlinear_law(found, family):
     assert width(found.a) < 1e-17
-    assert abs(critical_a(family) - float(found.a)) < 2e-15
+    assert abs(critical_a(edges_of(family)) - float(found.a)) < 2e-15
     assert found.orbit.multiplier.contains(1)
     assert found.orbit.slope > 5
     assert found.unique.contains(found.a)
     orbit = family.at(float(found.a))
     assert float(found.orbit.period) == pytest.approx(orbit.period, abs=1e-13)
-    assert float(found.orbit.symmetric_multiplier) == pytest.approx(float(multipliers(orbit)[2].real), abs=1e-11)
+    assert float(found.orbit.symmetric_multiplier) == pytest.approx(
+        float(multipliers(orbit).keeping[0].real), abs=1e-11
+    )
 
 
 def test_it_is_that_of_an_integration_of_25_digits(found):

@@ -15,17 +15,17 @@ from burridge_knopoff import (
     Instant,
     Model,
     law_of,
+    multipliers,
     simulate,
     synchronized_orbit,
     transverse_exponent,
-    transverse_multiplier,
 )
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.stability import chains
 from burridge_knopoff.stability.chains import INTERVAL, Fate, Outcome, Sample, Watch, watch_state
 from burridge_knopoff.stability.mirror import symmetrized
-from tests.orbits.exact import SHIFT
+from tests.periodic_orbits.exact import SHIFT
 from tests.reference import reference_events, reference_run
 
 APART = Outcome.NOT_SYNCHRONIZED
@@ -268,7 +268,7 @@ def test_deviations_from_the_multiplier_are_within_the_error(law, window):
     for a in np.linspace(0.08, 0.09, 25).tolist():
         chain = model(3, a, law)
         orbit = synchronized_orbit(chain)
-        exact = math.log(abs(transverse_multiplier(orbit))) / orbit.period
+        exact = math.log(abs(multipliers(orbit).transverse)) / orbit.period
         start = chain.begin(InitialState("state", (-1.0, -1.0, -1.0), (0.1, 0.1, 0.1)))
         exponent, error = transverse_exponent(chain, start, 2500.0, window)
         deviations.append(abs(exponent - exact) / error)

@@ -6,12 +6,12 @@ import pytest
 from burridge_knopoff import Chain, Model, OrbitError, law_of, multipliers
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Instant
-from burridge_knopoff.orbits.family import synchronized_orbit
-from burridge_knopoff.orbits.periodic import find_periodic_orbit
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.stability import closed_motion as module
 from burridge_knopoff.stability.closed_motion import _returns, closed_motion
+from burridge_knopoff.stability.synchronized import synchronized_orbit
 
 
 @pytest.mark.parametrize(

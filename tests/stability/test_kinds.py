@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractors import Search
 from burridge_knopoff.stability.motion import motion_of_run
 from burridge_knopoff.stability.settings import MOTION, SEARCH

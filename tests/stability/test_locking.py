@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, OrbitError, Settings, Symmetry, law_of
-from burridge_knopoff.orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability import locking
 from burridge_knopoff.stability.locking import locked_orbit, recurrence

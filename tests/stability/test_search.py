@@ -218,7 +218,7 @@ def test_synchrony_that_is_slow_is_told_by_its_multipliers(monkeypatch, modulus,
         return 0.02
 
     monkeypatch.setattr(attractors, "synchronized_orbit", orbit)
-    monkeypatch.setattr(attractors, "leading_modulus", lambda orbit: modulus)
+    monkeypatch.setattr(attractors, "multipliers", lambda orbit: SimpleNamespace(whole=[modulus]))
     monkeypatch.setattr(attractors, "measure", lambda model, start, *_: exact if start.position[0] == 2.0 else None)
     monkeypatch.setattr(settling, "measure", lambda *_: motion(mean))
     monkeypatch.setattr(attractors, "captured", captured)

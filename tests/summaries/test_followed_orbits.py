@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, MotionKind, OrbitError, Symmetry, find_periodic_orbit, law_of
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.pseudo_arclength import begin_branch
-from burridge_knopoff.orbits.stretch import Half
+from burridge_knopoff import Chain, Model, MotionKind, OrbitError, law_of
+from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
+from burridge_knopoff.periodic_orbits.stretch import Half
+from burridge_knopoff.stability.synchronized import synchronized_orbit
 from burridge_knopoff.summaries import followed_orbits
 from burridge_knopoff.summaries.branch_changes import BranchChange, Change
 
@@ -21,8 +21,7 @@ from burridge_knopoff.summaries.branch_changes import BranchChange, Change
 )
 def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
     """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
-    known = Family(Model(Chain(3), law_of("linearized", 0.0))).at(0.05)
-    orbit = find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
+    orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)))
     periods = [1.0, 1.0001, 1.01, 0.99]
 
     def closed_motion(model, at):

@@ -5,14 +5,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Model, law_of
-from burridge_knopoff.orbits.branching import branch_orbit, leading_modulus, sweep
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.orbit import multipliers, transverse_multiplier
-from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a
+from burridge_knopoff import Chain, FormulaLaw, Model, law_of, multipliers
+from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
+from burridge_knopoff.periodic_orbits.synchrony import (
+    critical_a,
+    critical_a_error,
+    edges_of,
+    grazing_a,
+    symmetric_flip_a,
+)
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import orbits
-from burridge_knopoff.summaries.orbits import COMPARISON, Bifurcation, BifurcationSide, effective_a, summarize
+from burridge_knopoff.summaries.amplitude import sweep
+from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide
+from burridge_knopoff.summaries.orbits import COMPARISON, effective_a, summarize
 
 
 def models(laws=PAPER_LAWS, chain=None, **options):
@@ -29,13 +36,17 @@ def test_the_curve_is_that_of_the_orbits(found):
     assert found.attrs["v"] == 0.1
     for law in PAPER_LAWS:
         for a in (0.05, 0.1):
-            orbit = Family(Model(Chain(3), law_of(law, 0.0))).at(a)
+            orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(a)
             point = found.sel(law=law, a=a)
             values = point["multiplier"].sel(part="real").values + 1j * point["multiplier"].sel(part="imaginary").values
-            assert values == pytest.approx(multipliers(orbit), abs=1e-12)
+            expected = multipliers(orbit)
+            assert values[0] == pytest.approx(expected.transverse, abs=1e-12)
+            assert values[1] == pytest.approx(1.0, abs=1e-12)
+            assert values[2:4] == pytest.approx(expected.keeping[:2], abs=1e-12)
+            assert values[4:].tolist() == [0.0, 0.0]
             assert values[0] == point["transverse_multiplier"].item()
             assert point["period"].item() == pytest.approx(orbit.period, abs=1e-13)
-            assert point["lateral_slip_time"].item() == pytest.approx(orbit.lateral_slip_time, abs=1e-12)
+            assert point["lateral_slip_time"].item() == pytest.approx(orbit.period - orbit.stick_time(0), abs=1e-12)
             assert point["residual"].item() <= 1e-14
     assert np.isnan(found["period"].sel(a=0.0)).all()
 
@@ -53,22 +64,23 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
 
 def test_the_transition_is_that_of_the_stability_room(found):
     """Each number for itself, the fit by another routine."""
-    family, one = Family(models()[1]), found.sel(law="nonlinear")
-    critical = critical_a(family)
+    family, one = synchronized_orbits(models()[1]), found.sel(law="nonlinear")
+    edges = edges_of(family)
+    critical = critical_a(edges)
     assert one["critical_a"].item() == pytest.approx(critical, abs=1e-14)
     assert one["critical_a_error"].item() == pytest.approx(critical_a_error(family, critical), abs=1e-11)
-    assert one["grazing_a"].item() == pytest.approx(grazing_a(family), abs=1e-12)
-    assert one["symmetric_flip_a"].item() == pytest.approx(symmetric_flip_a(family), abs=1e-12)
+    assert one["grazing_a"].item() == pytest.approx(grazing_a(edges, block=1), abs=1e-12)
+    assert one["symmetric_flip_a"].item() == pytest.approx(symmetric_flip_a(edges), abs=1e-12)
     d = one["branch_asymmetry"].values
     # From a thousandth of v on, five in a decade.
     assert d == pytest.approx(0.1 * 10 ** (np.arange(13) / 5 - 3), rel=1e-3)
     assert d[::5] == pytest.approx([1e-4, 1e-3, 1e-2], rel=1e-12)
-    orbit = branch_orbit(family, critical, d[7])
+    orbit = branching_orbit(family.at(critical), d[7])
     for name, value in {
         "offset": orbit.model.a - critical,
         "period": orbit.period,
         "residual": orbit.residual,
-        "multiplier": leading_modulus(orbit),
+        "multiplier": abs(multipliers(orbit).whole[0]),
         "mean_distance": orbit.mean_distance,
     }.items():
         assert one[f"branch_{name}"].values[7] == pytest.approx(value, rel=1e-7, abs=1e-14), name
@@ -90,10 +102,10 @@ def test_the_law_at_the_same_slope(found):
     nonlinear = models()[1]
     scaled = effective_a(nonlinear, 0.1)
     assert scaled == pytest.approx(0.1 / 1.01**2, rel=1e-15)
-    pair = [Family(model).at(a) for model, a in zip(models(), (scaled, 0.1), strict=True)]
+    pair = [synchronized_orbits(model).at(a) for model, a in zip(models(), (scaled, 0.1), strict=True)]
     point = found.sel(a=0.1)
     assert point["effective_a"].item() == scaled
-    expected = transverse_multiplier(pair[1]) - transverse_multiplier(pair[0])
+    expected = (multipliers(pair[1]).transverse - multipliers(pair[0]).transverse).real
     assert point["effective_multiplier_difference"].item() == pytest.approx(expected, abs=1e-12)
     assert point["effective_period_difference"].item() == pytest.approx(pair[1].period - pair[0].period, abs=1e-12)
     critical = found["critical_a"].values
@@ -149,7 +161,7 @@ def test_friction_that_is_the_same_at_every_speed_is_neutral(formula, status):
 def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatch):
     """Thresholds ten times as high make a_c, and all about it, a tenth."""
     told = []
-    monkeypatch.setattr(orbits, "sweep", lambda family, values: told.append(values) or np.zeros(len(values)))
+    monkeypatch.setattr(orbits, "sweep", lambda orbits, values: told.append(values) or np.zeros(len(values)))
     model = Model(Chain(3, threshold=10.0), law_of("linearized", 0.0))
     critical = summarize([model], [0.005])["critical_a"].item()
     assert critical == pytest.approx(0.00869729047, abs=1e-9)
@@ -161,19 +173,21 @@ def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatc
 def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(monkeypatch, side, rises, expected):
     """Whether the multiplier rises or falls through 1 as a grows."""
     critical = 0.2
-    monkeypatch.setattr(orbits, "leading_modulus", lambda orbit: 0.5)
-    monkeypatch.setattr(orbits, "transverse_multiplier", lambda a: 1.0 + rises * (a - critical))
 
-    def branch_orbit(family, a, asymmetry):
-        model = SimpleNamespace(a=a + side * asymmetry**2)
-        return SimpleNamespace(model=model, period=1.0, residual=0.0, mean_distance=0.5)
+    def multipliers_of(orbit):
+        return SimpleNamespace(transverse=complex(1.0 + rises * (orbit.a - critical)), whole=[0.5])
 
-    monkeypatch.setattr(orbits, "branch_orbit", branch_orbit)
+    def branching(at, asymmetry, near):
+        return SimpleNamespace(a=at.a + side * asymmetry**2, period=1.0, residual=0.0, mean_distance=0.5)
+
+    monkeypatch.setattr(orbits, "multipliers", multipliers_of)
+    monkeypatch.setattr(orbits, "branching_orbit", branching)
     names = [name for name in orbits.VARIABLES if name.startswith(("branch_", "amplitude_"))]
     values = {name: np.full((1, len(orbits.ASYMMETRIES)), np.nan) for name in names}
     values["bifurcation_side"] = np.array([-1])
     values |= {name: np.array([np.nan]) for name in names if name.startswith("amplitude_")}
-    orbits._fill_branch(values, 0, SimpleNamespace(at=lambda a: a), critical, 0.1 * np.array(orbits.ASYMMETRIES))
+    known = SimpleNamespace(at=lambda a: SimpleNamespace(a=a))
+    orbits._fill_branch(values, 0, known, critical, 0.1 * np.array(orbits.ASYMMETRIES))
     supercritical = side * expected > 0
     assert values["bifurcation_side"][0] == BifurcationSide[("SUB", "SUPER")[supercritical] + "CRITICAL"]
     assert values["amplitude_exponent"][0] == pytest.approx(0.5)

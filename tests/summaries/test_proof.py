@@ -11,11 +11,12 @@ import pytest
 from flint import arb
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.orbit import multipliers
-from burridge_knopoff.orbits.transition import critical_a
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import flow
+from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
 from burridge_knopoff.proof.balls import ProofError
 from burridge_knopoff.proof.scope import is_covered
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.summaries import proof
 from burridge_knopoff.summaries.results import write_results
 from tests.refused import refused
@@ -36,18 +37,20 @@ def linearized(found):
 
 @pytest.mark.parametrize("model", [PAPER, NONLINEAR], ids=["linearized", "nonlinear"])
 def test_every_interval_is_about_the_number_of_the_double_code(found, model):
-    family, of_law = Family(model), found.sel(law=model.law.name)
-    a_c = critical_a(family)
+    family, of_law = synchronized_orbits(model), found.sel(law=model.law.name)
+    a_c = critical_a(edges_of(family))
     for name, a in (("given", 0.08), ("critical", a_c)):
         orbit, one = family.at(a), of_law.sel(orbit=name)
         assert one["a"].values == pytest.approx([a, a], abs=2e-15)
         assert one["period"].values == pytest.approx([orbit.period] * 2, abs=TOLD)
-        first = orbit.times(1, 1)[0]
-        state = orbit.reference.position[:2] - first * model.v
+        at = {(block, kind): time for time, block, kind in orbit.events}
+        first = at[1, 1]
+        state = flow(orbit.model, orbit.reference, first)[0].instant().position[:2]
         assert one["position"].values == pytest.approx(np.stack([state] * 2, axis=1), abs=TOLD)
-        times = [orbit.times(0, 1)[0], orbit.times(0, 0)[0], orbit.times(1, 0)[0], first + orbit.period]
-        assert one["event_time"].values == pytest.approx(np.stack([np.array(times) - first] * 2, axis=1), abs=TOLD)
-        expected = multipliers(orbit)[[0, 2]].real
+        times = [*((at[event] - first) % orbit.period for event in ((0, 1), (0, 0), (1, 0))), orbit.period]
+        assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLD)
+        multiplier = multipliers(orbit)
+        expected = [multiplier.transverse.real, multiplier.keeping[0].real]
         assert one["multiplier"].values == pytest.approx(np.stack([expected] * 2, axis=1), abs=1e-11)
     assert of_law["critical_a"].values == pytest.approx([a_c] * 2, abs=2e-15)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
-from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.summaries.frequency import leading_frequency
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
@@ -108,12 +108,12 @@ def test_the_synchronized_orbit(tmp_path):
     """Its period and slip time come from Newton's method, without an event list or a window."""
     dataset = summarize(points(tmp_path, "minus", 0.05), **SETTINGS)
     for law in ("linearized", "nonlinear"):
-        orbit = Family(Model(Chain(3), law_of(law, 0.0))).at(0.05)
+        orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(0.05)
         run = dataset.sel(law=law, initial="minus", a=0.05)
         assert run["cycle_time"].values == pytest.approx([orbit.period] * 3, rel=1e-9)
         assert (run["cycle_time_error"] < 1e-9).all()
         # Whole periods, but for the ends of the window.
-        share = np.array([1.0 - orbit.lateral_slip_time / orbit.period, orbit.center_stick_time / orbit.period] * 2)[:3]
+        share = [orbit.stick_time(block) / orbit.period for block in range(3)]
         assert run["stick_fraction"].values == pytest.approx(share, abs=orbit.period / 400.0)
         assert run["stop_rate"].values == pytest.approx([1.0 / orbit.period] * 3, abs=1.01 / 400.0)
         assert run["velocity_frequency"].values == pytest.approx([1.0 / orbit.period] * 3, abs=1e-5)

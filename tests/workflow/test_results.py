@@ -13,7 +13,7 @@ from burridge_knopoff.check.leftovers import leftovers
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.family import Family
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study, load_study
 
@@ -148,7 +148,7 @@ def test_orbits_summary(results):
         assert (orbits["status"] == 0).all()
         assert orbits["critical_a"].values == pytest.approx([0.0869729046661, 0.0887172229712], abs=1e-12)
         for law in ("linearized", "nonlinear"):
-            orbit = Family(Model(Chain(3), law_of(law, 0.0))).at(0.2)
+            orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(0.2)
             assert orbits["period"].sel(law=law, a=0.2).item() == pytest.approx(orbit.period, abs=1e-12)
 
 

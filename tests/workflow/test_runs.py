@@ -103,13 +103,20 @@ def test_stages_that_the_config_leaves_out(tmp_path):
     assert {"simulate_solver", "agreement", "figure_mean_distance", "figure_orbits", "report"} <= rules
     assert re.search(r"^a run takes .* on 2 cores: .* of CPU time, and \d+ MB of disk$", output, re.MULTILINE)
     run = study.run("-n", "results/tiny/summary/attractors.nc")
-    assert "results/tiny/summary/attractors.nc: neither a rule nor a file of this study" in run.stdout
+    assert "results/tiny/summary/attractors.nc: unknown target" in run.stdout
 
 
 def test_stage_targets(study):
     assert set(jobs(study.ok("points", "-n"))) == {"simulate", "points"}
     assert {"simulate", "mean_distance", "bifurcation", "agreement"} < set(jobs(study.ok("summary", "-n")))
     assert "figure_agreement" in jobs(study.ok("figures", "-n"))
+
+
+def test_every_rule_says_what_it_is_for(study):
+    lines = study.ok("--list-rules").splitlines()
+    listed = dict(line.split(" ", 1) if " " in line else (line, "") for line in lines if not line.startswith("Using "))
+    assert {"all", "basin_pairs", "mean_distance", "figure_lyapunov"} <= listed.keys()
+    assert [rule for rule, says in listed.items() if not re.fullmatch(r"\([A-Z].+\.\)", says)] == []
 
 
 def test_one_rule_again(copy):

@@ -11,6 +11,7 @@ SEARCH_PARAMS = {
 
 
 rule attractors_of_law:
+    """Search for the coexisting attractors of one friction law at every a, and refine a where they change."""
     output:
         OF_LAW,
     log:
@@ -44,6 +45,7 @@ rule attractors_of_law:
 
 
 rule attractors:
+    """Put the attractors of all friction laws together, with their branches, basin fractions and rotation numbers."""
     input:
         grid=expand(OF_LAW[0], law=STUDY.laws),
         refined=expand(OF_LAW[1], law=STUDY.laws),

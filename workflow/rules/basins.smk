@@ -11,6 +11,7 @@ BASIN_PARAMS = {
 
 
 rule basin_tile:
+    """Map one tile of the basins of attraction over a plane of initial states."""
     input:
         f"{SUMMARY}/attractors.nc",
     output:
@@ -39,6 +40,7 @@ rule basin_tile:
 
 
 use rule basin_tile as basin_pairs with:
+    """Measure how rough the basin boundaries are, from pairs of nearby initial states."""
     output:
         f"{RESULTS}/basins/{{law}}/a{{a}}/pairs.nc",
     log:
@@ -52,6 +54,7 @@ use rule basin_tile as basin_pairs with:
 
 
 rule basins:
+    """Put the tiles and pairs together into maps of the basins of attraction."""
     input:
         attractors=f"{SUMMARY}/attractors.nc",
         tiles=[

@@ -5,6 +5,7 @@ CHAIN_BLOCKS = sorted(CHAINS["blocks"], reverse=True)
 
 
 rule chains:
+    """Make the summaries and the figure of longer chains, which are not part of `all`."""
     input:
         f"{SUMMARY}/chains.nc",
         f"{SUMMARY}/two_blocks.nc",
@@ -14,6 +15,7 @@ rule chains:
 
 
 rule watch_chain:
+    """Find out which sampled initial states of a longer chain end in mirror synchrony."""
     output:
         f"{RESULTS}/chains/blocks{{blocks}}.nc",
     log:
@@ -52,6 +54,7 @@ rule watch_chain:
 
 
 rule chains_summary:
+    """Put the fraction of synchronizing initial states together over chain length and a."""
     input:
         expand(rules.watch_chain.output, blocks=CHAIN_BLOCKS),
     output:

@@ -2,6 +2,7 @@
 
 
 rule claims:
+    """Judge every claim of the paper by the summaries."""
     input:
         expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
     output:

@@ -2,6 +2,7 @@
 
 
 rule edges_of_law:
+    """Continue the periodic orbits of one friction law in a to the bifurcations where their branches begin or end."""
     input:
         attractors=f"{SUMMARY}/attractors.nc",
         refined=f"{SUMMARY}/refined.nc",
@@ -34,6 +35,7 @@ rule edges_of_law:
 
 
 rule edges:
+    """Put the bifurcations of all friction laws together."""
     input:
         expand(rules.edges_of_law.output, law=STUDY.laws),
     output:

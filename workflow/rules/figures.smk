@@ -15,6 +15,7 @@ PLAN.first = [f"figure_{figure.name}" for figure in OF_PAPER]
 
 
 rule curves:
+    """Draw the figures of the paper."""
     input:
         pictures(OF_PAPER),
     message:
@@ -23,6 +24,7 @@ rule curves:
 
 # Without those of the optional stage.
 rule figures:
+    """Draw all figures but that of longer chains."""
     input:
         pictures([figure for figure in DESCRIPTIONS if "chains" not in figure.inputs]),
 
@@ -70,3 +72,6 @@ for figure in DESCRIPTIONS:
             f"figure: {figure.title.replace('{', '{wildcards.')}"
         script:
             "../scripts/{params.script}.py"
+
+    # Written inside, it would be the same for all of them.
+    workflow.get_rule(f"figure_{figure.name}").docstring = f"Draw {figure.subject}"

@@ -4,6 +4,7 @@ PHASES = STUDY.config["phases"]
 
 
 rule phases_of_law:
+    """Find out which initial phases of the end blocks lead to synchrony under one friction law."""
     input:
         f"{SUMMARY}/attractors.nc",
     output:
@@ -33,6 +34,7 @@ rule phases_of_law:
 
 
 rule phases:
+    """Put the outcomes of initial phases of all friction laws together."""
     input:
         expand(rules.phases_of_law.output, law=STUDY.laws),
     output:

@@ -2,6 +2,7 @@
 
 
 rule proof:
+    """Prove by ball arithmetic that the synchronized orbit exists and where it loses its stability."""
     output:
         f"{SUMMARY}/proof.nc",
         report(

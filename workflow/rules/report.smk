@@ -10,6 +10,7 @@ OPTIONAL_RESULTS = {
 
 
 rule report:
+    """Write the report of the study, one HTML file that opens offline."""
     input:
         claims=CLAIMS_MADE[:1],
         summaries=[path for path in rules.summary.input if path.endswith(".nc")],

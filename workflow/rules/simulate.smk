@@ -5,11 +5,13 @@ POINT_SOURCES = source_fingerprint("burridge_knopoff.dataset.point")
 
 
 rule points:
+    """Simulate all points: each friction law from each initial state at each a."""
     input:
         [f"{RESULTS}/points/{POINT}".format(**point) for point in POINTS],
 
 
 rule simulate:
+    """Simulate one point: one friction law from one initial state at one a."""
     output:
         f"{RESULTS}/points/{POINT}",
     log:

@@ -8,6 +8,7 @@ SOLVER_POINTS = solver_points(STUDY)
 
 
 use rule simulate as simulate_solver with:
+    """Simulate one point again by another solver."""
     output:
         SOLVER_POINT,
     log:
@@ -30,6 +31,7 @@ use rule simulate as simulate_solver with:
 
 
 rule solvers:
+    """Compare independent solvers of the equations of motion."""
     input:
         points=[
             f"{RESULTS}/points/{POINT}".format(**point)

@@ -47,7 +47,7 @@ if Path.cwd() == ROOT / "workflow":
     sys.exit(f"no study is run in the folder workflow: cd {shlex.quote(str(ROOT))}")
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# Of what a job frees, what is large is given back: glibc would keep up to 64 MB for more, once as much has been freed.
+# Return large freed blocks to the operating system: glibc would keep up to 64 MB, once as much has been freed.
 os.environ.setdefault("MALLOC_MMAP_THRESHOLD_", str(2**20))
 os.environ.setdefault("MALLOC_TRIM_THRESHOLD_", str(4 * 2**20))
 

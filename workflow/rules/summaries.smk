@@ -7,23 +7,43 @@ OF_PAPER_FIGURES = {
     name for figure in figure_descriptions() if figure.paper for name in figure.inputs
 }
 
-# What a summary is of; what else it reads; keys of the config that it uses; texts beside it, {suffix: result}.
+# What a summary is for, and of; what else it reads; keys of the config that it uses; texts beside it, {suffix: result}.
 SUMMARIES = {
-    "mean_distance": {"of": "points", "keys": ["synchronization_threshold"]},
-    "bifurcation": {"of": "points", "mem_mb": 1000},
+    "mean_distance": {
+        "docstring": "Average the distance J between the end blocks over each run.",
+        "of": "points",
+        "keys": ["synchronization_threshold"],
+    },
+    "bifurcation": {
+        "docstring": "Collect the section points of all runs for the bifurcation diagrams.",
+        "of": "points",
+        "mem_mb": 1000,
+    },
     "lyapunov": {
+        "docstring": "Estimate the Lyapunov exponents of each run and tell its kind of motion.",
         "of": "points",
         "keys": ["lyapunov_exponents", "synchronization_threshold", "motion"],
     },
     "agreement": {
+        "docstring": "Judge where each friction law agrees with the first one.",
         "of": "points",
         "summaries": ["lyapunov", "attractors"],
         "keys": ["synchronization_threshold", "agreement"],
         "texts": {"csv": "table of the agreement", "txt": "agreement in words"},
     },
-    "stick_slip": {"of": "points", "keys": ["transient", "window", "batches"]},
-    "orbits": {"of": "models"},
-    "equilibrium": {"of": "models"},
+    "stick_slip": {
+        "docstring": "Measure the stick-slip cycles of each block in each run.",
+        "of": "points",
+        "keys": ["transient", "window", "batches"],
+    },
+    "orbits": {
+        "docstring": "Follow the synchronized orbit in a to where it loses its stability, and the orbit that branches off there.",
+        "of": "models",
+    },
+    "equilibrium": {
+        "docstring": "Find uniform sliding and the eigenvalues of its perturbations.",
+        "of": "models",
+    },
 }
 # Of these and of the stages that the study has.
 MADE = [*SUMMARIES, *STUDY.stage_summaries]
@@ -48,6 +68,7 @@ SUMMARY_PARAMS = {
 
 
 rule summary:
+    """Make all summaries of the study, and the verdicts on the claims of the paper."""
     input:
         expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
         [
@@ -102,3 +123,6 @@ for name, row in SUMMARIES.items():
             f"summary: {name}"
         script:
             "../scripts/{params.script}.py"
+
+    # Written inside, it would be the same for all of them.
+    workflow.get_rule(name).docstring = row["docstring"]

@@ -5,6 +5,7 @@ CHAINS = STUDY.config["chains"]
 
 
 rule two_blocks:
+    """Compare the motion of two blocks under each friction law with that under the first one."""
     output:
         f"{SUMMARY}/two_blocks.nc",
     log:

@@ -18,7 +18,7 @@ from burridge_knopoff.claims.verdict import (
     share_is_decided,
     worst,
 )
-from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
 from burridge_knopoff.stability.motion import CHAOS, REGULAR, MotionKind
 from burridge_knopoff.stability.sampling import fraction_interval
 from burridge_knopoff.study.paper import PAPER_LAWS

@@ -120,7 +120,7 @@ def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
 
 
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
-    """Tell the same of so many that are right, at least and at most."""
+    """Tell the same from bounds on how many are right."""
     worst_case, best_case = (by_share(right / count, loose) for right in (least, most))
     return (worst_case == FAILS) == (best_case == FAILS)
 

@@ -14,10 +14,11 @@ if TYPE_CHECKING:
 
     from burridge_knopoff.model.initial import InitialState
     from burridge_knopoff.model.model import Model
-    from burridge_knopoff.orbits.periodic import PeriodicOrbit
+    from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 
-DESCRIPTION = """Compute the synchronized orbit, stable or not; or, from an initial state, the periodic orbit that its
-motion comes to, of any chain. An orbit is stable where all multipliers but that of the flow are below 1 in modulus."""
+DESCRIPTION = """Compute the synchronized orbit, stable or not, of a chain that is its own mirror image; or, from an
+initial state, the periodic orbit that its motion comes to, of any chain. An orbit is stable where all multipliers but
+that of the flow are below 1 in modulus."""
 
 EXAMPLES = """  bk orbit --law linearized --a 0.08
   bk orbit --law linearized --a 0.08 --initial plus
@@ -33,7 +34,7 @@ ZERO = 1e-7
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of an orbit."""
     add_model(parser)
-    add_state(parser, "none: the synchronized orbit of three blocks")
+    add_state(parser, "none: the synchronized orbit")
     motion = parser.add_argument_group("motion from that state")
     add(motion, Settings, "start")
     parser.add_argument(
@@ -59,12 +60,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _synchronized(model: Model) -> PeriodicOrbit:
-    from burridge_knopoff.orbits.family import synchronized_orbit
-    from burridge_knopoff.orbits.periodic import orbit_of
-    from burridge_knopoff.orbits.symmetry import Symmetry
+    from burridge_knopoff.stability.synchronized import synchronized_orbit
 
-    found = synchronized_orbit(model)
-    return orbit_of(model, found.reference, found.period, Symmetry.SYNCHRONIZED)
+    return synchronized_orbit(model)
 
 
 def _reached(model: Model, state: InitialState, start: str, settling: float) -> PeriodicOrbit:
@@ -75,7 +73,7 @@ def _reached(model: Model, state: InitialState, start: str, settling: float) -> 
 
 def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Return an orbit in lines, at most so many of its events among them."""
-    from burridge_knopoff.orbits.floquet import multipliers
+    from burridge_knopoff.periodic_orbits.floquet import multipliers
     from burridge_knopoff.show.words import table
     from burridge_knopoff.study.words import counted
 

@@ -1,4 +1,4 @@
-"""Agreement of each friction law with the first one against a."""
+"""The agreement of each friction law with the first one against a."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Basin fractions against a, and how sweeps of a move between the branches."""
+"""The basin fractions against a, and how sweeps of a move between the branches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Maps of basins of attraction."""
+"""Maps of the basins of attraction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mirror synchrony of longer chains."""
+"""The mirror synchrony of longer chains."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """What each figure says of itself: rules, `snakemake --report` and the report of a study read it without drawing.
 
-A module of this folder that assigns CAPTION is a figure. It has a function `draw` and, as plain constants:
+A module of this folder that assigns CAPTION is a figure. The first line of its docstring says what it shows, with an
+article and not a proper name first, so that it may follow "Draw". It has a function `draw` and, as plain constants:
 
 TITLE, CATEGORY : in words; PAPER : figures of the paper that it shows again, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
@@ -30,6 +31,7 @@ class Description:
     """What the figure of a module says of itself."""
 
     name: str
+    subject: str
     title: str
     category: str
     caption: str
@@ -104,12 +106,13 @@ def described_picture(file: str) -> tuple[str, str]:
 
 
 def _described(path: Path) -> Description | None:
-    constants = {}
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    constants, module = {}, ast.parse(path.read_text(encoding="utf-8"))
+    for node in module.body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             constants[node.targets[0].id] = node.value
     if "CAPTION" not in constants:
         return None
     names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
     told = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
-    return Description(path.stem, **{"file": path.stem, **told})
+    headline = (ast.get_docstring(module) or "").partition("\n")[0]
+    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **told})

@@ -1,4 +1,4 @@
-"""Where branches of attractors begin, end and change, and by what: ⟨J⟩ of periodic orbits against a, with the edges."""
+"""The edges of branches of attractors, on ⟨J⟩ of periodic orbits against a, and what happens at each edge."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from burridge_knopoff.figures.style import (
     show_all,
     styled,
 )
-from burridge_knopoff.orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
 from burridge_knopoff.summaries.branch_changes import Change
 from burridge_knopoff.summaries.slots import branch_names
 

@@ -1,4 +1,4 @@
-"""Lyapunov exponents and kinds of motion against a."""
+"""The Lyapunov exponents and the kinds of motion against a."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from burridge_knopoff.figures.style import (
     styled,
     to_decades,
 )
-from burridge_knopoff.orbits.loss import Bifurcation
+from burridge_knopoff.summaries.orbit_flags import Bifurcation
 
 TITLE = "The synchronized orbit"
 CATEGORY = "Synchronization"

@@ -1,4 +1,4 @@
-"""Which initial phases of the end blocks lead to synchrony."""
+"""The initial phases of the end blocks that lead to synchrony."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Independent solvers: ⟨J⟩ that each gives, and how many steps each takes."""
+"""The results of independent solvers: ⟨J⟩ that each gives, and how many steps each takes."""
 
 from __future__ import annotations
 

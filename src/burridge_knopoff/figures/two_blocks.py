@@ -1,4 +1,4 @@
-"""Two blocks under each law: ⟨J⟩ against a from each initial state, and for which states the laws disagree."""
+"""Two blocks under each law: their ⟨J⟩ against a from each initial state, and for which states the laws disagree."""
 
 from __future__ import annotations
 
@@ -30,10 +30,11 @@ TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
-⟨J⟩ of what two blocks end on against a under each law, from each sampled initial state, and below it for which of
-these states the laws disagree, in ⟨J⟩ or in the kind of motion: each other law compared with the first one. (a, b) The
-train model, pulled at its first block only, of which the paper speaks. (c, d) Both blocks are pulled, which is not the
-paper's chain. Where symbols coincide, the laws have the same motions, but a marked state leads to different ones.
+⟨J⟩ of the attractor reached by two blocks, versus a, under each law, from each sampled initial state, and below it for
+which of these states the laws disagree, in ⟨J⟩ or in the kind of motion: each other law compared with the first one.
+(a, b) The train model, pulled at its first block only, of which the paper speaks. (c, d) Both blocks are pulled, which
+is not the paper's chain. Where symbols coincide, the laws have the same motions, but a marked state leads to different
+ones.
 """
 
 # Of the states for which the laws disagree, or may.

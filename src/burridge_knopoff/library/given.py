@@ -1,4 +1,4 @@
-"""What a person gives for an initial state and for a model, in the forms that come to mind."""
+"""Normalise what a user gives for an initial state and for a model."""
 
 from __future__ import annotations
 

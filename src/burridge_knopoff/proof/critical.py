@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from burridge_knopoff.orbits.orbit import Orbit
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.proof.arcs import Arc
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around
 from burridge_knopoff.proof.krawczyk import (
@@ -75,7 +75,7 @@ class Piece:
                 raise ProofError(f"a = {a}: not proved to be an orbit of the family")
 
 
-def prove_critical(orbit: Orbit) -> Critical:
+def prove_critical(orbit: PeriodicOrbit) -> Critical:
     """Return the proof that the multiplier of the synchronized orbit passes 1, at an a near that of an orbit.
 
     orbit : in double precision, near a_c
@@ -91,7 +91,7 @@ def prove_critical(orbit: Orbit) -> Critical:
     return Critical(proved, found.outer[-1])
 
 
-def prove_branch(orbit: Orbit, low: fmpq, high: fmpq) -> list[Piece]:
+def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
     """Return the proofs that the synchronized orbit exists and that its multiplier rises, for all a from low to high.
 
     There is one orbit in the box of each piece, and neighbouring pieces have the same one where they touch.

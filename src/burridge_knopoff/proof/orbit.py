@@ -16,7 +16,8 @@ from typing import Any
 
 from flint import arb
 
-from burridge_knopoff.orbits.orbit import Orbit, flow
+from burridge_knopoff.periodic_orbits.flow import flow
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.bounds import Function, bounds, check_positive
@@ -56,7 +57,7 @@ def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
     return values
 
 
-def arcs_of(orbit: Orbit) -> tuple[tuple[Arc, ...], list[float]]:
+def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
     """Return the arcs of a synchronized orbit in double precision, and its unknowns: only a guess.
 
     Raises ProofError unless all blocks stick at once, and each starts and stops once a period.
@@ -189,7 +190,7 @@ class ProvedOrbit:
         return list(zip(self.arcs, states, self.times, strict=False))
 
 
-def prove_orbit(orbit: Orbit, a: arb) -> ProvedOrbit:
+def prove_orbit(orbit: PeriodicOrbit, a: arb) -> ProvedOrbit:
     """Return the proof that there is a synchronized orbit near one in double precision.
 
     a : friction parameter, a narrow ball around that of the orbit

@@ -16,9 +16,9 @@ from burridge_knopoff.figures.branches import (
     undetermined_share,
 )
 from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.orbits.loss import Bifurcation, OrbitStatus
 from burridge_knopoff.report.numbers import rounded
 from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.summaries.orbit_flags import Bifurcation, OrbitStatus
 from burridge_knopoff.summaries.slots import branch_names
 
 

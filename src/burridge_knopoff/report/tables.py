@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.words import span, text, with_error
+from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide, OrbitStatus
 from burridge_knopoff.summaries.slots import branch_names
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.period import orbit_length
 from burridge_knopoff.stability.returns import Returns, instant_of, stops_alike, visit
 from burridge_knopoff.stability.settings import SearchSettings

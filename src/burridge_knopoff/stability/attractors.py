@@ -12,10 +12,9 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.branching import leading_modulus
-from burridge_knopoff.orbits.family import synchronized_orbit
-from burridge_knopoff.orbits.orbit import OrbitError
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor, close_returns, pushed, spread
 from burridge_knopoff.stability.labels import UNDETERMINED, label
 from burridge_knopoff.stability.motion import CHAOS
@@ -26,6 +25,7 @@ from burridge_knopoff.stability.sampling import sampled_states
 from burridge_knopoff.stability.settings import MOTION, SEARCH, MotionSettings, SearchSettings
 from burridge_knopoff.stability.settling import Settling
 from burridge_knopoff.stability.steady import SteadyMotion, lies_on, measure
+from burridge_knopoff.stability.synchronized import synchronized_orbit
 from burridge_knopoff.stability.tuning import TUNING, Tuning
 from burridge_knopoff.values import instance_of
 
@@ -227,7 +227,7 @@ class Search(Settling):
         return closed and self._accept(new, tuning.tiny_radius)
 
     def _images(self, motion: SteadyMotion, symmetric: bool, enough: int) -> list[Attractor]:
-        """Return a motion as an attractor to come, with its mirror image if that is another one.
+        """Return a motion as a candidate attractor, with its mirror image if that is different.
 
         enough : successive returns within its radius after which a trajectory counts as captured
         """
@@ -250,7 +250,7 @@ class Search(Settling):
             orbit = synchronized_orbit(self.model)
         except OrbitError:
             return False
-        if leading_modulus(orbit) >= 1.0:
+        if abs(multipliers(orbit).whole[0]) >= 1.0:
             return False
         settings, index = self.settings, len(self.attractors)
         exact = measure(

@@ -13,7 +13,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor, spread
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import MotionKind

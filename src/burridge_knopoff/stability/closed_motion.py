@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.floquet import multipliers
-from burridge_knopoff.orbits.orbit import OrbitError, flow
-from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
-from burridge_knopoff.orbits.return_map import mirror
-from burridge_knopoff.orbits.simpler import simplest
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.periodic_orbits.return_map import mirror
+from burridge_knopoff.periodic_orbits.simpler import simplest
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import DURATION
 from burridge_knopoff.running.status import Status

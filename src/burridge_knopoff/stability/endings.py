@@ -15,9 +15,9 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.floquet import multipliers
-from burridge_knopoff.orbits.orbit import OrbitError
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.attractor import Attractor

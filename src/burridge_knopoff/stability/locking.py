@@ -12,10 +12,10 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.floquet import multipliers
-from burridge_knopoff.orbits.orbit import OrbitError
-from burridge_knopoff.orbits.periodic import PeriodicOrbit, find_periodic_orbit
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.nearness import distance
 from burridge_knopoff.stability.returns import instant_of, visit
 from burridge_knopoff.stability.tuning import TUNING, Tuning

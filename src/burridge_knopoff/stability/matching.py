@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.attractor import Attractor
 from burridge_knopoff.stability.labels import UNDETERMINED
 from burridge_knopoff.stability.motion import REGULAR, MotionKind

@@ -108,8 +108,8 @@ def sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
 
     stops : of each block, shape (blocks,)
 
-    By shares, which do not depend on how long the motion is seen: of the pairs of mirror blocks that do not hardly ever
-    stop the outermost one, and of that the first block, or the one that stops if only one of them does.
+    Of the pairs of mirror blocks that stop often the outermost one is taken, and of that the first block, or the one
+    that stops if only one of them does. Shares of all stops decide, which do not depend on how long the motion is seen.
     """
     pairs = stops + stops[::-1]
     outer = int(np.argmax(pairs >= tuning.seldom * pairs.max()))

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.contacts import longest_spacing
+from burridge_knopoff.periodic_orbits.contacts import longest_spacing
 from burridge_knopoff.running.together import new_ensemble
 
 # Turns of less than this from one sample to the next have one sense only; an oscillation that passes through its centre

@@ -134,8 +134,8 @@ class SearchSettings:
     time_limit: Annotated[
         float,
         TIME,
-        "time by which a trajectory of the search has to reach a known attractor; a state that is counted has ten times"
-        " as long, else it is undetermined",
+        "time by which a trajectory of the search has to reach a known attractor; states counted in "
+        "basin fractions get ten times this limit, after which they are undetermined",
     ] = 20_000.0
     resolution: Annotated[
         float,
@@ -253,7 +253,9 @@ class PhaseSettings:
         int, SAMPLES, "states, of phases drawn at random, for each amplitude and phase difference at each a"
     ] = 40
     seed: Annotated[
-        int, SEED, "seed of these phases; at each a they are others, under each law and with each inner_share the same"
+        int,
+        SEED,
+        "seed of these phases, which differ from one a to the next and are the same for each law and inner_share",
     ] = 1
 
     def __post_init__(self) -> None:

@@ -40,7 +40,7 @@ class Settling:
         return self.motion_settings.at_speed(self.model.v).period_tolerance
 
     def settle(self, start: Instant) -> Returns | None:
-        """Return where a state returns to when it has settled, or None if it does not settle."""
+        """Integrate to convergence and return the section returns; None if the state does not converge."""
         found = None
         transient, window = self.settings.transient, self.settings.window
         tolerance, resolution, tuning = self.tolerance, self.resolution, self.tuning

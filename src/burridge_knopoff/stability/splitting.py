@@ -77,7 +77,7 @@ class _Pairs:
 
     @property
     def different(self) -> np.ndarray:
-        """Which have two different ones."""
+        """Pairs with differing labels."""
         return self.known & (self.labels[0] != self.labels[1])
 
     def weights(self, chosen: np.ndarray) -> np.ndarray:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.orbits.floquet import multipliers
-from burridge_knopoff.orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.stability.locking import locked_orbit, recurrence

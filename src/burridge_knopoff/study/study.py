@@ -10,7 +10,6 @@ from typing import Any, TypeVar
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.loss import has_orbit
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
@@ -98,8 +97,8 @@ class Study:
 
     @property
     def has_synchronized_orbit(self) -> bool:
-        """Whether the synchronized orbit is looked for."""
-        return has_orbit(self.model(self.laws[0], self.shown_a).chain)
+        """Whether there is a summary of the synchronized orbit, that of three blocks."""
+        return self.blocks == 3 and self.is_mirror_symmetric
 
     @property
     def proved_laws(self) -> list[str]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray
 
-from burridge_knopoff.orbits.edge_kind import EdgeKind
-from burridge_knopoff.orbits.edges import Edge
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edges import Edge
 from burridge_knopoff.stability.motion import CHAOS, MotionKind
 from burridge_knopoff.summaries.branch_changes import BranchChange, Change, slots_of_branches
 from burridge_knopoff.summaries.followed_orbits import FollowedOrbits

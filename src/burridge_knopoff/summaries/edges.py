@@ -17,8 +17,8 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.edge_kind import EdgeKind
-from burridge_knopoff.orbits.stretch import Stretch
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.stretch import Stretch
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.summaries.branch_changes import Change, branch_changes
 from burridge_knopoff.summaries.edge_entries import LEAST_ERROR, Entry, entries

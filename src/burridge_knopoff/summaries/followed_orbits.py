@@ -13,11 +13,11 @@ import scipy
 import xarray
 
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.floquet import multipliers
-from burridge_knopoff.orbits.following import Following
-from burridge_knopoff.orbits.orbit import OrbitError
-from burridge_knopoff.orbits.periodic import PeriodicOrbit
-from burridge_knopoff.orbits.stretch import Half, Stretch, half
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.following import Following
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.stretch import Half, Stretch, half
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.stability.closed_motion import closed_motion
 from burridge_knopoff.stability.returns import instant_of

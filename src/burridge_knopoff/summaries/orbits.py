@@ -12,13 +12,25 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.branching import branch_orbit, fit_power_law, leading_modulus, sweep
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.loss import Bifurcation, BifurcationSide, OrbitStatus
-from burridge_knopoff.orbits.orbit import OrbitError, multipliers, transverse_multiplier
-from burridge_knopoff.orbits.transition import critical_a, critical_a_error, grazing_a, symmetric_flip_a, unit
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError, rate
+from burridge_knopoff.periodic_orbits.known import KnownOrbits
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
+from burridge_knopoff.periodic_orbits.synchrony import (
+    critical_a,
+    critical_a_error,
+    edges_of,
+    grazing_a,
+    symmetric_flip_a,
+    unit,
+)
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
+from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide, OrbitStatus
 
+BLOCKS = 3
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
 PARTS = ("real", "imaginary")
 DIRECTIONS = ("upward", "downward")
@@ -106,17 +118,13 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
         name: np.full([sizes[dimension] for dimension in item.dimensions], -1 if item.dtype == "i1" else np.nan)
         for name, item in variables.items()
     }
-    families: dict[str, Family | None] = {}
+    found: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        try:
-            families[laws[i]] = Family(model)
-        except OrbitError as error:
-            print(f"{laws[i]}: {error}")
-            families[laws[i]] = None
-        _fill_curve(values, i, model, families[laws[i]], grid)
-        _fill_transition(values, i, families[laws[i]], asymmetry)
+        found[laws[i]] = _known(model)
+        _fill_curve(values, i, model, found[laws[i]], grid)
+        _fill_transition(values, i, found[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
-        _compare(values, laws, pair[1], families[PAPER_LAWS[0]], grid)
+        _compare(values, laws, pair[1], found[PAPER_LAWS[0]], grid)
     return summary(
         "The synchronized orbit of three blocks, its Floquet multipliers, and where it is lost",
         variables,
@@ -141,27 +149,50 @@ def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarr
     return named
 
 
-def _fill_curve(values: dict[str, Any], i: int, model: Model, family: Family | None, grid: Sequence[float]) -> None:
+def _known(model: Model) -> KnownOrbits | None:
+    """Return the synchronized orbits of a model; None, with a line of the log, if there are none."""
+    try:
+        # Variables and modes are those of three blocks.
+        return synchronized_orbits(model) if model.blocks == BLOCKS else None
+    except OrbitError as error:
+        print(f"{model.law.name}: {error}")
+        return None
+
+
+def _fill_curve(
+    values: dict[str, Any], i: int, model: Model, orbits: KnownOrbits | None, grid: Sequence[float]
+) -> None:
     """Fill in what is known along the grid for the law of that number."""
     for k, a in enumerate(grid):
-        values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == 3 else OrbitStatus.NOT_THREE_BLOCKS
-        if model.blocks == 3 and _is_constant(model.at(a).law):
+        values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == BLOCKS else OrbitStatus.NOT_THREE_BLOCKS
+        if model.blocks == BLOCKS and _is_constant(model.at(a).law):
             values["status"][i, k] = OrbitStatus.NEUTRAL
-        if family is None or a == 0.0:
+        if orbits is None or a == 0.0:
             continue
         try:
-            orbit = family.at(a)
+            orbit = orbits.at(a)
         except OrbitError as error:
-            print(f"{family.model.law.name}: {error}")
+            print(f"{model.law.name}: {error}")
             continue
-        found = multipliers(orbit)
+        found = modes(orbit)
         values["status"][i, k] = OrbitStatus.FOUND
         values["period"][i, k] = orbit.period
         values["residual"][i, k] = orbit.residual
-        values["lateral_slip_time"][i, k] = orbit.lateral_slip_time
-        values["center_stick_time"][i, k] = orbit.center_stick_time
-        values["transverse_multiplier"][i, k] = transverse_multiplier(orbit)
+        values["lateral_slip_time"][i, k] = orbit.period - orbit.stick_time(0)
+        values["center_stick_time"][i, k] = orbit.stick_time(1)
+        values["transverse_multiplier"][i, k] = found[0].real
         values["multiplier"][i, k] = np.stack([found.real, found.imag], axis=-1)
+
+
+def modes(orbit: PeriodicOrbit) -> np.ndarray:
+    """Return the multipliers of a synchronized orbit of three blocks in the order of MODES, complex.
+
+    That of the flow is computed as the share of it that returns; those of the velocities of blocks 1 and 3 are 0, since
+    these stop.
+    """
+    found, flow = multipliers(orbit), rate(orbit.model, orbit.reference)
+    returned = flow @ orbit.monodromy @ flow / (flow @ flow)
+    return np.array([found.transverse, returned, *found.keeping[:2], 0.0, 0.0], dtype=complex)
 
 
 def _is_constant(law: Law) -> bool:
@@ -169,43 +200,50 @@ def _is_constant(law: Law) -> bool:
     return law.is_linear and float(law.slope(0.0)) == 0.0 and float(law(0.0)) == 1.0
 
 
-def _fill_transition(values: dict[str, Any], i: int, family: Family | None, asymmetry: np.ndarray) -> None:
+def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None, asymmetry: np.ndarray) -> None:
     """Fill in where the orbit of the law of that number changes, and what branches off."""
-    if family is None:
+    if orbits is None:
         return
-    critical = critical_a(family)
+    edges = edges_of(orbits)
+    critical = critical_a(edges)
     values["critical_a"][i] = critical
-    values["grazing_a"][i] = grazing_a(family)
-    values["symmetric_flip_a"][i] = symmetric_flip_a(family)
+    values["grazing_a"][i] = grazing_a(edges, block=1)
+    values["symmetric_flip_a"][i] = symmetric_flip_a(edges)
     if not np.isfinite(critical):
         return
-    values["critical_a_error"][i] = critical_a_error(family, critical)
-    kind = Bifurcation.PITCHFORK if transverse_multiplier(family.at(critical)) > 0.0 else Bifurcation.FLIP
+    values["critical_a_error"][i] = critical_a_error(orbits, critical)
+    kind = Bifurcation.PITCHFORK if transverse(orbits, critical) > 0.0 else Bifurcation.FLIP
     values["bifurcation_kind"][i] = kind
-    runs = critical + unit(family.model.chain) * np.array(OFFSETS)
-    values["sweep_asymmetry"][i] = sweep(family, runs), sweep(family, runs[::-1])[::-1]
+    runs = critical + unit(orbits.model.chain) * np.array(OFFSETS)
+    values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
     if kind == Bifurcation.PITCHFORK:
-        _fill_branch(values, i, family, critical, asymmetry)
+        _fill_branch(values, i, orbits, critical, asymmetry)
 
 
-def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float, asymmetry: np.ndarray) -> None:
+def transverse(orbits: KnownOrbits, a: float) -> float:
+    """Return the transverse multiplier of the synchronized orbit at an a."""
+    return multipliers(orbits.at(a)).transverse.real
+
+
+def _fill_branch(values: dict[str, Any], i: int, orbits: KnownOrbits, critical: float, asymmetry: np.ndarray) -> None:
     """Fill in the orbits that branch off where the multiplier is 1, the side on which they lie, and their amplitude."""
+    orbit = None
     for k, d in enumerate(asymmetry):
         try:
-            orbit = branch_orbit(family, critical, float(d))
+            orbit = branching_orbit(orbits.at(critical), float(d), orbit)
         except OrbitError as error:
-            print(f"{family.model.law.name}: {error}")
+            print(f"{orbits.model.law.name}: {error}")
             continue
-        values["branch_offset"][i, k] = orbit.model.a - critical
+        values["branch_offset"][i, k] = orbit.a - critical
         values["branch_period"][i, k] = orbit.period
         values["branch_residual"][i, k] = orbit.residual
-        values["branch_multiplier"][i, k] = leading_modulus(orbit)
+        values["branch_multiplier"][i, k] = round(float(abs(multipliers(orbit).whole[0])), 8)
         values["branch_mean_distance"][i, k] = orbit.mean_distance
     small = np.array(ASYMMETRIES) <= LARGEST_FITTED
     offset = values["branch_offset"][i, small]
     if (offset > 0.0).all() or (offset < 0.0).all():
-        unstable = transverse_multiplier(family.at(critical + float(offset[-1]))) > 1.0
+        unstable = transverse(orbits, critical + float(offset[-1])) > 1.0
         values["bifurcation_side"][i] = BifurcationSide.SUPERCRITICAL if unstable else BifurcationSide.SUBCRITICAL
         fit = fit_power_law(np.abs(offset), asymmetry[small])
         values["amplitude_exponent"][i] = fit.exponent
@@ -214,7 +252,7 @@ def _fill_branch(values: dict[str, Any], i: int, family: Family, critical: float
 
 
 def _compare(
-    values: dict[str, Any], laws: Sequence[str], other: Model, first: Family | None, grid: Sequence[float]
+    values: dict[str, Any], laws: Sequence[str], other: Model, first: KnownOrbits | None, grid: Sequence[float]
 ) -> None:
     """Fill in how the second of the paper's laws at a differs from the first one at the same slope.
 
@@ -232,7 +270,7 @@ def _compare(
         except OrbitError:
             continue
         values["effective_period_difference"][k] = values["period"][other_row, k] - orbit.period
-        difference = values["transverse_multiplier"][other_row, k] - transverse_multiplier(orbit)
+        difference = values["transverse_multiplier"][other_row, k] - multipliers(orbit).transverse.real
         values["effective_multiplier_difference"][k] = difference
 
 

@@ -16,12 +16,12 @@ from flint import arb, fmpq
 from burridge_knopoff.dataset.summary import AXES, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.family import Family
-from burridge_knopoff.orbits.transition import critical_a
+from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
 from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, digits, limits, width
 from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
 from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
+from burridge_knopoff.stability.synchronized import synchronized_orbits
 
 #: Number of blocks of the chain.
 CHAIN_BLOCKS = 3
@@ -106,18 +106,18 @@ def _of_law(model: Model) -> dict[str, Any]:
     if not is_covered(model):
         raise ProofError(f"law {model.law.name}: not covered: the paper's laws and chain of {CHAIN_BLOCKS} blocks")
     # Only the guess comes from a simulation. Under the linearized law it serves for every v.
-    family = Family(replace(model, v=NONLINEAR_V, contact="one_sided"))
-    given = prove_orbit(family.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
-    critical = prove_critical(family.at(critical_a(family)))
+    orbits = synchronized_orbits(replace(model, v=NONLINEAR_V, contact="one_sided"))
+    given = prove_orbit(orbits.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
+    critical = prove_critical(orbits.at(critical_a(edges_of(orbits))))
     branch: list[Piece] = []
     between = np.nan, np.nan
     if is_linearized(model):
         low, high = (fmpq(*end) for end in RANGE)
-        branch = prove_branch(family.at(RANGE[0][0] / RANGE[0][1]), low, high)
+        branch = prove_branch(orbits.at(RANGE[0][0] / RANGE[0][1]), low, high)
         _check_branch(given, critical, branch)
         between = RANGE[0][0] / RANGE[0][1], RANGE[1][0] / RANGE[1][1]
     _check(model, given, critical, branch)
-    orbits = [_of_orbit(orbit, model) for orbit in (given, critical.orbit)]
+    each = [_of_orbit(orbit, model) for orbit in (given, critical.orbit)]
     return {
         "critical_a": limits(critical.a),
         "critical_a_digits": digits(critical.a),
@@ -125,7 +125,7 @@ def _of_law(model: Model) -> dict[str, Any]:
         "only_between": between if branch else _inward(critical.unique),
         "family_between": between,
         "pieces": len(branch),
-        **{name: [one[name] for one in orbits] for name in orbits[0]},
+        **{name: [one[name] for one in each] for name in each[0]},
     }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
-from burridge_knopoff.orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.stability.continuation import Continuation
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.stability.steady import EXPONENTS

@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.orbits.contacts import longest_spacing
+from burridge_knopoff.periodic_orbits.contacts import longest_spacing
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.together import new_ensemble
 from burridge_knopoff.summaries.correlation import correlation

@@ -1,0 +1,123 @@
+"""Floquet multipliers of a periodic orbit without that of the flow, and what is 0 where one leaves the unit circle.
+
+For an orbit that is its own mirror image after half its period all is taken from the map of the half: its multipliers ν
+are those of the whole by μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a fold. A single μ = −1
+would need ν = ±i, both at once: such orbits do not double their period before they have lost the symmetry.
+
+If mirror blocks move as one, perturbations that keep this and those that break it do not mix: +1 is a fold among the
+former and a pitchfork among the latter, −1 a flip among both.
+
+References: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2;
+J. W. Swift and K. Wiesenfeld, Phys. Rev. Lett. 52 (1984) 705.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.flow import rate
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.return_map import directions, parting
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.values import instance_of
+
+
+@dataclass(frozen=True, eq=False)
+class Multipliers:
+    """Multipliers of a return, complex, without that of the flow; the largest modulus first.
+
+    keeping : of all perturbations, or of those that keep mirror blocks together if these move as one
+    breaking : of those that part mirror blocks; empty unless these move as one
+    power : returns in a period
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> found = multipliers(orbit)
+    >>> abs(found.whole).round(4).tolist(), found.unstable
+    ([0.3786, 0.0, 0.0, 0.0, 0.0], 0)
+    """
+
+    keeping: np.ndarray
+    breaking: np.ndarray
+    power: int
+
+    def __repr__(self) -> str:
+        leading = ", ".join(f"{value:.6g}" for value in self.whole[:3])
+        return f"<Multipliers of a period: {leading}{', ...' * (len(self.whole) > 3)}; {self.unstable} unstable>"
+
+    @property
+    def whole(self) -> np.ndarray:
+        """All multipliers of a whole period, the largest modulus first."""
+        both = np.concatenate([self.keeping, self.breaking]) ** self.power
+        return both[np.argsort(-np.abs(both), kind="stable")]
+
+    @property
+    def transverse(self) -> complex:
+        """The leading one of perturbations that part mirror blocks; NaN unless these move as one."""
+        return complex(self.breaking[0]) if len(self.breaking) else complex(np.nan)
+
+    @property
+    def unstable(self) -> int:
+        """How many lie outside the unit circle."""
+        return int((np.abs(np.concatenate([self.keeping, self.breaking])) > 1.0).sum())
+
+
+def multipliers(orbit: PeriodicOrbit) -> Multipliers:
+    """Return the Floquet multipliers of an orbit; velocities of stuck blocks count with a multiplier 0.
+
+    The flow f is an eigenvector of the return with the eigenvalue 1: what is left on its orthogonal complement has the
+    other eigenvalues, however close to 1 they are.
+
+    orbit : of any chain; that of the flow, which is 1, is left out
+
+    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> multipliers(orbit).unstable == 0
+    True
+    """
+    nothing = np.zeros(instance_of(orbit, PeriodicOrbit, "orbit").model.blocks, dtype=bool)
+    keeping, breaking = directions(nothing, orbit.symmetry), parting(nothing)
+    if orbit.symmetry != Symmetry.SYNCHRONIZED:
+        breaking = breaking[:, :0]
+    flow = rate(orbit.model, orbit.reference) @ keeping
+    across = keeping @ np.linalg.svd(flow[:, None])[0][:, 1:]
+    kept, broken = (_sorted(np.linalg.eigvals(basis.T @ orbit.monodromy @ basis)) for basis in (across, breaking))
+    return Multipliers(kept, broken, power=2 if orbit.symmetry == Symmetry.SYMMETRIC else 1)
+
+
+def _sorted(values: np.ndarray) -> np.ndarray:
+    values = values.astype(complex)
+    return values[np.lexsort((-values.imag, -values.real, -np.abs(values)))]
+
+
+def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[EdgeKind, str], float]:
+    """Return for each kind of edge, and part of the perturbations, a smooth function that changes sign there.
+
+    They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1, which is also 0 where the
+    product of two real ones is 1, at an ordinary saddle.
+    """
+    found = multipliers(orbit) if found is None else found
+    values = {}
+    for part, own in (("keeping", found.keeping), ("breaking", found.breaking)):
+        if not len(own):
+            continue
+        plus, minus = EdgeKind.FOLD, EdgeKind.FLIP
+        if part == "breaking":
+            plus = EdgeKind.PITCHFORK
+        elif orbit.symmetry == Symmetry.SYMMETRIC:
+            minus = EdgeKind.PITCHFORK
+        values[plus, part] = float(np.prod(own - 1.0).real)
+        values[minus, part] = float(np.prod(own + 1.0).real)
+        pairs = [one * other - 1.0 for one, other in combinations(own, 2)]
+        values[EdgeKind.NEIMARK_SACKER, part] = float(np.prod(pairs).real) if pairs else 1.0
+    return values

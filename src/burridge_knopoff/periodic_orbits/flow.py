@@ -1,0 +1,69 @@
+"""Runs over a time from one state, as orbits take them: the state at the end, the events, the mean of J."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.running.runner import Runner, new_observer
+
+
+class OrbitError(ValueError):
+    """There is no such orbit, or it was not found; the message says why.
+
+    >>> from burridge_knopoff import Chain, Model, OrbitError, law_of, synchronized_orbit
+    >>> try:
+    ...     synchronized_orbit(Model(Chain(3, threshold=(1, 1, 2)), law_of("linearized", 0.08)))
+    ... except OrbitError as error:
+    ...     print(error)
+    chain: got one that is not its own mirror image, expected one in which blocks move as one
+    """
+
+
+def model_at(model: Model, a: float) -> Model:
+    """Return a model at another friction parameter; raises OrbitError where its law does not allow that."""
+    try:
+        return model.at(a)
+    except ValueError as error:
+        raise OrbitError(str(error)) from None
+
+
+def flow(model: Model, start: Instant, time: float) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
+    """Return the runner after a time, and the events on the way: time, block (0 …) and kind (0 stop, 1 start).
+
+    Raises OrbitError if the run does not complete.
+    """
+    runner = Runner(model, keep_events=True)
+    after(runner, start, time)
+    return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
+
+
+def after(runner: Runner, start: Instant, time: float) -> Instant:
+    """Return the state that a runner reaches from a state after a time.
+
+    Raises OrbitError if the run does not complete.
+    """
+    end = runner.after(start, time)
+    if end is None:
+        raise OrbitError(f"the run ends at τ = {runner.clock!r}, before {time!r}")
+    return end
+
+
+def mean_distance(model: Model, start: Instant, period: float) -> float:
+    """Return ⟨J⟩ over one period from a state on an orbit."""
+    observer = new_observer(model, [0.0, period])
+    after(Runner(model, observer=observer), start, period)
+    return float(observer.results()["batch_integral"][0]) / period
+
+
+def rate(model: Model, at: Instant) -> np.ndarray:
+    """Return the time derivative of positions and velocities, shape (2 blocks,)."""
+    friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.law(np.abs(at.velocity))
+    weakening = model.chain.thresholds * (model.law(model.v) - friction)
+    force = weakening - _products(model.chain.stiffness, at.position)
+    return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force)])
+
+
+def _products(vectors: np.ndarray, of: np.ndarray) -> np.ndarray:
+    """Return the products of each row with a vector, added up in the same order everywhere."""
+    return (vectors * of).sum(axis=1)

@@ -1,0 +1,129 @@
+"""Branches of periodic orbits followed in a: through folds and around grazings, stable or not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from burridge_knopoff.periodic_orbits.corner import come_to_corner, smooth_step, turn_corner
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch
+from burridge_knopoff.periodic_orbits.simpler import simpler_orbit, simplest
+from burridge_knopoff.values import instance_of, real_number, refusal
+
+# Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
+# comes back to itself in a mirror, or after half its period.
+JOINED = 3e-2
+
+# Growth of a step after one that was made.
+FASTER = 2.0
+
+
+@dataclass(frozen=True)
+class Following:
+    """How a branch is followed: lengths of steps along it, mostly lengths in a, and the most orbits that are kept.
+
+    >>> from burridge_knopoff import Following
+    >>> Following(most_orbits=20).largest_step
+    0.0005
+    """
+
+    first_step: float = 1e-4
+    largest_step: float = 5e-4
+    least_step: float = 1e-9
+    most_orbits: int = 200
+
+
+FOLLOWING = Following()
+
+
+def follow(
+    orbit: PeriodicOrbit,
+    a_range: tuple[float, float],
+    settings: Following = FOLLOWING,
+    *,
+    upward: bool = True,
+    enough: Callable[[list[BranchOrbit]], bool] = lambda points: False,
+) -> list[BranchOrbit]:
+    """Return the orbits of a branch from one on, until a leaves a range or enough is known.
+
+    orbit : stable or not, of any chain; one of simpler orbits is followed as that; a_range : (low, high)
+    settings : lengths of steps; upward : whether a grows at first
+    enough : told after each orbit but those on a corner, with all orbits so far
+
+    Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
+    The branch also ends where it joins one of simpler orbits, where no step is short enough, and with the
+    `settings.most_orbits`-th orbit, or the next one if that is on a corner: if a is still within the range then, the
+    rest of it was not looked at.
+
+    Raises OrbitError if it cannot begin, as where the orbit is not within the range, and ValueError for a range that is
+    none.
+
+    Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
+    docs/edges.md says how a branch goes on where its orbit grazes.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> [round(point.orbit.a, 4) for point in branch]
+    [0.0865, 0.0866, 0.0868, 0.0872, 0.0877]
+    >>> [point.multipliers.unstable for point in branch]
+    [0, 0, 0, 1, 1]
+    """
+    try:
+        low, high = (real_number(value) for value in a_range)
+    except (TypeError, ValueError):
+        low = high = math.nan
+    if not low <= high:
+        raise refusal("a_range", a_range, "(low, high) with low ≤ high")
+    instance_of(orbit, PeriodicOrbit, "orbit")
+    instance_of(settings, Following, "settings")
+    if not low <= orbit.a <= high:
+        raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
+    points = [begin_branch(simpler_orbit(orbit) or orbit, upward)]
+    length = settings.first_step
+
+    def goes_on() -> bool:
+        return len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points)
+
+    while goes_on():
+        found = smooth_step(points, length)
+        if found is not None:
+            way = [found]
+            length = min(FASTER * length, settings.largest_step)
+        else:
+            way = come_to_corner(points, length)
+            length = max(0.1 * length, way[-1].length if way else 0.0)
+        for point in way:
+            simpler = point.joined or _passed(points[-1], point)
+            points.append(replace(point, joined=simpler))
+            if simpler is not None or not (point.corner or point is way[-1] or goes_on()):
+                return points
+        if points[-1].corner:
+            turned = turn_corner(points[-1])
+            if turned is None:
+                break
+            points.append(turned)
+            length = settings.first_step
+        elif length < settings.least_step:
+            break
+    return points
+
+
+def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
+    """Return the simpler orbit that a branch has come to and gone past, on to its own mirror image; None if none.
+
+    The branch turns back in a there, but no multiplier goes through 1, as at a fold: it only touches it.
+    """
+    if first.tangent[-1] * second.tangent[-1] > 0.0:
+        return None
+    signs = [critical_values(point.orbit, point.multipliers)[EdgeKind.FOLD, "keeping"] for point in (first, second)]
+    if signs[0] * signs[1] < 0.0:
+        return None
+    found = simplest(first.orbit, JOINED)
+    return None if found is first.orbit else found

@@ -1,0 +1,67 @@
+"""Orbits of one branch at any friction parameters that are asked for, each continued from the nearest that is known.
+
+Steps in a do not go around folds, as those of `following` do; where the orbit only grazes they pass the corner.
+"""
+
+from __future__ import annotations
+
+import math
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refined
+
+# Steps in a by which an orbit is continued; sticks vanish like the root of a as it falls to 0.
+LARGEST_STEP = 0.02
+LEAST_STEP = 1e-5
+
+# Largest change of the period in a step, as a share of it: more leads to another orbit.
+FARTHEST = 0.1
+
+
+class KnownOrbits:
+    """Orbits of a branch by their a, solved down to rounding.
+
+    first : one of them, stable or not, of any chain
+    """
+
+    def __init__(self, first: PeriodicOrbit) -> None:
+        self.known: dict[float, PeriodicOrbit] = {first.a: refined(first)}
+
+    @property
+    def model(self) -> Model:
+        """The model of the orbits, at one a of them."""
+        return next(iter(self.known.values())).model
+
+    def at(self, a: float) -> PeriodicOrbit:
+        """Return the orbit at a > 0; raises OrbitError where it is lost on the way, and elsewhere."""
+        if a in self.known:
+            return self.known[a]
+        if not a > 0.0:
+            raise OrbitError(f"a = {a!r}: no orbit is looked for: 0 < a")
+        here = min(self.known, key=lambda known: abs(known - a))
+        step = LARGEST_STEP
+        while here != a:
+            reach = min(step, 0.5 * here) if a < here else step
+            there = a if abs(a - here) <= reach else here + math.copysign(reach, a - here)
+            try:
+                self.known[there] = beside(self.known[here], there)
+            except OrbitError as error:
+                step = 0.5 * abs(there - here)
+                if step < LEAST_STEP * min(1.0, here / LARGEST_STEP):
+                    raise OrbitError(f"{error}, on the way to a = {a!r}") from None
+                continue
+            here = there
+        return self.known[a]
+
+
+def beside(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
+    """Return the orbit that an orbit becomes at an a nearby, solved down to rounding.
+
+    Raises OrbitError if it is not found.
+    """
+    model = model_at(orbit.model, a)
+    found = refined(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
+    if abs(found.period - orbit.period) > FARTHEST * orbit.period:
+        raise OrbitError(f"a = {a!r}: no periodic orbit found near the guess")
+    return found

@@ -1,0 +1,299 @@
+"""Periodic orbits of any order of stops and starts, of any chain under any law of friction, stable or not.
+
+An orbit is represented by a reference state in the middle of its longest time without a stop or start. There the return
+after a fixed time is smooth, whatever stops and starts lie between, so that Newton's method needs no list of them and
+an orbit may gain or lose sticks from one step to the next. The unknowns are all positions, the velocities of the
+blocks that slip, and the time; the equations are that the state returns (in a mirror, where the orbit is its own mirror
+image after half its period) and that corrections are perpendicular to the flow. The Jacobian comes from the tangent
+dynamics of the kernel, with the saltation at starts where friction drops.
+
+References: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493; M. di Bernardo,
+C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer 2008), Section 2.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import InitVar, dataclass
+from functools import cached_property
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.ranges import Number
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, model_at, rate
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.values import instance_of
+
+#: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
+#: long as it gains, down to where rounding begins to count.
+TOLERANCE = 1e-10
+ENOUGH = 1e-12
+ITERATIONS = 10
+
+# From this iteration on equations are nearer to solved after each, or they never will be.
+FIRST = 2
+
+# A correction larger than this, in units of v, leads to another orbit, if to any.
+FARTHEST = 5.0
+
+# A reference state nearer than this share of the longest time without an event to an end of it is moved to the middle.
+NEAR_EVENT = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """A closed motion of a chain.
+
+    reference : a state between two events, well away from both
+    return_time : after which the state returns: the period, or half of it for an orbit that is its own mirror image
+    returned : the state after a return, in a mirror for an orbit that is its own mirror image
+    monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
+    known_events : `event_rows`, where they are known
+
+    Times are in units of 1/ω, states in those of `Model`.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> orbit.monodromy.shape, orbit.residual < 1e-12, round(orbit.period / orbit.return_time)
+    ((6, 6), True, 2)
+    """
+
+    model: Model
+    symmetry: Symmetry
+    reference: Instant
+    return_time: float
+    returned: Instant
+    monodromy: np.ndarray
+    known_events: InitVar[np.ndarray | None] = None
+
+    def __post_init__(self, known_events: np.ndarray | None) -> None:
+        """Take over the events that are known."""
+        if known_events is not None:
+            self.__dict__["event_rows"] = known_events
+
+    @cached_property
+    def event_rows(self) -> np.ndarray:
+        """`events` as an array, shape (events, 3)."""
+        mapping = ReturnMap(self.model, self.symmetry)
+        mapping.end(self.reference, self.return_time)
+        return _event_rows(mapping, self.return_time)
+
+    def __repr__(self) -> str:
+        return (
+            f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.law.name} law, a = {self.a:.12g}: "
+            f"period {self.period:.9g}, stops of each block {self.signature}>"
+        )
+
+    def forget_events(self) -> None:
+        """Free what the events take, a megabyte on the longest orbits: they are found again when they are asked for."""
+        _ = self.signature
+        self.__dict__.pop("event_rows", None)
+
+    @property
+    def events(self) -> list[tuple[float, int, int]]:
+        """Time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period."""
+        return [(time, int(block), int(kind)) for time, block, kind in self.event_rows.tolist()]
+
+    def events_of(self, block: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return times and kinds of the events of one block, each of shape (events,)."""
+        time, moved, kind = self.event_rows.T
+        return time[moved == block], kind[moved == block]
+
+    def stick_time(self, block: int) -> float:
+        """Return for how long a block, from 0, sticks in a period, all its sticks together."""
+        time, kind = self.events_of(block)
+        if not len(time):
+            return self.period if self.reference.stuck[block] else 0.0
+        return float(np.diff(time, append=time[0] + self.period)[kind == 0].sum())
+
+    @property
+    def a(self) -> float:
+        """Friction parameter."""
+        return self.model.a
+
+    @property
+    def residual(self) -> float:
+        """Max norm of the state after a return minus the reference state."""
+        return float(np.abs(self.returned.vector() - self.reference.vector()).max())
+
+    @property
+    def period(self) -> float:
+        """The time after which all blocks are where they were."""
+        return self.return_time * (2.0 if self.symmetry == Symmetry.SYMMETRIC else 1.0)
+
+    @cached_property
+    def signature(self) -> tuple[int, ...]:
+        """How often each block stops in a period."""
+        stopped = self.event_rows[self.event_rows[:, 2] == 0, 1].astype(int)
+        return tuple(np.bincount(stopped, minlength=self.model.blocks).tolist())
+
+    @cached_property
+    def mean_distance(self) -> float:
+        """⟨J⟩ over a period."""
+        return mean_distance(self.model, self.reference, self.period)
+
+    def start(self, block: int) -> Instant:
+        """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
+        time, kind = self.events_of(block)
+        if not (kind == 0).any():
+            raise OrbitError(f"block = {block!r}: it never stops on this orbit")
+        state = flow(self.model, self.reference, float(time[kind == 0][0]))[0].instant()
+        stuck = state.stuck.copy()
+        stuck[block] = True
+        return Instant(state.position, np.where(stuck, 0.0, state.velocity), stuck)
+
+
+def solve_return(
+    model: Model,
+    start: Instant,
+    time: float,
+    symmetry: Symmetry,
+    constraint: tuple[np.ndarray, float] | None = None,
+    origin: tuple[np.ndarray, float, float] | None = None,
+    enough: float = ENOUGH,
+) -> PeriodicOrbit:
+    """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
+
+    constraint : a vector over (positions and velocities, time, a) and what its product with the change from the
+        origin, a point of the same form, has to be: the orbit is sought with a as another unknown
+    enough : what is left of the equations when the iteration ends; with 0 it ends at rounding
+
+    Raises OrbitError if Newton's method does not converge.
+    """
+    basis = directions(start.stuck, symmetry)
+    phase = basis.T @ rate(model, start)
+    count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
+    first, last = start.vector(), np.inf
+    state, blocks = first.copy(), model.blocks
+    by_a: np.ndarray | None = None
+    mapping = ReturnMap(model, symmetry)
+    for iteration in range(ITERATIONS):
+        here = Instant(state[:blocks], state[blocks:], start.stuck)
+        end, changed = mapping.with_tangent(here, time)
+        residual = float(np.abs(end.vector() - state).max())
+        values = np.zeros(unknowns)
+        values[:count] = basis.T @ (end.vector() - state)
+        values[count] = phase @ (basis.T @ (state - first))
+        jacobian = np.zeros((unknowns, unknowns))
+        jacobian[:count, :count] = basis.T @ changed @ basis - np.eye(count)
+        jacobian[:count, count] = basis.T @ mapping.time_derivative(end)
+        jacobian[count, :count] = phase
+        if constraint is not None and origin is not None:
+            vector, amount = constraint
+            change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
+            values[-1] = vector @ change - amount
+            # Costly, and it changes little from one iteration to the next.
+            if by_a is None:
+                by_a = basis.T @ mapping.a_derivative(here, time, end, mapping.event_rows()[:, 1:])
+            jacobian[:count, -1] = by_a
+            jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
+        size = float(np.abs(values).max())
+        if size <= enough or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
+            if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
+                break
+            return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
+        if iteration > FIRST and size > last:
+            break
+        last = size
+        try:
+            step = np.linalg.solve(jacobian, -values)
+        except np.linalg.LinAlgError:
+            break
+        if not np.abs(step[:count]).max() < FARTHEST * model.v:
+            break
+        state = state + basis @ step[:count]
+        time += float(step[count])
+        if not time > 0.0:
+            break
+        if constraint is not None:
+            model = model_at(model, model.a + float(step[-1]))
+            mapping = ReturnMap(model, symmetry)
+    raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
+
+
+def refined(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return an orbit with its equations solved down to rounding, which a root of its multipliers is known by."""
+    return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, enough=0.0)
+
+
+def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> PeriodicOrbit:
+    """Return the orbit through a state between two events that returns after a time, whether it does or not.
+
+    Raises OrbitError if the run does not complete.
+    """
+    mapping = ReturnMap(model, symmetry)
+    end, changed = mapping.with_tangent(state, time)
+    return PeriodicOrbit(model, symmetry, state, time, end, changed, _event_rows(mapping, time))
+
+
+def safe_offset(orbit: PeriodicOrbit) -> float:
+    """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe where it is."""
+    return _safe_offset(orbit.event_rows[:, 0].tolist(), orbit.period)
+
+
+def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
+    """Return the periodic orbit near a state between two events, by Newton's method.
+
+    model, guess : the state, in the model whose orbit is sought
+    return_time : after which the state about returns: a period, or half of one for SYMMETRIC, in a mirror
+
+    Raises OrbitError if none is found on which a block stops: a chain that slides uniformly returns after any time.
+    Raises ValueError for a time or a symmetry that is not allowed, as where the chain has no mirror image and the
+    symmetry needs one.
+
+    Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, find_periodic_orbit, law_of, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> near = find_periodic_orbit(model.at(0.081), orbit.reference, orbit.return_time, orbit.symmetry)
+    >>> near.a, round(near.period, 4)
+    (0.081, 157.2682)
+    """
+    instance_of(model, Model, "model")
+    return_time, symmetry = Number(0.0, LONGEST, above=True).form(return_time, "return_time"), Symmetry(symmetry)
+    if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
+        raise ValueError(
+            f"symmetry: got {symmetry.name.lower()!r}, expected asymmetric in a chain that is not its own mirror image"
+        )
+    mapping = ReturnMap(model, symmetry)
+    mapping.end(guess, return_time)
+    events = _event_rows(mapping, return_time)
+    period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
+    # The guess may lie at a stop itself, which rounding puts before or after it.
+    times = sorted([*events[:, 0].tolist(), return_time, period])
+    guess = flow(model, guess, _safe_offset(times, period))[0].instant()
+    if symmetry == Symmetry.SYNCHRONIZED:
+        vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
+        guess = Instant(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
+    found = solve_return(model, guess, return_time, symmetry)
+    if not any(found.signature):
+        raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess: no block stops there")
+    return found
+
+
+def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:
+    """Return the events of a whole period, of which a return has just been made, shape (events, 3)."""
+    rows = mapping.event_rows()
+    if mapping.symmetry != Symmetry.SYMMETRIC:
+        return rows
+    return np.concatenate([rows, rows * (1, -1, 1) + (time, mapping.model.blocks - 1, 0)])
+
+
+def _safe_offset(times: list[float], period: float) -> float:
+    """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe in one."""
+    if not times:
+        return 0.0
+    ordered = np.array([times[-1] - period, *times])
+    gaps = np.diff(ordered)
+    here = min(ordered[1], -ordered[0])
+    if here >= NEAR_EVENT * gaps.max():
+        return 0.0
+    longest = int(gaps.argmax())
+    middle = 0.5 * float(ordered[longest] + ordered[longest + 1])
+    return middle if middle >= 0.0 else middle + period

@@ -1,0 +1,88 @@
+"""Orbits that branch off a synchronized one where a transverse multiplier is 1, each with a as another unknown.
+
+Such an orbit is sought by its asymmetry d, the difference of the positions of the end blocks while both stick. Its a is
+a_c + c d² + …, even in d by mirror symmetry: orbits at an a beyond a_c make the pitchfork supercritical.
+
+Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 7.4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, refined, solve_return
+from burridge_knopoff.periodic_orbits.return_map import parting
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+
+# An orbit that branches off is looked for no farther from a_c than this share of it.
+FARTHEST = 0.5
+
+
+def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
+    """Return the orbit of a given asymmetry that branches off; its model has the a at which it exists.
+
+    critical : the synchronized orbit at a_c
+    near : an orbit of less asymmetry that this function has returned, for a better guess
+
+    Its reference is a state in which the end blocks stick. Raises OrbitError if it is not found.
+    """
+    center = _while_ends_stick(critical)
+    base, blocks = center.reference.vector(), center.model.blocks
+    if near is None:
+        vector = base + asymmetry * _way_off(center)
+        start = Instant(vector[:blocks], vector[blocks:], center.reference.stuck)
+        a, time = center.a + (asymmetry / center.model.v) ** 2 * center.a, center.return_time
+    else:
+        # What is apart grows with the asymmetry, all else with its square.
+        factor = asymmetry / asymmetry_of(near)
+        change = near.reference.vector() - base
+        mirrored = near.reference.mirrored().vector() - base
+        vector = base + 0.5 * factor * (change - mirrored) + 0.5 * factor**2 * (change + mirrored)
+        start = Instant(vector[:blocks], vector[blocks:], near.reference.stuck)
+        a = center.a + factor**2 * (near.a - center.a)
+        time = center.return_time + factor**2 * (near.return_time - center.return_time)
+    difference = np.zeros(2 * blocks + 2)
+    difference[0], difference[blocks - 1] = 1.0, -1.0
+    origin = base, center.return_time, center.a
+    model = model_at(center.model, a)
+    found = solve_return(model, start, time, Symmetry.ASYMMETRIC, (difference, asymmetry), origin, enough=0.0)
+    if not abs(found.a - center.a) < FARTHEST * center.a:
+        raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {center.a!r}")
+    return found
+
+
+def apart(state: Instant, asymmetry: float) -> Instant:
+    """Return a state with the first block moved forward and the last one back, by half the asymmetry each."""
+    shift = np.zeros(len(state.position))
+    shift[0], shift[-1] = 0.5 * asymmetry, -0.5 * asymmetry
+    return Instant(state.position + shift, state.velocity, state.stuck)
+
+
+def asymmetry_of(orbit: PeriodicOrbit) -> float:
+    """Return x_1 − x_N at the reference of an orbit."""
+    return float(orbit.reference.position[0] - orbit.reference.position[-1])
+
+
+def _way_off(orbit: PeriodicOrbit) -> np.ndarray:
+    """Return the perturbation whose multiplier is 1, per difference of the end blocks, shape (2 blocks,)."""
+    basis = parting(orbit.reference.stuck)
+    values, vectors = np.linalg.eig(basis.T @ orbit.monodromy @ basis)
+    way = basis @ vectors[:, np.abs(values - 1.0).argmin()].real
+    return way / (way[0] - way[orbit.model.blocks - 1])
+
+
+def _while_ends_stick(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return a synchronized orbit from the middle of the longest time without events in which its end blocks stick."""
+    time = orbit.event_rows[:, 0]
+    at, kind = orbit.events_of(0)
+    if not len(at):
+        raise OrbitError(f"a = {orbit.a!r}: the end blocks never stick")
+    length = np.diff(time, append=time[:1] + orbit.period)
+    middle = time + 0.5 * length
+    # The last event of an end block before the middle, the last one of a period before the first.
+    sticks = kind[np.searchsorted(at, middle) - 1] == 0
+    chosen = float(middle[np.where(sticks, length, -np.inf).argmax()])
+    state = flow(orbit.model, orbit.reference, chosen)[0].instant()
+    return refined(orbit_of(orbit.model, state, orbit.return_time, orbit.symmetry))

@@ -1,0 +1,153 @@
+"""Periodic orbits followed in the friction parameter a by pseudo-arclength: through folds and grazings, stable or not.
+
+A step goes along the tangent of the branch in (state, return time, a) and comes back to the branch perpendicular to it.
+No step passes a grazing: there the branch has a corner (`corner`), and `follow` goes around it.
+
+Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 and 745.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.periodic_orbits.contacts import Contacts, contacts
+from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at, rate
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
+
+# A length along a branch is mostly one in a: positions, in units of 0.1 v, and times count less.
+STATE_WEIGHT = 0.01
+TIME_WEIGHT = 1e-4
+
+# Part of a change of a state by which the tangent is carried from one reference state to another.
+PART = 1e-6
+
+# Cosine of the largest angle between the tangents at both ends of a step; a sharper turn asks for shorter steps.
+STRAIGHT = 0.8
+
+
+@dataclass(frozen=True, eq=False)
+class BranchOrbit:
+    """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, a).
+
+    length : along the tangent of the orbit before, from there to here
+    joined : the simpler orbit that this one is, where the branch has come to another one: an orbit of more symmetry, or
+        of half the period; the branch ends before it
+    remaining : length from here to the corner of the branch where the orbit grazes; NaN if it is not right there
+
+    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> branch[1].tangent.shape, branch[1].corner, branch[1].joined
+    ((8,), False, None)
+    """
+
+    orbit: PeriodicOrbit
+    tangent: np.ndarray
+    length: float = 0.0
+    joined: PeriodicOrbit | None = None
+    remaining: float = np.nan
+
+    def __repr__(self) -> str:
+        return f"<BranchOrbit: {self.orbit!r}>"
+
+    @property
+    def corner(self) -> bool:
+        """Whether the orbit grazes, to rounding."""
+        return not np.isnan(self.remaining)
+
+    @cached_property
+    def contacts(self) -> Contacts:
+        """How far the orbit is from its grazings."""
+        return contacts(self.orbit)
+
+    @cached_property
+    def multipliers(self) -> Multipliers:
+        """Floquet multipliers of the orbit."""
+        return multipliers(self.orbit)
+
+
+def weights(model: Model) -> np.ndarray:
+    """Return what each component of (positions and velocities, return time, a) counts in a squared length."""
+    return np.concatenate([np.full(2 * model.blocks, STATE_WEIGHT / model.scale**2), [TIME_WEIGHT, 1.0]])
+
+
+def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
+    """Return the unit tangent of the branch through an orbit, of either sign."""
+    model, start, time = orbit.model, orbit.reference, orbit.return_time
+    basis = directions(start.stuck, orbit.symmetry)
+    count = basis.shape[1]
+    mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
+    events = orbit.event_rows[orbit.event_rows[:, 0] <= time, 1:]
+    matrix = np.zeros((count + 1, count + 2))
+    matrix[:count, :count] = basis.T @ orbit.monodromy @ basis - np.eye(count)
+    matrix[:count, count] = basis.T @ mapping.time_derivative(end)
+    matrix[:count, count + 1] = basis.T @ mapping.a_derivative(start, time, end, events)
+    matrix[count, :count] = rate(model, start) @ basis
+    null = np.linalg.svd(matrix)[2][-1]
+    vector = np.concatenate([basis @ null[:count], null[count:]])
+    return vector / np.sqrt(weights(model) @ vector**2)
+
+
+def begin_branch(orbit: PeriodicOrbit, upward: bool) -> BranchOrbit:
+    """Return an orbit with the tangent along which a grows, or falls."""
+    tangent = tangent_of(orbit)
+    return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent)
+
+
+def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
+    """Return the orbit at a length along the tangent from a point of a branch.
+
+    tangent : another one than that of the point
+
+    Raises OrbitError if none is found, or if the branch turns sharply on the way.
+    """
+    orbit = point.orbit
+    tangent = point.tangent if tangent is None else tangent
+    blocks = orbit.model.blocks
+    base = orbit.reference.vector()
+    model = model_at(orbit.model, orbit.a + length * float(tangent[-1]))
+    guess = base + length * tangent[:-2]
+    start = Instant(guess[:blocks], guess[blocks:], orbit.reference.stuck)
+    time = orbit.return_time + length * float(tangent[-2])
+    found = solve_return(
+        model,
+        start,
+        time,
+        orbit.symmetry,
+        (weights(model) * tangent, length),
+        (base, orbit.return_time, orbit.a),
+    )
+    model = found.model
+    following = tangent_of(found)
+    cosine = float(following @ (weights(model) * tangent))
+    if tangent is point.tangent and abs(cosine) < STRAIGHT:
+        raise OrbitError(f"a = {model.a!r}: the branch turns too sharply within a step of {length!r}")
+    following = following if cosine > 0.0 else -following
+    offset = safe_offset(found)
+    if offset == 0.0:
+        return BranchOrbit(found, following, length)
+    carried = _carried(found, following, offset)
+    there = flow(model, found.reference, offset)[0].instant()
+    moved = orbit_of(model, there, found.return_time, orbit.symmetry)
+    following = tangent_of(moved)
+    side = following @ (weights(model) * carried)
+    return BranchOrbit(moved, following if side > 0.0 else -following, length)
+
+
+def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float) -> np.ndarray:
+    """Return a tangent at the state that the reference comes to after a time, perpendicular to the flow there."""
+    blocks = orbit.model.blocks
+    vector = orbit.reference.vector() + PART * tangent[:-2]
+    near = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+    here = flow(orbit.model, orbit.reference, time)[0].instant()
+    there = flow(model_at(orbit.model, orbit.a + PART * float(tangent[-1])), near, time)[0].instant()
+    change = (there.vector() - here.vector()) / PART
+    along = rate(orbit.model, here)
+    return np.concatenate([change - along * (along @ change) / (along @ along), tangent[-2:]])

@@ -1,0 +1,71 @@
+"""How far apart the end blocks are beyond the loss of synchrony: in runs that go through a_c, and as a power law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at
+from burridge_knopoff.periodic_orbits.known import KnownOrbits
+from burridge_knopoff.periodic_orbits.pitchfork import apart
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+
+# Asymmetry, in units of v, given to a state before each run of a sweep: exact synchrony would never be left.
+SEED = 1e-5
+
+#: Time of each run of a sweep: at |a − a_c| = 1e-3 perturbations change by a factor of e^20.
+SWEEP_TIME = 20_000.0
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """A fit amplitude = coefficient·offset^exponent, with the standard error of the exponent."""
+
+    exponent: float
+    error: float
+    coefficient: float
+
+
+def fit_power_law(offset: np.ndarray, amplitude: np.ndarray) -> PowerLaw:
+    """Fit amplitudes at positive offsets, both of shape (n,), by least squares of their logarithms.
+
+    The digits kept do not depend on the order in which a linear-algebra library adds.
+    """
+    fit = scipy.stats.linregress(np.log(offset), np.log(amplitude))
+    return PowerLaw(*(round(float(value), 10) for value in (fit.slope, fit.stderr, np.exp(fit.intercept))))
+
+
+def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
+    """Return |x_1 − x_N| (while both stick) after a run at each a in turn, shape (n,).
+
+    orbits : synchronized ones
+
+    Each run goes on from the last one, with a small asymmetry added; the first begins near the synchronized orbit. NaN
+    from the a on at which the end blocks no longer stick at the same time.
+    """
+    found = np.full(len(values), np.nan)
+    state = orbits.at(float(values[0])).reference
+    for k, a in enumerate(values):
+        try:
+            state = _settled(model_at(orbits.model, float(a)), apart(state, SEED * orbits.model.v))
+        except OrbitError:
+            break
+        found[k] = abs(state.position[0] - state.position[-1])
+    return found
+
+
+def _settled(model: Model, state: Instant) -> Instant:
+    """Return the first state after a time in which the end blocks have both just come to stick."""
+    runner, last = Runner(model), model.blocks - 1
+    after(runner, state, SWEEP_TIME)
+    for block in (0, last, 0, last):
+        if runner.run(2.0 * SWEEP_TIME, halting_block=block) != Status.HALTED:
+            break
+        now = runner.instant()
+        if now.stuck[0] and now.stuck[last]:
+            return now
+    raise OrbitError(f"a = {model.a!r}: the end blocks no longer stick at the same time")

@@ -1,0 +1,186 @@
+"""How a branch goes on, joins one of simpler orbits, or goes past it, and where it ends."""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Instant, Model, closed_motion, follow, law_of, synchronized_orbit
+from burridge_knopoff.periodic_orbits import following
+from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.edges import locate_edges
+from burridge_knopoff.periodic_orbits.following import Following
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from tests.periodic_orbits.stand_in import stand_in
+
+
+@pytest.mark.parametrize(
+    ("slopes", "values", "away", "touches"),
+    [
+        ((1.0, -1.0), (0.5, 0.5), 0.0, True),
+        ((-0.1, 0.1), (-0.5, -0.5), 0.0, True),
+        # It goes on; it turns at a fold; there is no simpler orbit.
+        ((1.0, 1.0), (0.5, 0.5), 0.0, False),
+        ((1.0, -1.0), (0.5, -0.5), 0.0, False),
+        ((1.0, -1.0), (0.5, 0.5), np.inf, False),
+        # What is near is so within three hundredths, of which the square is the way to it in a.
+        ((1.0, -1.0), (0.5, 0.5), 0.029, True),
+        ((1.0, -1.0), (0.5, 0.5), 0.031, False),
+    ],
+)
+def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, away, touches):
+    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(EdgeKind.FOLD, "keeping"): value})
+    monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
+    points = [SimpleNamespace(orbit=x, tangent=[x], multipliers=v) for x, v in zip(slopes, values, strict=True)]
+    assert following._passed(*points) == ("simpler" if touches else None)
+
+
+def test_several_turns_of_another_orbit_are_no_way_around_a_corner():
+    """At a = 0.11226 an orbit of 29 stops grazes; 3e-5 below it one of a single stop ends, which it does not become."""
+    model = Model(Chain(3), law_of("linearized", 0.112265625))
+    position = np.array([0.10663254, 0.07868783, 0.06869955])
+    start = Instant(position, np.array([0.0, 0.06015978, 0.02200926]), np.array([True, False, False]))
+    branch = follow(closed_motion(model, start), (0.1122, 0.1123), upward=False, enough=lambda points: len(points) > 12)
+    corner = next(number for number, point in enumerate(branch) if point.corner)
+    assert {point.orbit.signature for point in branch[: corner + 1]} == {(29, 29, 10)}
+    assert {point.orbit.signature for point in branch[corner + 1 :]} == {(29, 29, 9)}
+    # Both kinds of orbit lie on one side: the branch turns back, and beyond the corner it is unstable.
+    assert all(point.orbit.a > branch[corner].orbit.a for point in branch[corner + 1 :])
+    assert [point.multipliers.unstable for point in branch] == [0] * (corner + 1) + [1] * (len(branch) - corner - 1)
+
+
+def doubled(a):
+    """Return the orbit of (12, 26, 26) stops, which has begun as twice (6, 13, 13) at a = 0.136416."""
+    model = Model(Chain(3), law_of("linearized", a))
+    position = np.array([-0.01583146, -0.00898694, -0.04390718])
+    start = Instant(position, np.array([0.21336224, 0.16773024, 0.2330488]), np.zeros(3, dtype=bool))
+    return closed_motion(model, closed_motion(model.at(0.135), start, settling=3000.0).reference, settling=6000.0)
+
+
+@pytest.mark.parametrize("a", [0.135, 0.1355, 0.136])
+def test_no_step_leaps_to_a_simpler_orbit(a):
+    """From two of them the long step past the grazing used to end on the simple orbit, which is not near there."""
+    orbit = doubled(a)
+    assert orbit.signature == (12, 26, 26)
+    branch = follow(orbit, (0.1345, 0.137), upward=False)
+    corner = next(point for point in branch if point.corner)
+    assert corner.orbit.a == pytest.approx(0.1348243355, abs=1e-10)
+    assert all(point.joined is None for point in branch)
+    # The other way it does join it.
+    branch = follow(orbit, (0.1345, 0.137))
+    assert branch[-1].joined.signature == (6, 13, 13)
+    (edge,) = locate_edges(branch)
+    assert edge.kind == EdgeKind.FLIP
+    assert edge.a == pytest.approx(0.136416049, abs=1e-9)
+    assert edge.at.multipliers.keeping == pytest.approx(edge.at.multipliers.keeping.real)
+    assert np.abs(edge.at.multipliers.keeping + 1.0).min() < 1e-8
+
+
+def test_a_branch_is_told_where_it_begins():
+    """Also at the very end of its range; a range is one from low to high."""
+    orbit = closed_motion(SLOW, synchronized_orbit(SLOW).reference)
+    for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
+        assert follow(orbit, a_range, Following(most_orbits=1))[0].orbit is orbit
+    with pytest.raises(ValueError, match=r"^a_range: got \(0\.09, 0\.07\), expected \(low, high\) with low ≤ high$"):
+        follow(orbit, (0.09, 0.07))
+
+
+SLOW = Model(Chain(3), law_of("linearized", 0.08))
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a step along a branch in a came to."""
+
+    orbit: SimpleNamespace
+    length: float = 0.0
+    corner: bool = False
+    joined: str | None = None
+    tangent: tuple[float, ...] = (1.0,)
+
+
+def a_step(a, length=0.0, **told):
+    return Step(SimpleNamespace(a=a), length, **told)
+
+
+@pytest.fixture
+def walk(monkeypatch):
+    """Return the points of a branch from a = 0.1 on, with the lengths that are tried."""
+
+    def walked(smooth, corners, turned, **options):
+        lengths, smooth, corners, turned = [], iter(smooth), iter(corners), iter(turned)
+
+        def step(points, length):
+            lengths.append(length)
+            return next(smooth)
+
+        monkeypatch.setattr(following, "simpler_orbit", lambda orbit: None)
+        monkeypatch.setattr(following, "begin_branch", lambda orbit, upward: Step(orbit))
+        monkeypatch.setattr(following, "smooth_step", step)
+        monkeypatch.setattr(following, "come_to_corner", lambda points, length: next(corners))
+        monkeypatch.setattr(following, "turn_corner", lambda point: next(turned))
+        return follow(stand_in(PeriodicOrbit, model=SimpleNamespace(a=0.1)), (0.1, 0.2), **options), lengths
+
+    return walked
+
+
+def test_a_branch_goes_on_from_a_corner_as_from_its_beginning(walk):
+    corner = a_step(0.13, 1e-9, corner=True)
+    smooth = [a_step(0.11), a_step(0.12), None, a_step(0.2), a_step(0.21)]
+    points, lengths = walk(smooth, [[a_step(0.125), corner]], [a_step(0.14)])
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.125, 0.13, 0.14, 0.2, 0.21]
+    assert lengths == pytest.approx([1e-4, 2e-4, 4e-4, 1e-4, 2e-4])
+    # Nothing is known beyond the last corner.
+    points, _ = walk(smooth[:3], [[corner]], [None])
+    assert points[-1] is not None
+    assert points[-1].corner
+
+
+def test_after_a_way_that_met_no_corner_the_next_step_is_as_long_as_its_last(walk):
+    """Or a tenth of what was too long."""
+    points, lengths = walk([None, None, a_step(0.21)], [[a_step(0.11, 3e-5)], [a_step(0.12, 1e-9)]], [])
+    assert lengths == pytest.approx([1e-4, 3e-5, 3e-6])
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.21]
+
+
+def test_a_branch_ends_where_it_joins_another_one(walk):
+    points, _ = walk([a_step(0.11), a_step(0.12, joined="simpler")], [], [])
+    assert [point.joined for point in points] == [None, None, "simpler"]
+    points, _ = walk([None], [[a_step(0.11), a_step(0.12, joined="simpler"), a_step(0.13)]], [])
+    assert [point.joined for point in points] == [None, None, "simpler"]
+
+
+def test_a_branch_ends_where_it_has_gone_past_another_one(walk, monkeypatch):
+    monkeypatch.setattr(following, "_passed", lambda first, second: "passed" if second.orbit.a == 0.12 else None)
+    points, _ = walk([a_step(0.11), a_step(0.12)], [], [])
+    assert [point.joined for point in points] == [None, None, "passed"]
+
+
+def test_a_branch_ends_when_enough_is_known(walk):
+    told = []
+
+    def enough(points):
+        told.append(len(points))
+        return len(points) == 3
+
+    assert len(walk([a_step(0.11), a_step(0.12)], [], [], enough=enough)[0]) == 3
+    assert told == [1, 2, 3]
+    # Also on the way to a corner.
+    told.clear()
+    assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], enough=enough)[0]) == 3
+    assert told == [1, 2, 3]
+
+
+@pytest.mark.parametrize(("most", "count"), [(2, 2), (3, 3), (4, 5), (5, 5), (6, 6)])
+def test_a_branch_ends_with_as_many_orbits_as_are_asked_for(walk, most, count):
+    """But not on a corner, beyond which nothing would be known."""
+    way = [a_step(0.11), a_step(0.12), a_step(0.13, 1e-9, corner=True)]
+    settings = Following(most_orbits=most)
+    points, _ = walk([None, a_step(0.15), a_step(0.21)], [way], [a_step(0.14)], settings=settings)
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.21][:count]
+
+
+def test_no_orbit_beyond_the_range_is_kept_but_one(walk):
+    points, _ = walk([None], [[a_step(0.11), a_step(0.21), a_step(0.22)]], [])
+    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.21]

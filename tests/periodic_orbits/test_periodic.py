@@ -1,0 +1,183 @@
+"""Periodic orbits of any stops, and their multipliers, against the synchronized orbit, differences and long runs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit, refined
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
+from burridge_knopoff.periodic_orbits.simpler import simplest
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+
+SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
+PAPER, UNEVEN = Chain(3), Chain(3, coupling=(1.0, 2.0))
+#: Chain, law, a, U(0) from which long runs end on a closed orbit, its symmetry and how often each block stops on it.
+ORBITS = {
+    "synchronized": (PAPER, "linearized", 0.05, (-0.989, -0.993, -0.991), SYNCHRONIZED, (1, 1, 1)),
+    "symmetric": (PAPER, "linearized", 0.05, (-0.787, -0.661, -0.869), SYMMETRIC, (1, 0, 1)),
+    "asymmetric": (PAPER, "linearized", 0.12, (-0.989, -0.993, -0.991), ASYMMETRIC, (6, 6, 3)),
+    "two blocks": (Chain(2), "nonlinear", 0.2, (0.28, -0.72), SYMMETRIC, (1, 1)),
+    "five blocks": (Chain(5), "linearized", 0.05, (0.68, 0.46, -0.21, 1.1, 0.4), SYMMETRIC, (33, 44, 0, 44, 33)),
+    "uneven": (UNEVEN, "linearized", 0.05, (-1.15, -0.42, -1.22), ASYMMETRIC, (1, 0, 1)),
+    "friction that drops": (PAPER, "carlson_langer", 0.15, (0.74, -0.17, -0.87), ASYMMETRIC, (4, 7, 7)),
+}
+#: U'(0) of all, but of the first.
+VELOCITY = {"symmetric": (0.0, 0.101, 0.189)}
+
+
+@pytest.fixture(scope="module")
+def orbits():
+    found = {}
+    for name, (chain, law, a, position, *_) in ORBITS.items():
+        model = Model(chain, law_of(law, a))
+        velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
+        end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 20_000.0)
+        found[name] = closed_motion(model, end)
+    return found
+
+
+def moved(orbit, direction, size):
+    """Return where the return of an orbit leads from a state beside the reference."""
+    blocks = orbit.model.blocks
+    vector = orbit.reference.vector() + size * direction
+    start = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+    return ReturnMap(orbit.model, orbit.symmetry).end(start, orbit.return_time).vector()
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_a_settled_motion_returns_and_attracts(orbits, name):
+    orbit = orbits[name]
+    end = Runner(orbit.model).after(orbit.reference, orbit.period)
+    assert np.abs(end.vector() - orbit.reference.vector()).max() < 1e-11
+    assert orbit.residual < 1e-12
+    assert (orbit.symmetry, orbit.signature) == ORBITS[name][4:]
+    assert (float(orbit.model.law(0.0)) < 1.0) == (name == "friction that drops")
+    found = multipliers(orbit)
+    assert found.unstable == 0
+    assert len(found.whole) == 2 * orbit.model.blocks - 1
+    # The monodromy is that of finite differences.
+    basis = directions(orbit.reference.stuck, ASYMMETRIC)
+    difference = [(moved(orbit, d, 1e-6) - moved(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
+    assert orbit.monodromy @ basis == pytest.approx(np.stack(difference, axis=1), rel=1e-5, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_the_reference_is_in_the_middle_of_the_longest_time_without_events(orbits, name):
+    """Also where the guess is a stop, or an event with which that time begins or ends, or right after it."""
+    orbit = orbits[name]
+    times = np.array([time for time, _, _ in orbit.events])
+    gaps = np.diff(times, append=times[0] + orbit.period)
+    ends = [times[gaps.argmax()] + since + late for since in (0.0, gaps.max()) for late in (0.0, 1e-9)]
+    guesses = [Runner(orbit.model).after(orbit.reference, time) for time in ends]
+    for guess in (*guesses, *(orbit.start(block) for block in np.flatnonzero(orbit.signature))):
+        found = find_periodic_orbit(orbit.model, guess, orbit.return_time, orbit.symmetry)
+        around = [found.events[0][0], found.period - found.events[-1][0]]
+        assert around == pytest.approx([0.5 * gaps.max()] * 2, abs=1e-9)
+
+
+@pytest.mark.parametrize("a", [0.02, 0.036, 0.08, 0.15, 0.3])
+def test_the_symmetry_of_an_orbit_changes_none_of_its_multipliers(families, law, a):
+    known = families[law].at(a)
+    orbit = find_periodic_orbit(known.model, known.reference, known.period, ASYMMETRIC)
+    assert orbit.period == pytest.approx(known.period, abs=1e-11)
+    found, expected = multipliers(orbit), multipliers(known)
+    assert np.sort(np.abs(found.whole)) == pytest.approx(np.sort(np.abs(expected.whole)), abs=1e-7)
+    assert np.isnan(found.transverse)
+
+
+def test_how_long_blocks_stick(orbits):
+    """As a run with dense samples counts."""
+    orbit = orbits["asymmetric"]
+    times = np.linspace(0.0, orbit.period, 4001)
+    runner = Runner(orbit.model)
+    sticks = np.mean([runner.after(orbit.reference, float(time)).stuck for time in times[1:]], axis=0)
+    assert [orbit.stick_time(block) for block in range(3)] == pytest.approx(sticks * orbit.period, abs=0.02)
+    assert [orbits["symmetric"].stick_time(block) > 0.0 for block in range(3)] == [True, False, True]
+
+
+def test_a_refined_orbit_is_solved_to_rounding(orbits):
+    for orbit in orbits.values():
+        found = refined(orbit)
+        assert found.residual <= max(orbit.residual, 2e-14)
+        assert found.period == pytest.approx(orbit.period, abs=1e-10)
+
+
+def test_uniform_sliding_is_no_orbit(families, law):
+    """It returns after any time; Newton's method comes to it from a guess that returns too early."""
+    model = families[law].at(0.08).model
+    nearly = Instant(np.array([1e-4, -1e-4, 1e-4]), np.full(3, model.v), np.zeros(3, dtype=bool))
+    with pytest.raises(OrbitError, match="no block stops there"):
+        find_periodic_orbit(model, nearly, 1e-6, SYNCHRONIZED)
+
+
+def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
+    half = orbits["symmetric"]
+    whole = find_periodic_orbit(half.model, half.reference, half.period, ASYMMETRIC)
+    assert whole.period == pytest.approx(half.period, abs=1e-12)
+    assert whole.signature == half.signature
+    assert np.abs(multipliers(whole).whole) == pytest.approx(np.abs(multipliers(half).whole), abs=1e-11)
+    assert half.start(0).mirrored().position == pytest.approx(half.start(2).position, abs=1e-12)
+
+
+def test_an_orbit_gone_round_twice_is_told(orbits):
+    half = orbits["symmetric"]
+    twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, ASYMMETRIC)
+    found = simplest(twice, 1e-9)
+    assert (found.symmetry, found.signature) == (SYMMETRIC, half.signature)
+    assert simplest(half, 1e-9) is half
+    known = orbits["synchronized"]
+    twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
+    assert twice.signature == (2, 2, 2)
+    assert simplest(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
+    # What comes back in a mirror after a half does so after three halves too, not after two.
+    thrice = find_periodic_orbit(half.model, half.reference, 3.0 * half.return_time, SYMMETRIC)
+    assert thrice.signature == (3, 0, 3)
+    assert simplest(thrice, 1e-9).period == pytest.approx(half.period, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["synchronized", "symmetric"])
+def test_a_chain_that_is_not_its_own_mirror_image_has_no_such_orbit(orbits, name):
+    """However near it is to one that is."""
+    even = orbits[name]
+    model = replace(even.model, chain=Chain(3, coupling=(1.0, 1.0 + 1e-7)))
+    uneven = find_periodic_orbit(model, even.reference, even.period, ASYMMETRIC)
+    assert uneven.period == pytest.approx(even.period, abs=1e-5)
+    assert simplest(uneven, 1e-4) is uneven
+
+
+def test_an_orbit_starts_at_the_first_stop_of_a_block(orbits):
+    orbit = orbits["asymmetric"]
+    for block in range(3):
+        runner = Runner(orbit.model)
+        runner.begin(orbit.reference)
+        assert runner.run(orbit.period, halting_block=block) == Status.HALTED
+        start, stopped = orbit.start(block), runner.instant()
+        assert start.vector() == pytest.approx(stopped.vector(), abs=1e-12)
+        assert start.stuck.tolist() == stopped.stuck.tolist()
+        assert start.velocity[block] == 0.0
+
+
+def test_what_is_no_orbit_is_refused(orbits):
+    orbit = orbits["asymmetric"]
+    with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found near the guess"):
+        find_periodic_orbit(orbit.model, orbit.reference, 0.37 * orbit.period, ASYMMETRIC)
+    with pytest.raises(ValueError, match="symmetry: got 'symmetric', expected"):
+        find_periodic_orbit(orbits["uneven"].model, orbit.reference, orbit.period, SYMMETRIC)
+    with pytest.raises(OrbitError, match="it never stops"):
+        orbits["symmetric"].start(1)
+    with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found within 20"):
+        closed_motion(orbit.model, orbit.reference, window=20.0)
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_events_that_were_forgotten_are_found_again(orbits, name):
+    orbit = orbits[name]
+    known, signature = orbit.event_rows, orbit.signature
+    orbit.forget_events()
+    assert orbit.signature == signature
+    assert orbit.event_rows is not known
+    assert np.array_equal(orbit.event_rows, known)

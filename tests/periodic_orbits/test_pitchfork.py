@@ -1,0 +1,76 @@
+"""What branches off where synchrony is lost, against runs of its own and the normal form of a pitchfork."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, OrbitError, Symmetry, law_of, multipliers, simulate
+from burridge_knopoff.periodic_orbits.pitchfork import asymmetry_of, branching_orbit
+from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
+from burridge_knopoff.stability.synchronized import synchronized_orbits
+from burridge_knopoff.study.paper import PAPER_LAWS
+from tests.periodic_orbits.exact import slipping_state
+
+
+@pytest.fixture(scope="module")
+def critical(families):
+    """{law: the synchronized orbit at a_c}."""
+    return {law: families[law].at(critical_a(edges_of(families[law]))) for law in PAPER_LAWS}
+
+
+def test_the_branch_is_the_attractor_beyond(families, critical, law):
+    """A run of its own, from a state that is only slightly asymmetric, ends on the orbit found by Newton's method."""
+    orbit = branching_orbit(critical[law], 1e-2)
+    a = orbit.a
+    assert a > critical[law].a
+    assert orbit.symmetry == Symmetry.ASYMMETRIC
+    assert orbit.reference.stuck[[0, 2]].all()
+    assert asymmetry_of(orbit) == pytest.approx(1e-2, abs=1e-14)
+    assert orbit.residual <= 1e-14
+    position, velocity = slipping_state(families[law].at(a))
+    position[0] += 1e-3
+    near = InitialState("near", position, velocity)
+    run = simulate(law, a, near, transient=8000.0, window=100 * orbit.period, batches=2)
+    assert run.mean_distance == pytest.approx(orbit.mean_distance, rel=1e-9)
+    # After the last stop of a period both blocks stick, x_1 − x_3 apart.
+    both = run.event_position[:, 0] - run.event_position[:, 2]
+    stuck = (run.event_velocity[:, 0] == 0.0) & (run.event_velocity[:, 2] == 0.0)
+    assert np.abs(both[stuck]) == pytest.approx(1e-2, abs=1e-9)
+
+
+def test_the_pitchfork(families, critical, law):
+    """Offsets are positive and go like d², to the next even order; the orbits attract as much as they should."""
+    d = np.array([2e-4, 4e-4, 8e-4])
+    found = [branching_orbit(critical[law], float(value)) for value in d]
+    offset = np.array([orbit.a for orbit in found]) - critical[law].a
+    assert (offset > 0.0).all()
+    assert offset / d**2 == pytest.approx(offset[2] / d[2] ** 2, rel=3e-5)
+    # Near a pitchfork the branch loses twice what the orbit in the middle gains.
+    gains = [multipliers(families[law].at(orbit.a)).transverse.real - 1.0 for orbit in found]
+    losses = [1.0 - abs(multipliers(orbit).whole[0]) for orbit in found]
+    assert np.array(losses) / gains == pytest.approx(2.0, rel=2e-3)
+
+
+def test_an_orbit_does_not_depend_on_the_guess(critical, law):
+    direct = branching_orbit(critical[law], 1e-2)
+    by_way = branching_orbit(critical[law], 1e-2, branching_orbit(critical[law], 5e-3))
+    assert by_way.a == pytest.approx(direct.a, abs=1e-14)
+    assert by_way.reference.vector() == pytest.approx(direct.reference.vector(), abs=1e-13)
+
+
+def test_mirror_images_exist_together(critical):
+    one, other = (branching_orbit(critical["linearized"], side * 5e-3) for side in (1, -1))
+    assert one.a == pytest.approx(other.a, abs=1e-13)
+    assert one.reference.mirrored().vector() == pytest.approx(other.reference.vector(), abs=1e-12)
+
+
+def test_an_asymmetry_beyond_the_branch_is_refused(critical):
+    with pytest.raises(OrbitError):
+        branching_orbit(critical["linearized"], 0.2)
+
+
+def test_a_pitchfork_of_five_blocks():
+    """Its orbits, too, are apart by the root of the distance from a_c."""
+    orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
+    at = orbits.at(critical_a(edges_of(orbits)))
+    offset = [branching_orbit(at, d).a - at.a for d in (5e-4, 1e-3)]
+    assert offset[1] / offset[0] == pytest.approx(4.0, rel=1e-3)

@@ -1,0 +1,63 @@
+"""How returns change with a, next to where a law ends."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.periodic_orbits import return_map
+from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+
+#: Friction of a block that begins to slip is a: no more than 1 is a law.
+LAW = FormulaLaw(1.0, "a/(1 + 0.08*u)", name="own")
+
+
+def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
+    def derivative(a):
+        model = Model(Chain(3), LAW.at(a))
+        start = model.begin(PAPER_STATES["plus"])
+        mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
+        end = mapping.end(start, 1.0)
+        return mapping.a_derivative(start, 1.0, end, mapping.event_rows()[:, 1:])
+
+    assert np.abs(derivative(1.0)).max() > 0.05
+    assert derivative(1.0) == pytest.approx(derivative(1.0 - 1e-6), abs=1e-4)
+
+
+def test_what_a_law_does_not_allow_is_no_orbit():
+    with pytest.raises(OrbitError, match="above 0 and at most 1"):
+        model_at(Model(Chain(3), LAW), 1.001)
+
+
+def test_the_derivative_by_a_is_that_of_the_same_events_in_the_same_order(monkeypatch):
+    model = Model(Chain(3), law_of("linearized", 0.1))
+    end = Instant(np.zeros(3), np.zeros(3), np.zeros(3, dtype=bool))
+    told = [
+        (1e-7, [(0.1, 1, 0), (0.2, 0, 0)]),  # in another order
+        (1e-7, [(0.1, 0, 0)]),
+        (1e-8, [(0.1, 0, 1), (0.2, 1, 0)]),  # of another kind
+        (1e-8, [(0.3, 0, 0), (0.4, 1, 0)]),
+    ]
+    left = iter(told)
+
+    def ran(events, after):
+        """Return what stands for a runner that has come to an end with these events."""
+        columns = tuple(np.array(events).reshape(-1, 3).T)
+        return SimpleNamespace(events=lambda: columns, after=lambda start, time: after)
+
+    def runner(model, keep_events):
+        size, events = next(left)
+        assert abs(model.a - 0.1) == pytest.approx(size)
+        return ran(events, Instant(np.full(3, -3e-8), np.zeros(3), end.stuck))
+
+    monkeypatch.setattr(return_map, "Runner", runner)
+    mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
+    found = mapping.a_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]))
+    # The last is below: a smaller by 1e-8.
+    assert found == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
+    monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
+    assert mapping.a_derivative(end, 1.0, end, np.zeros((0, 2))).tolist() == [0.0] * 6

@@ -1,0 +1,200 @@
+"""Periodic orbits and their multipliers against closed forms, 40-digit arithmetic and finite differences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    FormulaLaw,
+    InitialState,
+    Instant,
+    Model,
+    OrbitError,
+    Settings,
+    Symmetry,
+    law_of,
+    multipliers,
+    simulate,
+    synchronized_orbit,
+)
+from burridge_knopoff.periodic_orbits.flow import flow
+from burridge_knopoff.periodic_orbits.synchrony import differenced_multiplier
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.stability.synchronized import synchronized_orbits
+from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
+
+
+def transverse(orbit):
+    return multipliers(orbit).transverse.real
+
+
+def turns(run):
+    """Return the times from one stop of block 1 to the next."""
+    return np.diff(run.event_time[(run.event_block == 1) & (run.event_kind == 0)])
+
+
+@pytest.mark.parametrize("a", [1e-4, 0.0025, 0.02, 0.0355, 0.036, 0.05, 0.0869, 0.1, 0.2, 0.3])
+def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
+    orbit = families[law].at(a)
+    end = flow(orbit.model, orbit.reference, orbit.period)[0].instant()
+    assert np.abs(end.vector() - orbit.reference.vector()).max() <= 1e-14
+    assert orbit.residual <= 1e-14
+    assert orbit.symmetry == Symmetry.SYNCHRONIZED
+    assert orbit.reference.position[0] == orbit.reference.position[2]
+    assert (orbit.signature[0], orbit.signature[2]) == (1, 1)
+    found = multipliers(orbit)
+    # Those of the end blocks' velocities, which a stop takes away.
+    assert abs(found.breaking[1]) < 1e-12
+    assert np.abs(found.keeping).min() < 1e-12
+    if law == "linearized":
+        time, omega = orbit.period - orbit.stick_time(0), np.sqrt(2.0 - 0.25 * a * a)
+        closed = np.exp(0.5 * a * time) * (np.cos(omega * time) - 0.5 * a / omega * np.sin(omega * time))
+        assert found.breaking[0] == pytest.approx(closed, abs=1e-12)
+
+
+@pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
+def test_the_state_returns_and_its_multiplier_in_exact_arithmetic(families, law, a):
+    orbit = families[law].at(a)
+    position, velocity = slipping_state(orbit)
+    run = after_a_period(orbit, position, velocity)
+    # Errors of the state grow by the multipliers at most, those of the period by the speed.
+    assert np.abs(np.array(run.position, dtype=float) - position).max() < 5e-15
+    assert np.abs(np.array(run.velocity, dtype=float) - velocity).max() < 5e-15
+    assert len(run.events) == len(orbit.events)
+    assert transverse(orbit) == pytest.approx(exact_transverse_multiplier(orbit), abs=1e-12)
+
+
+@pytest.mark.parametrize("a", [0.02, 0.05, 0.15])
+def test_multipliers_against_finite_differences(families, law, a):
+    """The eigenvalues of the differenced period map are the multipliers; of stuck velocities there is no difference."""
+    orbit = families[law].at(a)
+
+    def end(change):
+        start = Instant(*np.split(orbit.reference.vector() + change, 2), orbit.reference.stuck)
+        return flow(orbit.model, start, orbit.period)[0].instant().vector()
+
+    matrix = np.zeros((6, 6))
+    free = [0, 1, 2, *(3 + np.flatnonzero(~orbit.reference.stuck)).tolist()]
+    for column in free:
+        step = 1e-6 * np.eye(6)[column]
+        matrix[:, column] = (end(step) - end(-step)) / 2e-6
+    expected = np.linalg.eigvals(matrix)
+    for value in (1.0, *multipliers(orbit).whole):
+        # A double multiplier 0 splits by the root of the error of the differences.
+        assert np.abs(expected - value).min() < (1e-4 if abs(value) < 1e-3 else 1e-7)
+    assert multipliers(orbit).whole.sum() + 1.0 == pytest.approx(np.trace(matrix), abs=1e-7)
+
+
+def test_a_run_from_the_initial_state_ends_on_the_orbit(families, law):
+    found = turns(simulate(law, 0.05, "minus", transient=4000.0, window=200.0))
+    assert found == pytest.approx(families[law].at(0.05).period, abs=1e-10)
+    assert len(found) >= 30
+
+
+def test_small_a_is_a_grazing_normal_mode(families, law):
+    """As a falls to 0 the orbit becomes the slow symmetric mode, λ = 3 − √3, in which block 1 just comes to rest."""
+    omega = np.sqrt(3.0 - np.sqrt(3.0))
+    orbits = [families[law].at(a) for a in (1e-4, 1e-6)]
+    for orbit in orbits:
+        assert orbit.stick_time(0) == pytest.approx(2.36 * np.sqrt(orbit.model.a), rel=0.005)
+    first, second = (abs(orbit.period - 2.0 * np.pi / omega) for orbit in orbits)
+    assert second < min(1e-7, 0.02 * first)
+
+
+def test_the_linearized_law_has_no_scale(families, law):
+    """Divided by v, the linearized equations do not contain v: period and multipliers do not depend on it."""
+    orbit = families[law].at(0.1)
+    other = synchronized_orbits(replace(orbit.model, v=0.3)).at(0.1)
+    same = law == "linearized"
+    assert (abs(other.period - orbit.period) < 1e-12) == same
+    assert (abs(transverse(other) - transverse(orbit)) < 1e-11) == same
+
+
+def test_an_orbit_does_not_depend_on_the_way_to_it(families):
+    fine = synchronized_orbits(families["nonlinear"].model)
+    for a in np.arange(0.055, 0.1501, 0.005):
+        orbit = fine.at(float(a))
+    direct = families["nonlinear"].at(float(a))
+    assert orbit.period == pytest.approx(direct.period, abs=1e-13)
+    assert transverse(orbit) == pytest.approx(transverse(direct), abs=1e-12)
+
+
+@pytest.mark.parametrize("v", [1e-3, 1e3])
+def test_an_orbit_is_found_at_any_velocity(families, v):
+    """As closely as the rounding of positions and velocities, which grow with v, allows."""
+    orbit = families["linearized"].at(0.08)
+    other = synchronized_orbits(replace(orbit.model, v=v)).at(0.08)
+    assert other.period == pytest.approx(orbit.period, abs=1e-12)
+    assert transverse(other) == pytest.approx(transverse(orbit), abs=1e-11)
+
+
+@pytest.mark.parametrize("a", [0.0, -0.1])
+def test_friction_parameters_without_an_orbit(families, a):
+    with pytest.raises(OrbitError, match="0 < a"):
+        families["linearized"].at(a)
+
+
+@pytest.mark.parametrize("chain", [Chain(3, coupling=(1.0, 1.1)), Chain(4, threshold=(1.0, 1.0, 1.0, 0.9))])
+def test_a_chain_that_is_not_its_own_mirror_image_is_refused(chain):
+    with pytest.raises(OrbitError, match="not its own mirror image"):
+        synchronized_orbit(Model(chain, law_of("linearized", 0.05)))
+
+
+@pytest.mark.parametrize("blocks", [2, 4, 5])
+def test_chains_of_any_length_have_the_orbit(law, blocks):
+    """A state that is moved off it by a hair comes back or goes away as the leading multiplier says."""
+    orbit = synchronized_orbit(Model(Chain(blocks), law_of(law, 0.08)))
+    assert orbit.symmetry == Symmetry.SYNCHRONIZED
+    assert orbit.residual <= 1e-14
+    found = multipliers(orbit)
+    assert differenced_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
+    shift = np.zeros(2 * blocks)
+    shift[0] = 1e-7
+    start = Instant(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
+    parted = []
+    for turns_made in (40, 80):
+        end = Runner(orbit.model).after(start, turns_made * orbit.period).vector()
+        parted.append(np.abs(end - end[[*range(blocks)[::-1], *range(blocks, 2 * blocks)[::-1]]]).max())
+    assert (parted[1] > parted[0]) == (abs(found.transverse) > 1.0)
+
+
+def test_where_a_law_is_none_there_is_no_orbit():
+    """Φ(0) = 1.2 − 3a is above 1, or not above 0, but in between."""
+    with pytest.raises(OrbitError, match="at most 1"):
+        synchronized_orbits(Model(Chain(3), FormulaLaw(0.1, "1.2 - 3*a - 0.05*u"))).at(0.05)
+
+
+BUILT_IN = [law_of(name, 0.08) for name in ("exponential", "stribeck", "carlson_langer")]
+
+
+@pytest.mark.parametrize("law", [*BUILT_IN, FormulaLaw(0.08, "1 - a*c*tanh(u/c)", c=0.5)])
+def test_any_law_has_an_orbit_that_runs_end_on(law):
+    """The multiplier decides whether they do: where it is below 1 runs of slightly asymmetric states synchronize."""
+    model = Model(Chain(3, threshold=(1.0, 0.8, 1.0)), law)
+    orbit = synchronized_orbit(model)
+    assert orbit.residual <= 1e-14
+    assert transverse(orbit) == pytest.approx(differenced_multiplier(orbit), abs=1e-7)
+    position, velocity = slipping_state(orbit)
+    position[0] += 1e-4
+    settings = Settings(transient=4000.0, window=100.0, batches=2, events="all")
+    run = simulate(model, InitialState("near", position, velocity), settings)
+    assert (run.mean_distance < 1e-6) == (transverse(orbit) < 1.0)
+    if run.mean_distance < 1e-6:
+        assert turns(run)[-10:] == pytest.approx(orbit.period, abs=1e-7)
+
+
+def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(families, law):
+    flip = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
+    for a, doubled in ((flip - 0.002, False), (flip + 0.002, True)):
+        orbit = families[law].at(a)
+        assert (multipliers(orbit).keeping[0].real < -1.0) == doubled
+        position, velocity = slipping_state(orbit)
+        position[1] += 1e-4
+        initial = InitialState("near", position, velocity)
+        run = simulate(law, a, initial, transient=10000.0, window=100.0, batches=2)
+        assert run.mean_distance < 1e-12
+        found = turns(run)
+        assert found[2:] == pytest.approx(found[:-2], abs=1e-6)
+        assert (abs(found[1] - found[0]) > 0.05) == doubled

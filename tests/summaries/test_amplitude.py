@@ -1,0 +1,59 @@
+"""How far apart the end blocks are beyond a_c: runs against orbits found by Newton's method, and the fit of a power."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, OrbitError, law_of
+from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
+from burridge_knopoff.stability.synchronized import synchronized_orbits
+from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries import amplitude
+from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
+
+CRITICAL = {"linearized": 0.0869729046660773, "nonlinear": 0.0887172229711765}
+
+
+@pytest.fixture(scope="module")
+def families():
+    return {law: synchronized_orbits(Model(Chain(3), law_of(law, 0.0))) for law in PAPER_LAWS}
+
+
+@pytest.mark.parametrize("law", PAPER_LAWS)
+def test_no_hysteresis(families, law):
+    values = CRITICAL[law] + np.array([-2e-3, -1e-3, 1e-3, 2e-3])
+    up, down = sweep(families[law], values), sweep(families[law], values[::-1])[::-1]
+    assert up == pytest.approx(down, abs=1e-9)
+    assert (up[:2] < 1e-9).all()
+    assert (up[2:] > 5e-3).all()
+
+
+@pytest.mark.parametrize("law", PAPER_LAWS)
+def test_a_sweep_ends_on_the_branch(families, law):
+    """While both stick, blocks 1 and 3 are as far apart as on the orbit that Newton's method finds."""
+    orbit = branching_orbit(families[law].at(CRITICAL[law]), 1e-2)
+    assert sweep(families[law], np.array([orbit.a])) == pytest.approx([1e-2], abs=1e-9)
+
+
+def test_beyond_where_end_blocks_no_longer_stick_together_a_sweep_tells_nothing(families, monkeypatch):
+    settled = amplitude._settled
+
+    def lost(model, state):
+        if model.a == 0.1:
+            raise OrbitError("lost")
+        return settled(model, state)
+
+    monkeypatch.setattr(amplitude, "_settled", lost)
+    found = sweep(families["linearized"], np.array([0.08, 0.1, 0.08]))
+    assert np.isnan(found).tolist() == [False, True, True]
+
+
+def test_power_law_of_a_power_law():
+    x = np.array([1e-6, 3e-5, 2e-4, 1e-3])
+    fit = fit_power_law(x, 0.3 * x**0.75)
+    assert (fit.exponent, fit.coefficient) == pytest.approx((0.75, 0.3), abs=1e-9)
+    assert fit.error < 1e-9
+    noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99]))
+    assert 1e-4 < noisy.error < 1e-2
+    # To ten decimals, on which all machines agree.
+    told = noisy.exponent, noisy.error, noisy.coefficient
+    assert told == tuple(round(value, 10) for value in told)
