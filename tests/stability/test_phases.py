@@ -100,7 +100,7 @@ def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
     """Opposite and equal phases are normal modes, or nearly, whose frequencies are not K_11: they are refused."""
     assert ends_are_neighbours(chain)
     model = Model(chain, law_of("linearized", 0.08))
-    with pytest.raises(ValueError, match=rf"^chain: {chain.blocks} blocks, {chain.ends}: got a spring .*, expected"):
+    with pytest.raises(ValueError, match=rf"^chain: got {chain.blocks} blocks, {chain.ends}, expected no spring"):
         oscillating_states(model, *(np.array([x]) for x in (0.01, 180.0, 0.0)))
     if chain.blocks == 2:
         opposite, equal = (vector @ chain.stiffness @ vector / 2.0 for vector in (np.array([1.0, -1.0]), np.ones(2)))

@@ -73,5 +73,6 @@ for figure in DESCRIPTIONS:
         script:
             "../scripts/{params.script}.py"
 
-    # Written inside, it would be the same for all of them.
-    workflow.get_rule(f"figure_{figure.name}").docstring = f"Draw {figure.subject}"
+    # Written inside, it would be the same for all of them; an importing workflow names rules by itself.
+    if not IMPORTED:
+        workflow.get_rule(f"figure_{figure.name}").docstring = f"Draw {figure.subject}"

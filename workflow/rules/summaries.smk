@@ -124,5 +124,6 @@ for name, row in SUMMARIES.items():
         script:
             "../scripts/{params.script}.py"
 
-    # Written inside, it would be the same for all of them.
-    workflow.get_rule(name).docstring = row["docstring"]
+    # Written inside, it would be the same for all of them; an importing workflow names rules by itself.
+    if not IMPORTED:
+        workflow.get_rule(name).docstring = row["docstring"]
