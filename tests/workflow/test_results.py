@@ -239,7 +239,8 @@ def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, na
     [
         (
             "attractors",
-            "(figure_)?(attractors|refined|rotation|windows|edges|basins|basin_fractions|bifurcation_refined|branches_reached|phases)",
+            "(figure_)?(attractors|refined|rotation|windows|edges|basins|basin_fractions|bifurcation_refined|"
+            "branches_reached|phases)",
         ),
         ("edges", "(figure_)?edges"),
         ("solvers", "(figure_)?solvers|simulate_solver"),
