@@ -75,4 +75,6 @@ for figure in DESCRIPTIONS:
 
     # Written inside, it would be the same for all of them; an importing workflow names rules by itself.
     if not IMPORTED:
-        workflow.get_rule(f"figure_{figure.name}").docstring = f"Draw {figure.subject}"
+        workflow.get_rule(f"figure_{figure.name}").docstring = (
+            f"Draw {figure.subject}"
+        )
