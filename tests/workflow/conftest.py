@@ -44,7 +44,7 @@ refine: {resolution: 1}
 basins: {a: {linearized: [], nonlinear: [0.05]}, pixels: 2, pairs: 2, tiles: 1}
 solvers: {a: [2.5], step: 0.01}
 chains: {two_blocks: {a: [0.02], samples: 1}}
-without: [proof, edges, phases]
+without: [proof, bifurcations, phases]
 """
 
 
