@@ -59,7 +59,7 @@ SMALL = {
         "transient": 100,
         "window": 100,
         "time_limit": 1000,
-        "pushes": 4,
+        "perturbations": 4,
     },
     "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
     "phases": {"amplitude": [0.05, 0.5], "phase_difference": [30, 180], "inner_share": [0, 1], "samples": 2},

@@ -20,7 +20,7 @@ from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.motion.tuning import TUNING
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
-SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, pushes=8)
+SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, perturbations=8)
 
 
 def model(law="linearized", a=0.08):

@@ -14,7 +14,7 @@ from burridge_knopoff.attractors.labels import label
 from tests.motion.stand_in import ASYMMETRIC, at, shown, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
-SETTINGS = SearchSettings(transient=100.0, window=70.0, time_limit=900.0, seed=3, pushes=10)
+SETTINGS = SearchSettings(transient=100.0, window=70.0, time_limit=900.0, seed=3, perturbations=10)
 CHAOS = {"kind": MotionKind.CHAOTIC, "spacing": 0.1}
 
 

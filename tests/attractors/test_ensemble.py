@@ -10,7 +10,7 @@ from burridge_knopoff.model.sampling import sample_states, sampled_states
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
-SETTINGS = SearchSettings(transient=1000.0, window=1000.0, seed=3, pushes=8)
+SETTINGS = SearchSettings(transient=1000.0, window=1000.0, seed=3, perturbations=8)
 
 
 def one_by_one(model, attractors, starts, end):

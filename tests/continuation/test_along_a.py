@@ -100,7 +100,7 @@ def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
 def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
     """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
     monkeypatch.setattr(fractions, "PART", 30)
-    settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, pushes=4)
+    settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, perturbations=4)
 
     def found(a_values, **share):
         states = list(PAPER_STATES.values())

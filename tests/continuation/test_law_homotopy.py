@@ -10,7 +10,7 @@ from burridge_knopoff.motion.set_distance import least_distance
 from burridge_knopoff.motion.tuning import TUNING
 from tests.motion.stand_in import shown
 
-SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, pushes=4)
+SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, perturbations=4)
 A = 0.06
 
 

@@ -96,9 +96,9 @@ def test_every_way_to_differ_counts(values, later, found):
 def test_little_work_tells_what_known_attractors_have_become():
     """A quarter of the patience, one trial, and radii from a sixteenth of the usual one down in steps of sixteen."""
     model = Model(Chain(3), law_of("linearized", 0.1))
-    gap = refinement._gap(Search(model, replace(SEARCH, samples=7, pushes=16)), Search(model.at(0.2)), [], [])
+    gap = refinement._gap(Search(model, replace(SEARCH, samples=7, perturbations=16)), Search(model.at(0.2)), [], [])
     tuning = gap.search.tuning
-    assert (gap.search.settings.pushes, gap.search.settings.samples) == (4, 7)
+    assert (gap.search.settings.perturbations, gap.search.settings.samples) == (4, 7)
     assert (tuning.patience, tuning.trials, tuning.shrinking) == (4, 1, 16.0)
     assert (tuning.largest_radius, tuning.far) == (0.00125, 160.0)
     assert (gap.first.a, gap.last.a) == (0.1, 0.2)

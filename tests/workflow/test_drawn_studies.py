@@ -21,7 +21,7 @@ BASE = {
     "window": 60,
     "batches": 2,
     "attractors": {
-        **{"samples": 2, "fraction_width": 0.4, "pushes": 4},
+        **{"samples": 2, "fraction_width": 0.4, "perturbations": 4},
         **{"transient": 100, "window": 100, "time_limit": 500, "lifetime": 500},
     },
     "refine": {"resolution": 1},

@@ -15,18 +15,18 @@ import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label, moved
-from burridge_knopoff.attractors.lifetime import lifetimes
+from burridge_knopoff.attractors.lifetime import EXPOSURE, lifetimes
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.motion.mirror import pair_distances, symmetrized
-from burridge_knopoff.motion.observables import SteadyMotion, measure
+from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.motion.tuning import TUNING, Tuning
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -59,7 +59,6 @@ def endings(
     motion: MotionSettings = MOTION,
     *,
     start: str = "moving",
-    tuning: Tuning = TUNING,
 ) -> list[Ending]:
     """Return what each initial state ends on.
 
@@ -70,8 +69,8 @@ def endings(
     Raises ValueError if an initial state does not fit the model.
     """
     settings = replace(settings, samples=0)
-    attractors, labels = find_attractors(model, settings, motion, starts=initial, start=start, tuning=tuning)
-    lives = lifetimes(model, attractors, settings, tuning)
+    attractors, labels = find_attractors(model, settings, motion, starts=initial, start=start)
+    lives = lifetimes(model, attractors, settings)
     lasting = [index for index, life in enumerate(lives) if life is None or life.lasts(settings.lifetime)]
     starts = [model.begin(state, start) for state in initial]
     # Out of chaos that ends, and out of what the search has given up, states are followed for as long as labels are.
@@ -81,16 +80,14 @@ def endings(
     # A mirror image has the same ⟨J⟩ and the same kind.
     labels = np.array([*(min(index, one.partner) for index, one in enumerate(attractors)), UNDETERMINED])[labels]
     reached = {*labels.tolist()} - {UNDETERMINED}
-    known = {index: _ending(model, attractors, index, settings, tuning) for index in reached}
+    known = {index: _ending(model, attractors, index, settings) for index in reached}
     lost = np.flatnonzero(labels == UNDETERMINED).tolist()
     ends = moved(model, [starts[k] for k in lost], settings.label_limit) if lost else []
-    slow = {k: _slow_synchrony(model, end, settings, motion, tuning) for k, end in zip(lost, ends, strict=True)}
+    slow = {k: _slow_synchrony(model, end, settings, motion) for k, end in zip(lost, ends, strict=True)}
     return [slow[k] if k in slow else known[index] for k, index in enumerate(labels.tolist())]
 
 
-def _ending(
-    model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings, tuning: Tuning
-) -> Ending:
+def _ending(model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings) -> Ending:
     """Return the motion on an attractor, ⟨J⟩ of chaos from the time for which it is followed to see whether it lasts.
 
     The search's own window leaves ⟨J⟩ of chaos an error of half a percent and more: too much where that decides.
@@ -99,7 +96,7 @@ def _ending(
     found = _ending_of(motion)
     if motion.kind not in CHAOS:
         return found
-    window = tuning.exposure * settings.lifetime
+    window = EXPOSURE * settings.lifetime
     options = Settings(
         transient=0.0,
         window=window,
@@ -120,9 +117,7 @@ def _ending(
     return replace(found, mean_distance=trajectory.mean_distance, mean_distance_error=trajectory.mean_distance_error)
 
 
-def _slow_synchrony(
-    model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings, tuning: Tuning
-) -> Ending:
+def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings) -> Ending:
     """Return the ending in synchrony of a state that is on its way there; undetermined if it is not.
 
     Next to the loss of synchrony a state neither reaches it nor leaves it in the time it has: whether it attracts is
@@ -137,7 +132,7 @@ def _slow_synchrony(
         return Ending()
     if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable:
         return Ending()
-    found = measure(model, symmetric, settings.transient, settings.window, motion, tuning)
+    found = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
     return _ending_of(found) if found is not None else Ending()
 
 

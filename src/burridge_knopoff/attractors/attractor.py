@@ -6,13 +6,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.period import orbit_length
-from burridge_knopoff.motion.section_returns import Returns, state_of, stops_alike, visit
-from burridge_knopoff.motion.tuning import TUNING, Tuning
+from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+
+#: Successive returns within the capture radius after which a trajectory is captured: none passes by so often by chance.
+CLOSE_RETURNS = 8
+
+# Longest orbit, in returns, that a trajectory has to go round twice; it bounds the cost of a label.
+LONGEST_ORBIT = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +53,11 @@ class Attractor:
         return f"<Attractor, {self.symmetry.name.lower()}: {self.motion.words}>"
 
 
-def close_returns(found: Returns, tolerance: float, tuning: Tuning = TUNING) -> int:
+def close_returns(found: Returns, tolerance: float) -> int:
     """Return how many successive returns have to be close to a motion: twice round it if it is a closed orbit."""
     if not found.closed(tolerance):
-        return tuning.close_returns
-    return max(tuning.close_returns, 2 * orbit_length(found.returns, 10.0 * tolerance, tuning.longest_orbit))
+        return CLOSE_RETURNS
+    return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
 
 
 def perturbed(start: ChainState, size: float, generator: np.random.Generator) -> ChainState:
@@ -67,29 +71,3 @@ def perturbed(start: ChainState, size: float, generator: np.random.Generator) ->
     backward = start.velocity < 0.0
     velocity = np.where(start.stuck | (np.where(backward, -moved, moved) < 0.0), 0.0, moved)
     return ChainState(start.position + change[:blocks], velocity, start.stuck)
-
-
-def spread(model: Model, motion: SteadyMotion, settings: SearchSettings, tuning: Tuning = TUNING) -> SteadyMotion:
-    """Return a motion with the returns of trajectories that were pushed off it as its own.
-
-    Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
-    itself attracts; pushed states, which fall back on it and drift along, show more of it than a settled one.
-    """
-    generator = np.random.default_rng(settings.seed)
-    clouds: list[Returns] = []
-    blocks = motion.block, motion.mirror_block
-    for k in generator.integers(len(motion.returns), size=tuning.slow_states):
-        size = tuning.slow_push * settings.resolution * model.scale
-        start = perturbed(state_of(motion.returns[k]), size, generator)
-        found = visit(model, start, tuning.slow_time * settings.transient, settings.window, tuning)
-        # A state that has left for another motion shows nothing of this one.
-        if (
-            found is not None
-            and (found.block, found.mirror_block) == blocks
-            and stops_alike(found.stop_count, motion.stop_rate, tuning)
-        ):
-            clouds.append(found)
-    # The last return, from which the motion is followed on, is its own.
-    returns = np.concatenate([*(cloud.returns for cloud in clouds), motion.returns])
-    mirror_returns = np.concatenate([*(cloud.mirror_returns for cloud in clouds), motion.mirror_returns])
-    return motion.with_returns(returns, mirror_returns, tuning)

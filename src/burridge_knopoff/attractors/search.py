@@ -5,26 +5,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import Attractor, close_returns, perturbed, spread
-from burridge_knopoff.attractors.capture_radius import bounded, captured, midst, recovered
-from burridge_knopoff.attractors.convergence import Settling
+from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, close_returns, perturbed
+from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, midst
+from burridge_knopoff.attractors.convergence import Convergence
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
+from burridge_knopoff.attractors.slow_set import SLOW_TIME, spread
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import sampled_states
 from burridge_knopoff.motion.kind import CHAOS
-from burridge_knopoff.motion.observables import SteadyMotion, lies_on, measure
+from burridge_knopoff.motion.observables import SteadyMotion, lies_on
 from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.motion.set_distance import is_near
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
-from burridge_knopoff.motion.tuning import TUNING, Tuning
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -38,7 +38,6 @@ def find_attractors(
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
-    tuning: Tuning = TUNING,
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index among them that each initial state reaches.
 
@@ -46,7 +45,6 @@ def find_attractors(
         told apart
     starts : initial states besides those that are drawn
     start : moving or tested, see `Model.begin`
-    tuning : what the search decides by itself
 
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
     nothing that settles. What no state reaches is not found, nor is a motion on which no block ever stops: attractors
@@ -69,25 +67,70 @@ def find_attractors(
     instance_of(model, Model, "model")
     instance_of(settings, SearchSettings, "settings")
     instance_of(motion, MotionSettings, "motion")
-    search = Search(model, settings, motion, tuning)
+    search = Search(model, settings, motion)
     labels = search.labels(search.starts(starts, start))
     return search.attractors, labels
 
 
+# Time, in transients, of the first search, in which most trajectories have decided.
+QUICK = 0.3
+
+# Trajectories that are followed without finding anything new before the others are left to what is known.
+FRUITLESS = 3
+
+# Rounds of labelling, each after something new was found, before the labels are left as they are.
+ROUNDS = 20
+
+# States, the first of each sample, whose labels are verified; the cost grows with them.
+VERIFIED = 60
+
+# States ascribed to a chaotic attractor that are followed until they have converged.
+CHECKED = 6
+
+# Perturbations, in resolutions, off an unstable motion on which a trajectory has converged, and off an unstable
+# symmetry, of a state that is carried to the next a.
+UNSTABLE_PUSH = 0.1
+SYMMETRY_PUSH = 0.1
+
+# ⟨J⟩, in resolutions, below which a motion is next to synchrony: if it does not attract it is unstable, and no part of
+# a slow set.
+NEXT_TO_SYNCHRONY = 10.0
+
+# Recovery of synchrony whose multipliers say that it attracts, near where it loses its stability: perturbations shrink
+# there at a rate that vanishes, and their third powers alone bring them closer.
+SLOW_RECOVERY = 2.0
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An attractor that may be added, with its mirror image if that is another one.
+
+    least : radius that it has to have, for v = 0.1; capture : how that is found
+    """
+
+    attractors: Sequence[Attractor]
+    least: float
+    capture: Capture
+
+
 @dataclass(eq=False)
-class Search(Settling):
+class Search(Convergence):
     """Finds the attractors of one model.
 
     attractors : those found so far; vain : states that were followed without finding one
+    in_vain : trajectories that may be followed so, over all rounds
+    capture : how the capture radius of each is found
     """
 
     attractors: list[Attractor] = field(default_factory=list)
     vain: tuple[bytes, ...] = ()
+    in_vain: int = 6
+    capture: Capture = field(default_factory=Capture)
 
     def seeds(self, attractors: Iterable[Attractor]) -> list[ChainState]:
         """Return a state on each of some attractors of a neighbouring a, pushed a little off any symmetry."""
         generator = np.random.default_rng(self.settings.seed)
-        size = self.tuning.symmetry_push * self.resolution
+        size = SYMMETRY_PUSH * self.resolution
         return [perturbed(attractor.motion.state(), size, generator) for attractor in attractors]
 
     def starts(self, given: Sequence[InitialState], start: str) -> list[ChainState]:
@@ -106,14 +149,14 @@ class Search(Settling):
         # Most states decide early: the first search is quick, and only the second gives every state its time. Only with
         # all attractors known are the labels those that another order of the states would give.
         undecided = list(range(len(starts)))
-        for _ in range(self.tuning.rounds):
+        for _ in range(ROUNDS):
             found, _ = label(
-                self.model, self.attractors, [starts[k] for k in undecided], self.tuning.quick * self.settings.transient
+                self.model, self.attractors, [starts[k] for k in undecided], QUICK * self.settings.transient
             )
             undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
             if not self.discover([starts[k] for k in undecided]):
                 break
-        for _ in range(self.tuning.rounds):
+        for _ in range(ROUNDS):
             labels = self.known_labels(starts)
             more = self.discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
             if more:
@@ -128,7 +171,7 @@ class Search(Settling):
         for index, attractor in enumerate(self.attractors):
             if attractor.slow or attractor.motion.kind not in CHAOS:
                 continue
-            for k in np.flatnonzero(labels == index)[: self.tuning.checked]:
+            for k in np.flatnonzero(labels == index)[:CHECKED]:
                 self.reach(starts[k])
         return len(self.attractors) == known
 
@@ -138,12 +181,12 @@ class Search(Settling):
         If one settles elsewhere, an attractor that was not known lies within the radius: it is known then, and the
         radius of the one that the state was ascribed to is halved.
         """
-        starts, labels = starts[: self.tuning.verified], labels[: self.tuning.verified]
-        narrow = [replace(item, radius=recovered(item.motion, item.radius, self.tuning)) for item in self.attractors]
+        starts, labels = starts[:VERIFIED], labels[:VERIFIED]
+        narrow = [replace(item, radius=self.capture.recovered(item.motion, item.radius)) for item in self.attractors]
         closer, _ = label(self.model, narrow, starts, self.settings.time_limit)
         doubtful = np.flatnonzero((closer != labels) & (labels != UNDETERMINED)).tolist()
         verified = True
-        for k in doubtful[: self.tuning.fruitless]:
+        for k in doubtful[:FRUITLESS]:
             if self.reach(starts[k]) not in (UNDETERMINED, labels[k]):
                 verified = False
                 attractor = self.attractors[labels[k]]
@@ -155,8 +198,8 @@ class Search(Settling):
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
         known = len(self.attractors)
         fresh = {state: start for start in starts if (state := start.vector().tobytes()) not in self.vain}
-        for state, start in list(fresh.items())[: self.tuning.fruitless]:
-            if len(self.vain) >= self.tuning.in_vain:
+        for state, start in list(fresh.items())[:FRUITLESS]:
+            if len(self.vain) >= self.in_vain:
                 break
             self.reach(start)
             if len(self.attractors) > known:
@@ -173,59 +216,63 @@ class Search(Settling):
         """Follow one state until it has settled and return the index of its attractor, a new one if need be."""
         generator = np.random.default_rng(self.settings.seed)
         resolution = self.resolution
-        for _ in range(self.tuning.trials):
+        for _ in range(self.trials):
             found = self.settle(start)
             if found is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow or not lies_on(found, attractor.motion, resolution, self.tolerance, self.tuning):
+                if attractor.slow or not lies_on(found, attractor.motion, resolution, self.tolerance):
                     continue
                 return index
             # Closed orbits on a slow set are part of it.
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow and is_near(
-                    found.returns, attractor.motion.returns, resolution, self.tuning.near_share
-                ):
+                if attractor.slow and is_near(found.returns, attractor.motion.returns, resolution):
                     return index
             index = len(self.attractors)
             if self._add(found):
                 return index
-            # An unstable motion that the trajectory has come very close to: pushed off, it goes on.
-            start = perturbed(found.state(), self.tuning.unstable_push * resolution, generator)
+            # An unstable motion that the trajectory has come very close to: perturbed off it, the trajectory goes on.
+            start = perturbed(found.state(), UNSTABLE_PUSH * resolution, generator)
         return UNDETERMINED
 
     def _add(self, found: Returns) -> bool:
-        """Add a settled motion, and its mirror image if that is another one; tell whether they are attractors."""
-        settings, tuning = self.settings, self.tuning
+        """Add a converged motion, and its mirror image if that is another one; tell whether they are attractors."""
         measured = self.measured(found)
         if measured is None:
             return False
-        found, motion = measured
+        for candidate in self.candidates(*measured):
+            accepted = self.accepted(candidate)
+            if accepted is not None:
+                self.attractors = accepted
+                return True
+        return False
+
+    def candidates(self, found: Returns, motion: SteadyMotion) -> Iterator[Candidate]:
+        """Yield what a converged motion may be, in turn, until one of these is accepted."""
         closed = found.closed(self.tolerance)
         mirror = self.model.chain.is_mirror_symmetric
-        synchronization_threshold = self.motion_settings.synchronization_threshold
-        if mirror and synchronization_threshold <= motion.mean_distance < self.resolution:
-            return self._add_slow_synchrony()
-        enough = close_returns(found, self.tolerance, tuning)
-        if mirror and motion.mean_distance < synchronization_threshold:
+        synchronized = mirror and motion.mean_distance < self.motion_settings.synchronization_threshold
+        if mirror and not synchronized and motion.mean_distance < self.resolution:
+            yield from self._slow_synchrony()
+            return
+        enough = close_returns(found, self.tolerance)
+        if synchronized:
             new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
         else:
             new = self._images(motion, self.is_symmetric(found) or self.changes_sides(found), enough)
-        if self._accept(new, tuning.smallest_radius):
-            return True
+        yield Candidate(new, SMALLEST_RADIUS, self.capture)
         # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole; but where
         # that is chaos, it is a motion of its own, in whose midst an orbit may attract from nearby alone, and so it is
-        # where pushes die out in less time than shows a slow set.
-        if mirror and motion.mean_distance < tuning.next_to_synchrony * self.resolution:
-            return False
-        quick = motion.exponent[1] * tuning.slow_time * settings.transient < -1.0
+        # where perturbations die out in less time than shows a slow set.
+        if mirror and motion.mean_distance < NEXT_TO_SYNCHRONY * self.resolution:
+            return
+        quick = motion.exponent[1] * SLOW_TIME * self.settings.transient < -1.0
         if not (closed and (quick or self.lies_in_chaos(found))):
-            whole = spread(self.model, motion, settings, tuning)
-            images = self._images(whole, self.touches(whole), tuning.close_returns)
-            slow = [replace(item, slow=True) for item in images]
-            if self._accept(slow, tuning.smallest_radius):
-                return True
-        return closed and self._accept(new, tuning.tiny_radius)
+            whole = spread(self.model, motion, self.settings)
+            images = self._images(whole, self.touches(whole), CLOSE_RETURNS)
+            yield Candidate([replace(item, slow=True) for item in images], SMALLEST_RADIUS, self.capture)
+        if closed:
+            yield Candidate(new, TINY_RADIUS, self.capture)
 
     def _images(self, motion: SteadyMotion, symmetric: bool, enough: int) -> list[Attractor]:
         """Return a motion as a candidate attractor, with its mirror image if that is different.
@@ -236,47 +283,37 @@ class Search(Settling):
         if not self.model.chain.is_mirror_symmetric:
             return [Attractor(motion, Symmetry.ASYMMETRIC, index, close_returns=enough)]
         if symmetric:
-            return [Attractor(motion.symmetrized(self.tuning), Symmetry.SYMMETRIC, index, close_returns=enough)]
+            return [Attractor(motion.symmetrized(), Symmetry.SYMMETRIC, index, close_returns=enough)]
         return [
             Attractor(motion, Symmetry.ASYMMETRIC, index + 1, close_returns=enough),
             Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index, close_returns=enough),
         ]
 
-    def _add_slow_synchrony(self) -> bool:
-        """Add the synchronized orbit if it attracts, which its multipliers tell where it does so too slowly to be seen.
+    def _slow_synchrony(self) -> Iterator[Candidate]:
+        """Yield the synchronized orbit if its multipliers say that it attracts, though too slowly to be seen.
 
         Near the a at which it loses its stability a trajectory neither reaches it nor leaves it in the time it has.
         """
         try:
             orbit = synchronized_orbit(self.model)
         except OrbitError:
-            return False
+            return
         if abs(multipliers(orbit).whole[0]) >= 1.0:
-            return False
-        settings, index = self.settings, len(self.attractors)
-        exact = measure(
-            self.model, orbit.reference, settings.transient, settings.window, self.motion_settings, self.tuning
-        )
+            return
+        exact = self.classifier(self.settings.transient, self.settings.window).measure(orbit.reference)
         if exact is None:
-            return False
-        tuning = self.tuning
-        found = Attractor(exact, Symmetry.SYNCHRONIZED, index, close_returns=tuning.close_returns)
-        return self._accept([found], tuning.smallest_radius, replace(tuning, recovery=tuning.slow_recovery))
+            return
+        found = Attractor(exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS)
+        yield Candidate([found], SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY))
 
-    def _accept(self, new: Sequence[Attractor], least: float, tuning: Tuning | None = None) -> bool:
-        """Add an attractor, or a mirror pair, if it has a radius of `least` or more."""
-        tuning = tuning or self.tuning
-        before = list(self.attractors)
-        self.attractors = [*before, *new]
-        self.attractors = bounded(self.model, self.attractors, self.tolerance, tuning)
+    def accepted(self, candidate: Candidate) -> list[Attractor] | None:
+        """Return all attractors with a candidate among them; None if it does not attract from its least radius."""
+        index = len(self.attractors)
+        known = candidate.capture.bounded(self.model, [*self.attractors, *candidate.attractors], self.tolerance)
         # A slow set that contains a known attractor is not another one.
-        overlapping = new[0].slow and midst(self.attractors, len(before), self.tolerance, tuning)
-        radius = 0.0
-        if not overlapping:
-            radius = captured(self.model, self.attractors, len(before), least, self.tolerance, self.settings, tuning)
+        if candidate.attractors[0].slow and midst(known, index, self.tolerance):
+            return None
+        radius = candidate.capture.radius(self.model, known, index, candidate.least, self.tolerance, self.settings)
         if radius == 0.0:
-            self.attractors = before
-            return False
-        for index in range(len(before), len(self.attractors)):
-            self.attractors[index] = replace(self.attractors[index], radius=radius)
-        return True
+            return None
+        return [*known[:index], *(replace(item, radius=radius) for item in known[index:])]

@@ -55,8 +55,8 @@ class SearchSettings:
         Number(1e-6, 0.1),
         "distance in positions and velocities below which attractors are not told apart, for v = 0.1; it scales with v",
     ] = 1e-3
-    pushes: Annotated[
-        int, Whole(4, 10_000), "random pushes that an attractor has to survive for its radius to count"
+    perturbations: Annotated[
+        int, Whole(4, 10_000), "random perturbations from which motion must come back for a capture radius to count"
     ] = 16
     lifetime: Annotated[
         float,
@@ -80,4 +80,4 @@ class SearchSettings:
 SEARCH = SearchSettings()
 
 #: Its fields that bear upon what given states end on; the others say which states are drawn.
-OF_GIVEN_STATES = ("seed", "transient", "window", "time_limit", "resolution", "pushes", "lifetime")
+OF_GIVEN_STATES = ("seed", "transient", "window", "time_limit", "resolution", "perturbations", "lifetime")

@@ -22,7 +22,7 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 class Row:
     """One attractor at one a.
 
-    index : among the attractors found there; branch, side : see `continuation.matching.branches`
+    index : among the attractors found there; branch, side : see `continuation.branches.branches`
     lifetime : of chaos; None for other motion
     """
 

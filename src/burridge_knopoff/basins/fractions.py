@@ -22,6 +22,10 @@ from burridge_knopoff.model.sampling import half_width, most_states, sample_stat
 #: States that one process labels at a time; no label depends on it.
 PART = 250
 
+# The patience with an attractor in whose midst orbits lie: this many times that of the last of a sample that reaches
+# one.
+PATIENCE_MARGIN = 3.0
+
 #: Numbers of states after which it is asked whether the intervals are narrow enough.
 STEP = 50
 
@@ -94,8 +98,8 @@ def _spared(search: Search, start: str) -> Search | None:
 
     Where chaos is a transient before the orbits, the last of the sample come late and nothing is spared.
     """
-    attractors, tuning = search.attractors, search.tuning
-    inner = [midst(attractors, index, search.tolerance, tuning) for index in range(len(attractors))]
+    attractors = search.attractors
+    inner = [midst(attractors, index, search.tolerance) for index in range(len(attractors))]
     sample = _drawn(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
     if not any(inner) or not len(sample[0]):
         return None
@@ -103,7 +107,7 @@ def _spared(search: Search, start: str) -> Search | None:
     for index, orbits in enumerate(inner):
         came = times[np.isin(labels, orbits)]
         if len(came):
-            patience = min(tuning.patience_margin * came.max(), attractors[index].patience)
+            patience = min(PATIENCE_MARGIN * came.max(), attractors[index].patience)
             attractors[index] = replace(attractors[index], patience=patience)
     return search
 

@@ -46,7 +46,7 @@ def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> 
     add(search, Settings, "start")
     names = ("samples", *more, "seed", "transient", "window", "time_limit", "resolution")
     add(search, SearchSettings, *names, **defaults)
-    add(search, SearchSettings, "pushes", "lifetime")
+    add(search, SearchSettings, "perturbations", "lifetime")
     add(search, SearchSettings, "position", "velocity", suffix="_box")
     add(parser.add_argument_group("kinds of motion"), MotionSettings)
 

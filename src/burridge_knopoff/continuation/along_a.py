@@ -26,13 +26,13 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.basins.fractions import fraction_labels
-from burridge_knopoff.continuation.matching import branches, differing, outlines
+from burridge_knopoff.continuation.branches import REMEMBERED, branches
+from burridge_knopoff.continuation.matching import Matcher, outlines
 from burridge_knopoff.continuation.refinement import refined
 from burridge_knopoff.continuation.settings import REFINE, Refine
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.motion.tuning import TUNING, Tuning
 from burridge_knopoff.running.processes import shared_out
 
 
@@ -44,7 +44,7 @@ class Continuation:
     grid : positions in `models` of those that were given
     attractors : for each given model those that coexist there; for the others those that change there
     lifetimes : for each model and attractor its lifetime if it is chaotic, None if it is not
-    branch, side : for each model and attractor the number of its branch and its side of it; see `matching.branches`
+    branch, side : for each model and attractor the number of its branch and its side of it; see `branches.branches`
     upward, downward : for each given model and attractor the index of the attractor reached at the next or the previous
         given one, −1 where it is undetermined or there is none
     samples : for each given model the index reached by each state that was drawn for the basin fractions
@@ -75,24 +75,23 @@ def continue_attractors(
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
-    tuning: Tuning = TUNING,
     processes: int = 1,
     folder: str | Path | None = None,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
-    settings, motion, starts, start, tuning : see `find_attractors`
+    settings, motion, starts, start : see `find_attractors`
     refine : how near in a a change is looked for
     processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
         them
 
     Raises ValueError if an initial state does not fit the models.
     """
-    tuning = replace(tuning, longest_followed=refine.longest_period)
+    matcher = Matcher(models[0].scale, refine.longest_period)
     with shared_out(processes, folder) as each:
-        searches = [Search(model, settings, motion, tuning) for model in models]
+        searches = [Search(model, settings, motion) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        searches = _hand_on(searches, each, [True] * len(searches))
+        searches = _hand_on(searches, each, matcher, [True] * len(searches))
         samples = [np.zeros(0, dtype=np.intc) for _ in searches]
         gained = [True] * len(searches)
         while any(gained):
@@ -103,7 +102,10 @@ def continue_attractors(
                 searches[k], samples[k] = search, labels
             # What only these states have led to is looked for at the neighbours as well.
             handed = _hand_on(
-                searches, each, [len(one.attractors) > count for one, count in zip(searches, known, strict=True)]
+                searches,
+                each,
+                matcher,
+                [len(one.attractors) > count for one, count in zip(searches, known, strict=True)],
             )
             gained = [_knows_more(one, before) for one, before in zip(handed, searches, strict=True)]
             searches = [one if more else before for one, more, before in zip(handed, gained, searches, strict=True)]
@@ -111,7 +113,7 @@ def continue_attractors(
         upward = each("carried upward", _carried, searches[:-1], searches[1:])
         downward = each("carried downward", _carried, searches[1:], searches[:-1])
         whole = [searches[0]]
-        for inner, search in zip(refined(searches, refine, each), searches[1:], strict=True):
+        for inner, search in zip(refined(searches, refine, matcher, each), searches[1:], strict=True):
             whole += [*inner, search]
         lived = each("lifetimes", _lifetimes, whole)
     attractors = [search.attractors for search in whole]
@@ -119,13 +121,13 @@ def continue_attractors(
     first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
     width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
     grid = [whole.index(search) for search in searches]
-    values, reach = [search.model.a for search in whole], tuning.remembered * width
+    values, reach = [search.model.a for search in whole], REMEMBERED * width
     return Continuation(
         [search.model for search in whole],
         grid,
         attractors,
         lived,
-        *branches(values, attractors, grid, reach, models[0].scale, tuning),
+        *branches(values, attractors, grid, reach, matcher),
         [*upward, last],
         [first, *downward],
         samples,
@@ -142,7 +144,9 @@ def _knows_more(search: Search, before: Search) -> bool:
     return len(search.attractors) > len(before.attractors)
 
 
-def _hand_on(searches: Sequence[Search], each: Callable[..., list[Any]], new: Sequence[bool]) -> list[Search]:
+def _hand_on(
+    searches: Sequence[Search], each: Callable[..., list[Any]], matcher: Matcher, new: Sequence[bool]
+) -> list[Search]:
     """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are.
 
     new : which of the searches may know what its neighbours have not been asked for
@@ -151,21 +155,26 @@ def _hand_on(searches: Sequence[Search], each: Callable[..., list[Any]], new: Se
     for way in ("down", "up"):
         before, new = searches[::-1], new[::-1]
         givers = [k for k in range(len(before) - 1) if new[k]]
-        handed = each(f"handed {way}", _handed_on, [before[k] for k in givers], [before[k + 1] for k in givers])
+        handed = each(
+            f"handed {way}",
+            partial(_handed_on, matcher=matcher),
+            [before[k] for k in givers],
+            [before[k + 1] for k in givers],
+        )
         given = dict(zip(givers, handed, strict=True))
         searches = [before[0]]
         for k, (giver, taker) in enumerate(pairwise(before)):
             # What has just come to the giver goes on as well.
             more = _knows_more(searches[-1], giver)
-            searches.append((_handed_on(searches[-1], taker) if more else given.get(k)) or taker)
+            searches.append((_handed_on(searches[-1], taker, matcher) if more else given.get(k)) or taker)
         new = [known or _knows_more(*pair) for known, *pair in zip(new, searches, before, strict=True)]
     return searches
 
 
-def _handed_on(giver: Search, taker: Search) -> Search | None:
+def _handed_on(giver: Search, taker: Search, matcher: Matcher) -> Search | None:
     """Return a search that has followed what a neighbour knows; None if that is nothing new."""
-    known, shown = (outlines(search.attractors, taker.tuning) for search in (giver, taker))
-    lacking, _ = differing(known, shown, taker.model.scale, taker.tuning)
+    known, shown = (outlines(search.attractors) for search in (giver, taker))
+    lacking, _ = matcher.differing(known, shown)
     if not lacking:
         return None
     # Whatever states have led to nothing: what attracts next to it is worth looking for.
@@ -180,4 +189,4 @@ def _carried(giver: Search, taker: Search) -> np.ndarray:
 
 
 def _lifetimes(search: Search) -> list[Lifetime | None]:
-    return lifetimes(search.model, search.attractors, search.settings, search.tuning)
+    return lifetimes(search.model, search.attractors, search.settings)

@@ -10,20 +10,22 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
 from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.continuation.matching import SAME_SET
 from burridge_knopoff.laws.blend import blend
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.section_returns import Returns, visit
 from burridge_knopoff.motion.set_distance import is_near
-from burridge_knopoff.motion.tuning import TUNING, Tuning
 from burridge_knopoff.running.processes import shared_out
+
+#: Steps in which one friction law is turned into another, and values of a at which each branch is followed so.
+STEPS = 16
+TRIES = 3
 
 #: {branch: the states on it, at stops}, with the models that they belong to by position: at each of them one state.
 States = Mapping[int, Mapping[int, ChainState]]
 
 
-def follow_law(
-    first: Model, second: Model, start: ChainState, settings: SearchSettings, tuning: Tuning = TUNING
-) -> Returns | None:
+def follow_law(first: Model, second: Model, start: ChainState, settings: SearchSettings) -> Returns | None:
     """Return where an attractor of one model has come to when its law has turned into that of another model.
 
     first, second : models that differ in the law alone; start : a state on an attractor of the first
@@ -32,15 +34,15 @@ def follow_law(
     does not settle, or the set that it settles on is no neighbour of the one before.
     """
     before: Returns | None = None
-    for share in np.linspace(0.0, 1.0, tuning.law_steps + 1).tolist():
+    for share in np.linspace(0.0, 1.0, STEPS + 1).tolist():
         law = second.law if share == 1.0 else blend(first.law, second.law, share)
         model = Model(first.chain, law, first.v, first.contact)
-        found = visit(model, start, settings.transient, settings.window, tuning)
+        found = visit(model, start, settings.transient, settings.window)
         if found is None:
             return None
         if before is not None:
             pairs = ((before.returns, found.returns), (found.returns, before.returns))
-            if not any(is_near(*pair, tuning.same_set * model.scale, tuning.near_share) for pair in pairs):
+            if not any(is_near(*pair, SAME_SET * model.scale) for pair in pairs):
                 return None
         before, start = found, found.state()
     return before
@@ -52,7 +54,6 @@ def joined(
     first: States,
     second: States,
     settings: SearchSettings,
-    tuning: Tuning = TUNING,
     *,
     processes: int = 1,
 ) -> dict[int, int]:
@@ -71,18 +72,18 @@ def joined(
     tried = []
     for row, number in enumerate(numbers[0]):
         places = sorted(first[number])
-        chosen = np.linspace(0, len(places) - 1, min(tuning.law_tries, len(places))).round().astype(int)
+        chosen = np.linspace(0, len(places) - 1, min(TRIES, len(places))).round().astype(int)
         tried += [(row, places[i], first[number][places[i]], len(places) / len(chosen)) for i in chosen]
     models = ([law[k] for _, k, *_ in tried] for law in (firsts, seconds))
     starts = [start for *_, start, _ in tried]
     with shared_out(processes) as each:
-        follow = partial(follow_law, settings=settings, tuning=tuning)
+        follow = partial(follow_law, settings=settings)
         followed = each("turned into the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
     for (row, k, _, weight), found in zip(tried, followed, strict=True):
         near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
         best = min(near, key=lambda n: near[n], default=None)
-        if best is not None and near[best] <= tuning.same_set * firsts[k].scale:
+        if best is not None and near[best] <= SAME_SET * firsts[k].scale:
             arrivals[row, numbers[1].index(best)] += weight
     pairs = zip(*linear_sum_assignment(arrivals, maximize=True), strict=True)
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import count, pairwise
 from typing import Any
 
 from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.capture_radius import PUSH_GROUP
 from burridge_knopoff.attractors.search import Search
-from burridge_knopoff.continuation.matching import Outline, differing, matched, outlines
+from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.model import Model
 
@@ -39,7 +41,9 @@ class Gap:
         return bool(self.before or self.after) and not near
 
 
-def refined(searches: Sequence[Search], refine: Refine, each: Callable[..., list[Any]]) -> list[list[Search]]:
+def refined(
+    searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Callable[..., list[Any]]
+) -> list[list[Search]]:
     """Return searches at values of a between each two neighbours of the grid, ascending; none where nothing changes.
 
     refine : how near to each other the values have to be at which something differs
@@ -50,13 +54,13 @@ def refined(searches: Sequence[Search], refine: Refine, each: Callable[..., list
     perturbations of sliding grow at a rate ∝ a, so that nothing would settle there.
     """
     found: list[list[Search]] = [[] for _ in searches[1:]]
-    differ = each("compared with the next", _between, searches[:-1], searches[1:])
+    differ = each("compared with the next", partial(_between, matcher=matcher), searches[:-1], searches[1:])
     gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
     for step in count(1):
         gaps = [(k, gap) for k, gap in gaps if gap.is_open(refine)]
         if not gaps:
             break
-        halved = each(f"refined, step {step}", _halved, [gap for _, gap in gaps])
+        halved = each(f"refined, step {step}", partial(_halved, matcher=matcher), [gap for _, gap in gaps])
         halves = []
         for (k, gap), (middle, low, high) in zip(gaps, halved, strict=True):
             found[k].append(middle)
@@ -69,51 +73,51 @@ def refined(searches: Sequence[Search], refine: Refine, each: Callable[..., list
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 
 
-def _between(left: Search, right: Search) -> Differing:
+def _between(left: Search, right: Search, matcher: Matcher) -> Differing:
     """Return which attractors of two neighbours of the grid differ."""
     if not left.attractors or not right.attractors:
         return [], []
-    before, after = (outlines(side.attractors, side.tuning) for side in (left, right))
-    return _differing(before, after, left)
+    before, after = (outlines(side.attractors) for side in (left, right))
+    return _differing(before, after, matcher)
 
 
 def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int]) -> Gap:
     """Return the gap between two neighbours of the grid, from what differs."""
     # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
-    # that few pushes, but from near by, show whether it attracts; and an ensemble shows whether chaos lasts.
-    tuning = replace(
-        left.tuning,
-        patience=left.tuning.patience // 4,
+    # that few perturbations, but small ones, show whether it attracts; and an ensemble shows whether chaos lasts.
+    settings = replace(left.settings, perturbations=min(left.settings.perturbations, PUSH_GROUP))
+    capture = replace(left.capture, shrinking=16.0, largest=left.capture.largest / 16.0)
+    search = replace(
+        left,
+        settings=settings,
+        capture=capture,
+        patience=left.patience // 4,
         trials=1,
-        shrinking=16.0,
-        largest_radius=left.tuning.largest_radius / 16.0,
-        far=left.tuning.far * 16.0,
+        attractors=[],
+        vain=(),
     )
-    settings = replace(left.settings, pushes=min(left.settings.pushes, tuning.push_group))
-    search = Search(left.model, settings, left.motion_settings, tuning)
     still = [k for k in outlines(left.attractors) if k not in before]
     ends = _chosen(left.attractors, before), _chosen(right.attractors, after)
     return Gap(search, left.model, right.model, *ends, _chosen(left.attractors, still))
 
 
-def _halved(gap: Gap) -> tuple[Search, Differing, Differing]:
+def _halved(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
     """Follow what may differ at a value in the middle; return what is there, and what differs below and above it."""
-    tuning = gap.search.tuning
     middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
     middle.labels(middle.seeds([*gap.before, *gap.after]), check=False)
     known, before, after = (
-        {k: Outline(item, tuning.compared_returns) for k, item in enumerate(attractors)}
+        {k: Outline(item) for k, item in enumerate(attractors)}
         for attractors in ([*gap.still, *gap.before], gap.before, gap.after)
     )
     # What a seed has left for may be an attractor that does not change.
-    here = outlines(middle.attractors, tuning)
-    origin = matched(known, here, middle.model.scale, tuning)
+    here = outlines(middle.attractors)
+    origin = matcher.matched(known, here)
     here = {k: item for k, item in here.items() if origin.get(k, len(gap.still)) >= len(gap.still)}
-    return middle, _differing(before, here, middle), _differing(here, after, middle)
+    return middle, _differing(before, here, matcher), _differing(here, after, matcher)
 
 
-def _differing(before: Mapping[int, Outline], after: Mapping[int, Outline], search: Search) -> Differing:
-    one, other = differing(before, after, search.model.scale, search.tuning)
+def _differing(before: Mapping[int, Outline], after: Mapping[int, Outline], matcher: Matcher) -> Differing:
+    one, other = matcher.differing(before, after)
     return list(one), list(other)
 
 

@@ -1,4 +1,4 @@
-"""The steady motion that a trajectory settles on: its returns and its observables, measured in a window."""
+"""The steady motion of a trajectory: its section returns and its observables, measured in one window."""
 
 from __future__ import annotations
 
@@ -8,22 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import (
-    CHAOS,
-    Motion,
-    MotionKind,
-    chaotic_kind,
-    closed_kind,
-    judged_distance,
-    motion_of,
-)
-from burridge_knopoff.motion.phase_locking import locked_orbit, recurrence
+from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, judged_distance, motion_of
+from burridge_knopoff.motion.phase_locking import recurrence
 from burridge_knopoff.motion.section_returns import Returns, returns_of, state_of
-from burridge_knopoff.motion.set_distance import is_near, spacing_of
+from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.motion.tuning import TUNING, Tuning
-from burridge_knopoff.periodic_orbits.floquet import multipliers
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
@@ -94,145 +83,22 @@ class SteadyMotion:
             mirror_block=self.block,
         )
 
-    def symmetrized(self, tuning: Tuning = TUNING) -> SteadyMotion:
+    def symmetrized(self) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
         both = np.concatenate([self.returns, self.mirror_returns])
-        return self.with_returns(both, both if len(self.mirror_returns) else self.mirror_returns, tuning)
+        return self.with_returns(both, both if len(self.mirror_returns) else self.mirror_returns)
 
-    def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray, tuning: Tuning = TUNING) -> SteadyMotion:
+    def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray) -> SteadyMotion:
         """Return the motion with these returns, and these of its mirror image."""
-        return replace(
-            self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns, tuning.near_share)
-        )
+        return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns))
 
     def state(self) -> ChainState:
         """Return the state at the last return."""
         return state_of(self.returns[-1])
 
 
-def measure(
-    model: Model,
-    start: ChainState,
-    transient: float,
-    window: float,
-    settings: MotionSettings,
-    tuning: Tuning = TUNING,
-) -> SteadyMotion | None:
-    """Measure the motion from a state that has settled; None if it does not complete or hardly ever stops.
-
-    transient : in which the perturbations turn into the directions of the exponents
-
-    Where only the errors of the exponents leave open which kind it is, it may be locked to a closed orbit that attracts
-    too slowly for them to show it, which is looked for. If there is none, the growth of perturbations in a longer
-    window tells regular motion from chaos. Where that leaves it open, the motion is measured in one that is longer
-    still: it shows smaller exponents, which are judged by thresholds smaller by the root of the ratio of the windows.
-    Longer orbits are looked for in that one; where there is none either, and perturbations have grown faster than on a
-    torus, the exponents are measured in the longest window: it is chaos if the largest is beyond its error there.
-
-    If the closed orbit has another ⟨J⟩, or the returns have moved on by the end of the longer window, the motion was on
-    its way: its kind is left open, and `left_for` is set.
-    """
-    settings = settings.at_speed(model.v)
-    found = measure_once(model, start, transient, window, settings, tuning)
-    if found is None or not found.is_open:
-        return found
-    usual, last = found, found.state()
-    orbit = locked_orbit(model, found.returns, found.recurrence, tuning)
-    seen, longer = tuning.longer_window * window, None
-    if orbit is None and math.isinf(found.period):
-        return found
-    if orbit is None:
-        # The usual window is part of the longer one, in which ⟨J⟩ is that share of it at least: far from synchrony.
-        far = found.mean_distance / tuning.longer_window > settings.synchronization_threshold
-        scaled, known = settings.scaled(tuning.longer_window**-0.5), found.mean_distance if far else None
-        if far and tuning.growth_window:
-            grown = _told_by_growth(model, found, start, transient, tuning.growth_window * window, settings, tuning)
-            if grown is not None:
-                return grown
-        longer = measure_once(model, start, transient, seen, scaled, tuning, known)
-    if longer is not None:
-        # The returns stay those of the usual window: their number decides how attractors are told apart.
-        if longer.kind not in CHAOS and _has_drifted(found, longer, model, tuning):
-            return replace(usual, left_for=longer.state())
-        told = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
-        found, last = replace(found, **told), longer.state()
-        if found.is_open:
-            orbit = locked_orbit(model, longer.returns, longer.recurrence, tuning)
-    if orbit is not None:
-        found, last = _locked(found, orbit, settings), orbit.reference
-    elif found.is_open and not math.isinf(found.period):
-        if found.exponent[0] * seen <= tuning.regular_growth * np.log1p(seen / transient):
-            return found
-        return _with_weak_chaos(model, found, last, transient, tuning.longest_window * window, settings)
-    if found.kind in CHAOS:
-        return found
-    later = measure_once(model, last, transient, window, settings, tuning)
-    if later is None or not _differ(found, later, model, settings, tuning):
-        return found
-    return replace(usual, left_for=last)
-
-
-def _told_by_growth(
-    model: Model,
-    found: SteadyMotion,
-    start: ChainState,
-    transient: float,
-    window: float,
-    settings: MotionSettings,
-    tuning: Tuning,
-) -> SteadyMotion | None:
-    """Return a motion far from synchrony as what the growth of perturbations in a window shows it to be; None if open.
-
-    Two exponents are enough; the others stay those of the usual window.
-    """
-    seen = measure_once(model, start, transient, window, settings, tuning, found.mean_distance, exponents=2)
-    if seen is None or not seen.is_open:
-        return None
-    growth = seen.exponent[0] * window
-    exponent = np.concatenate([seen.exponent, found.exponent[2:]])
-    if growth >= tuning.chaotic_growth:
-        mean = judged_distance(found.mean_distance, model.chain.is_mirror_symmetric)
-        return replace(found, kind=chaotic_kind(mean, settings), exponent=exponent)
-    if growth > tuning.regular_growth * np.log1p(window / transient):
-        return None
-    if _has_drifted(found, seen, model, tuning):
-        return replace(found, left_for=seen.state())
-    return replace(found, kind=MotionKind.QUASIPERIODIC, period=seen.period, exponent=exponent)
-
-
-def _has_drifted(found: SteadyMotion, longer: SteadyMotion, model: Model, tuning: Tuning) -> bool:
-    """Tell whether the last returns of a longer window lie elsewhere than those of a shorter one."""
-    if found.block != longer.block:
-        return False
-    reach = max(tuning.same_mean * model.scale, tuning.spacings * found.spacing)
-    return not is_near(longer.returns[-len(found.returns) :], found.returns, reach, tuning.near_share)
-
-
-def _locked(motion: SteadyMotion, orbit: PeriodicOrbit, settings: MotionSettings) -> SteadyMotion:
-    """Return a motion as that of the closed orbit to which it is locked, whose multiplier has the second exponent."""
-    mean = judged_distance(motion.mean_distance, orbit.model.chain.is_mirror_symmetric)
-    rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
-    kind, exponent = closed_kind(mean, orbit.period, settings), np.array([0.0, rate, *motion.exponent[2:]])
-    return replace(motion, kind=kind, period=orbit.period, exponent=exponent)
-
-
-def _with_weak_chaos(
-    model: Model, motion: SteadyMotion, start: ChainState, transient: float, window: float, settings: MotionSettings
-) -> SteadyMotion:
-    """Return the motion with its exponents from this state on, as chaos if the largest is certain to be positive."""
-    options = replace(_options(transient, window, settings), events="none")
-    trajectory = run(model, start, options, section_only=True)
-    if trajectory.status != "completed":
-        return motion
-    exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-    # Errors alone decide: they hold what growth in proportion to time looks like.
-    chaotic = exponent[0] > settings.standard_errors * error[0]
-    mean = judged_distance(motion.mean_distance, model.chain.is_mirror_symmetric)
-    return replace(motion, kind=chaotic_kind(mean, settings) if chaotic else motion.kind, exponent=exponent)
-
-
-def _options(transient: float, window: float, settings: MotionSettings, exponents: int = EXPONENTS) -> Settings:
-    """Return the settings of a run in which a motion is measured."""
+def run_options(transient: float, window: float, settings: MotionSettings, exponents: int = EXPONENTS) -> Settings:
+    """Return the settings of a run in which a motion is observed."""
     return Settings(
         transient=transient,
         window=window,
@@ -246,29 +112,23 @@ def _options(transient: float, window: float, settings: MotionSettings, exponent
     )
 
 
-def _differ(one: SteadyMotion, other: SteadyMotion, model: Model, settings: MotionSettings, tuning: Tuning) -> bool:
-    """Tell whether ⟨J⟩ of two motions differs beyond its errors."""
-    error = float(np.hypot(one.mean_distance_error, other.mean_distance_error))
-    allowed = settings.standard_errors * error + tuning.same_mean * model.scale
-    return abs(one.mean_distance - other.mean_distance) > allowed
-
-
-def measure_once(
+def observe(
     model: Model,
     start: ChainState,
     transient: float,
     window: float,
     settings: MotionSettings,
-    tuning: Tuning,
     mean_distance: float | None = None,
     exponents: int = EXPONENTS,
 ) -> SteadyMotion | None:
-    """Do the work of `measure` in one window, by settings that are for the speed of the driver already.
+    """Observe the motion from a state in one window; None if it does not complete or hardly ever stops.
 
-    mean_distance : what ⟨J⟩ is taken for instead of being measured; exponents : how many are computed
+    transient : in which the perturbations turn into the directions of the exponents
+    settings : for the speed of the driver, see `MotionSettings.at_speed`
+    mean_distance : ⟨J⟩ if it is known, instead of being measured; exponents : how many are computed
     """
     known = mean_distance is not None
-    options = _options(transient, window, settings, exponents)
+    options = run_options(transient, window, settings, exponents)
     trajectory = run(model, start, options, section_only=known, stops_only=True)
     mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":
@@ -279,7 +139,7 @@ def measure_once(
         position = trajectory.event_position[chosen] - model.sliding_offset
         return np.concatenate([position, trajectory.event_velocity[chosen]], axis=1)
 
-    found = returns_of(model, window, block, states, tuning)
+    found = returns_of(model, window, block, states)
     if found is None:
         return None
     mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
@@ -297,13 +157,11 @@ def measure_once(
         exponent=trajectory.lyapunov_exponent,
         block=found.block,
         mirror_block=found.mirror_block,
-        recurrence=recurrence(trajectory.event_time[block == found.block], found.returns, tuning),
+        recurrence=recurrence(trajectory.event_time[block == found.block], found.returns),
     )
 
 
-def lies_on(
-    found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float, tuning: Tuning = TUNING
-) -> bool:
+def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
     """Tell whether a settled motion lies on an attractor, as far as that is resolved.
 
     A closed orbit may lie in the midst of a chaotic attractor, but not on it, unless that is so thin that it looks like
@@ -315,6 +173,4 @@ def lies_on(
     chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
     if found.block != attractor.block or (found.repeats(tolerance) and chaotic):
         return False
-    return is_near(
-        found.returns, attractor.returns, max(resolution, tuning.spacings * attractor.spacing), tuning.near_share
-    )
+    return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

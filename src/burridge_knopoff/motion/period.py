@@ -8,7 +8,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.motion.tuning import TUNING, Tuning
+
+# A block hardly ever stops if its stops, and those of its mirror image, are less than this share of those of the blocks
+# that stop the most: what is seen only then is not seen in every window.
+SELDOM = 0.1
 
 # A period counts if the section shows it at least this many times.
 REPETITIONS = 3
@@ -42,7 +45,7 @@ def period_of(run: Mapping[str, np.ndarray], settings: MotionSettings) -> tuple[
     if not len(block):
         return 0, math.nan
     stop_count = np.bincount(block, minlength=run["event_position"].shape[1] + 1)[1:]
-    own = np.flatnonzero(stops)[block == sections(stop_count, TUNING)[0]]
+    own = np.flatnonzero(stops)[block == sections(stop_count)[0]]
     states = np.concatenate([run["event_position"][own], run["event_velocity"][own]], axis=1)
     length = orbit_length(states, settings.period_tolerance, len(states))
     time = run["event_time"][own]
@@ -103,7 +106,7 @@ def _misfit(sequence: np.ndarray, period: int) -> float:
     return float(np.ptp(turns, axis=0).max())
 
 
-def sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
+def sections(stops: np.ndarray) -> tuple[int, int]:
     """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
 
     stops : of each block, shape (blocks,)
@@ -112,10 +115,10 @@ def sections(stops: np.ndarray, tuning: Tuning) -> tuple[int, int]:
     that stops if only one of them does. Shares of all stops decide, which do not depend on how long the motion is seen.
     """
     pairs = stops + stops[::-1]
-    outer = int(np.argmax(pairs >= tuning.seldom * pairs.max()))
+    outer = int(np.argmax(pairs >= SELDOM * pairs.max()))
     inner = len(stops) - 1 - outer
     fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
-    if stops[fewer] >= tuning.seldom * stops[more]:
+    if stops[fewer] >= SELDOM * stops[more]:
         return outer + 1, outer + 1
     return more + 1, fewer + 1
 

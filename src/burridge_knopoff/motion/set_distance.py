@@ -7,11 +7,15 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
-from burridge_knopoff.motion.tuning import TUNING
+#: Share of the returns that must lie near another set: a few may lie where the other has a gap.
+NEAR_SHARE = 0.95
+#: Sets are one if they are no farther apart than this many times the distance between neighbours within them, which
+#: varies from place to place.
+SPACINGS = 3.0
 
 
 def distance(
-    first: np.ndarray, second: np.ndarray | cKDTree, share: float = TUNING.near_share, bound: float = np.inf
+    first: np.ndarray, second: np.ndarray | cKDTree, share: float = NEAR_SHARE, bound: float = np.inf
 ) -> float:
     """Return how far the returns of the first set lie from the second: the distance within which that share does.
 
@@ -27,7 +31,7 @@ def distance(
     return float(np.quantile(_nearest(first, tree, np.inf) if near == below < len(first) else nearest, share))
 
 
-def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = TUNING.near_share) -> bool:
+def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = NEAR_SHARE) -> bool:
     """Tell whether `distance(first, second)` is at most the limit."""
     return distance(first, second, share, limit) <= limit
 
@@ -44,7 +48,7 @@ def _nearest(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
     return nearest
 
 
-def spacing_of(returns: np.ndarray, share: float) -> float:
+def spacing_of(returns: np.ndarray, share: float = NEAR_SHARE) -> float:
     """Return the distance within which that share of the returns have a neighbour, shape (n, 2 blocks)."""
     nearest, _ = cKDTree(returns).query(returns, k=2, p=np.inf)
     return float(np.quantile(nearest[:, 1], share))
