@@ -105,3 +105,20 @@ def installed(repository: Path, tmp_path_factory: pytest.TempPathFactory):
     from tests.installation import Installation, install
 
     return Installation(made_once(tmp_path_factory, "installed", lambda folder: install(repository, folder)))
+
+
+@pytest.fixture
+def tell(monkeypatch):
+    """Return how a function of a module is told its answers, in turn, which returns the list of what it is asked."""
+
+    def told(module, name, answers):
+        asked, left = [], iter(answers)
+
+        def answer(*arguments, **named):
+            asked.append((*arguments, *named.values()))
+            return next(left)
+
+        monkeypatch.setattr(module, name, answer)
+        return asked
+
+    return told

@@ -15,7 +15,6 @@ from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.motion.settings import MOTION
-from burridge_knopoff.motion.tuning import TUNING
 from tests.motion.stand_in import stand_in
 from tests.motion.test_chain_synchronization import two_block_exponent
 
@@ -51,7 +50,7 @@ def test_only_what_is_next_to_synchrony_is_on_its_way_there(v, apart, kind):
     model = Model(Chain(3), law_of("linearized", 0.05), v)
     on_it = synchronized_orbit(model).reference
     end = replace(on_it, position=on_it.position + np.array([0.0, 0.0, apart]))
-    found = module._slow_synchrony(model, end, SEARCH, MOTION, TUNING)
+    found = module._slow_synchrony(model, end, SEARCH, MOTION)
     assert found.kind == kind
 
 
@@ -97,7 +96,7 @@ def test_chaos_that_does_not_last_is_followed_out_of(monkeypatch):
     chaotic = [k for k, found in enumerate(endings(model, STATES)) if found.kind == MotionKind.CHAOTIC]
     assert chaotic == [0, 3, 7]
 
-    def dying(model, attractors, settings, tuning):
+    def dying(model, attractors, settings):
         kinds = [attractor.motion.kind for attractor in attractors]
         return [Lifetime(9, 900.0) if kind == MotionKind.CHAOTIC else None for kind in kinds]
 
@@ -138,7 +137,7 @@ def test_an_average_over_chaos_and_its_mirror_image_is_taken(tell, at, whole):
     tell(module, "run", [long])
     tell(module, "label", [(np.array([at]), None)])
     model = Model(Chain(3), law_of("linearized", 0.08))
-    found = module._ending(model, [*chaos, stand_in(partner=2)], 0, SEARCH, TUNING)
+    found = module._ending(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
     assert found.kind == MotionKind.CHAOTIC
     assert (found.mean_distance, found.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
 

@@ -7,17 +7,18 @@ import pytest
 from scipy.stats import binomtest
 
 from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, Symmetry, law_of, simulate
+from burridge_knopoff.attractors.capture_radius import Capture
 from burridge_knopoff.attractors.labels import label
 from burridge_knopoff.attractors.lifetime import lifetimes
 from burridge_knopoff.attractors.search import Search, find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval, sample_states, sampled_states
+from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.motion.observables import lies_on, measure
+from burridge_knopoff.motion.observables import lies_on
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.motion.tuning import TUNING
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, perturbations=8)
@@ -71,7 +72,7 @@ def test_an_unstable_motion_is_no_attractor():
     """A symmetric state stays symmetric for ever, though the synchronized motion is unstable at a = 0.1."""
     unstable, stable = (Search(model(a=a), SETTINGS) for a in (0.1, 0.08))
     symmetric = unstable.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
-    assert measure(unstable.model, symmetric, 2000.0, 1000.0, MOTION).mean_distance == 0.0
+    assert Classifier(unstable.model, 2000.0, 1000.0, MOTION).measure(symmetric).mean_distance == 0.0
     assert visit(unstable.model, symmetric, 2000.0, 1000.0).settled(1e-6, 1e-3)
     index = unstable.reach(symmetric)
     found = unstable.attractors[index]
@@ -125,7 +126,7 @@ def test_chaos_of_many_dimensions_is_known_for_what_it_is():
     labels = found.labels(found.starts((), "moving"))
     (chaos,) = found.attractors
     assert chaos.motion.kind == MotionKind.CHAOTIC
-    assert chaos.radius == chaos.motion.spacing > TUNING.largest_radius
+    assert chaos.radius == chaos.motion.spacing > Capture().largest
     assert (labels == 0).all()
     (lived,) = lifetimes(found.model, found.attractors, found.settings)
     assert lived.ends == 0
@@ -170,7 +171,7 @@ def test_samples_and_intervals():
 def test_weak_chaos_is_told_from_a_torus():
     """λ1 is 0.0019 at a = 0.1325: in the usual window its error hides it, and the motion looks like one on a torus."""
     weak = model(a=0.1325)
-    steady = measure(weak, weak.begin(PAPER_STATES["minus"]), 20_000.0, 3000.0, MOTION)
+    steady = Classifier(weak, 20_000.0, 3000.0, MOTION).measure(weak.begin(PAPER_STATES["minus"]))
     run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
     assert steady.kind == MotionKind.CHAOTIC
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
@@ -182,7 +183,7 @@ def test_weak_chaos_is_told_from_a_torus():
 def test_a_weakly_attracting_orbit_is_told_from_a_torus(law, a, closes):
     """λ2 is -0.0004 at a = 0.07 (nonlinear), which no window of usual length tells from 0."""
     chosen = model(law, a)
-    steady = measure(chosen, chosen.begin(PAPER_STATES["plus"]), 3000.0, 12_000.0, MOTION)
+    steady = Classifier(chosen, 3000.0, 12_000.0, MOTION).measure(chosen.begin(PAPER_STATES["plus"]))
     assert abs(steady.exponent[1]) < MOTION.zero_exponent
     assert steady.kind == (MotionKind.PERIODIC if closes else MotionKind.QUASIPERIODIC)
     later = visit(chosen, steady.state(), 300_000.0, 12_000.0)

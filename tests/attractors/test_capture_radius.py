@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, MotionKind, SearchSettings, law_of
-from burridge_knopoff.attractors import attractor
 from burridge_knopoff.attractors import capture_radius as radius
-from burridge_knopoff.attractors.attractor import close_returns, perturbed, spread
-from burridge_knopoff.attractors.capture_radius import bounded, captured, midst, recovered
+from burridge_knopoff.attractors import slow_set
+from burridge_knopoff.attractors.attractor import close_returns, perturbed
+from burridge_knopoff.attractors.capture_radius import Capture, midst
 from burridge_knopoff.attractors.labels import label
+from burridge_knopoff.attractors.slow_set import spread
 from tests.motion.stand_in import ASYMMETRIC, at, shown, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
@@ -19,8 +20,8 @@ CHAOS = {"kind": MotionKind.CHAOTIC, "spacing": 0.1}
 
 
 def test_how_close_a_push_has_to_come_back():
-    assert recovered(at(0.0).motion, 0.5) == 0.05
-    assert recovered(at(0.0, spacing=0.02).motion, 0.5) == 0.06
+    assert Capture().recovered(at(0.0).motion, 0.5) == 0.05
+    assert Capture().recovered(at(0.0, spacing=0.02).motion, 0.5) == 0.06
 
 
 @pytest.mark.parametrize(
@@ -41,13 +42,13 @@ def test_closed_orbits_in_the_midst_of_a_set(wide, place, expected):
 def test_radii_are_bounded_by_the_way_to_others():
     """The scale is that of v = 0.2: twice that of the paper."""
     others = [at(place, radius=1.0) for place in (0.0, 0.05, 9.0)]
-    near = bounded(MODEL, [*others, at(-9.0, radius=0.01)], 1e-6)
+    near = Capture().bounded(MODEL, [*others, at(-9.0, radius=0.01)], 1e-6)
     assert [item.radius for item in near] == pytest.approx([0.4 * 0.05, 0.4 * 0.05, 0.04, 0.01])
     assert {item.patience for item in near} == {0.0}
     # Chaos with an orbit in its midst keeps its radius, and asks for patience; the orbit keeps its radius too.
     chaos, orbit = at(0.0, radius=1.0, **CHAOS), at(0.05, radius=1.0, spacing=1e-7, close_returns=20)
     for found in ([chaos, orbit], [orbit, chaos]):
-        told = {(item.radius, item.close_returns, item.patience) for item in bounded(MODEL, found, 1e-6)}
+        told = {(item.radius, item.close_returns, item.patience) for item in Capture().bounded(MODEL, found, 1e-6)}
         # The returns of chaos are so far apart that its radius is that.
         assert told == {(0.1, 8, 10_000.0), (0.04, 20, 0.0)}
 
@@ -65,9 +66,9 @@ def capture(monkeypatch):
             return np.array((next(left) * 4)[: len(starts)]), None
 
         monkeypatch.setattr(radius, "label", told)
-        monkeypatch.setattr(radius, "pushed", lambda start, size, generator: (start, size))
+        monkeypatch.setattr(radius, "perturbed", lambda start, size, generator: (start, size))
         monkeypatch.setattr(radius, "moved", lambda model, starts, time: [*starts, time])
-        size = captured(MODEL, found, index, least, 1e-6, SETTINGS)
+        size = Capture().radius(MODEL, found, index, least, 1e-6, SETTINGS)
         assert len(asked) == len(reached)
         return size, asked
 
@@ -132,7 +133,7 @@ def test_a_slow_set_is_shown_by_pushed_states(tell):
     # Some have left for another motion: the middle block stops less often there, or it is seen at another block.
     seen[6] = replace(seen[6], stop_count=np.array([10, 18, 10]))
     seen[8], seen[10] = replace(seen[8], block=2), replace(seen[10], mirror_block=3)
-    asked = tell(attractor, "visit", seen)
+    asked = tell(slow_set, "visit", seen)
     found = spread(MODEL, at(1.0).motion, SETTINGS)
     numbers = [n for n in range(1, 13) if n not in (5, 7, 9, 11)]
     assert found.returns[:, 0].tolist() == [*numbers, 1.0]
@@ -143,64 +144,7 @@ def test_a_slow_set_is_shown_by_pushed_states(tell):
     assert 0.009 < sizes.max() <= 0.01
 
 
-def test_pushed_states_begin_all_over_a_slow_set_and_by_the_seed(tell):
-    begun = []
-    for seed in (3, 3, 4):
-        asked = tell(attractor, "visit", [None] * 12)
-        spread(MODEL, at(*range(50)).motion, replace(SETTINGS, seed=seed))
-        begun.append([start.position[0] for _, start, *_ in asked])
-    assert len({round(place) for place in begun[0]}) > 6
-    assert begun[0] == begun[1] != begun[2]
-
-
 def test_without_attractors_nothing_is_reached():
     reached, times = label(MODEL, [], [None, None], 10.0)
     assert (reached.tolist(), times.tolist()) == ([-1, -1], [0.0, 0.0])
     assert label(MODEL, [stand_in(ASYMMETRIC)], [], 10.0)[0].shape == (0,)
-
-
-def test_pushes_begin_all_over_a_motion_and_are_as_long_as_its_radius(monkeypatch):
-    """Where its returns are too far apart for a push to show, pushed states are followed for 0.3 transients."""
-    sizes, states, times = [], [], []
-
-    def push(start, size, generator):
-        sizes.append(size)
-        states.append(float(start.position[0]))
-        return start
-
-    def move(model, starts, time):
-        times.append(time)
-        return starts
-
-    monkeypatch.setattr(radius, "pushed", push)
-    monkeypatch.setattr(radius, "moved", move)
-    monkeypatch.setattr(radius, "label", lambda model, found, starts, limit: (np.zeros(len(starts), dtype=int), None))
-    for spacing, followed in ((0.0, []), (0.02, [30.0] * 3), (0.01, [])):
-        times.clear()
-        chosen = []
-        for seed in (3, 3, 4):
-            sizes.clear()
-            states.clear()
-            found = [at(*range(50), radius=0.06, spacing=spacing)]
-            settings = replace(SETTINGS, seed=seed)
-            assert captured(MODEL, found, 0, 1e-5, 1e-6, settings) == 0.06
-            assert sizes == [0.06] * 10
-            chosen.append([*states])
-        assert times == followed * 3
-        assert len({*chosen[0]}) > 5
-        assert chosen[0] == chosen[1] != chosen[2]
-
-
-@pytest.mark.parametrize(("patience", "inner"), [(2000.0, True), (0.0, True), (0.0, False)])
-def test_pushes_off_chaos_are_labelled_without_its_patience(monkeypatch, patience, inner):
-    asked = []
-
-    def told(model, attractors, starts, limit):
-        asked.append([item.patience for item in attractors])
-        return np.zeros(len(starts), dtype=int), None
-
-    monkeypatch.setattr(radius, "label", told)
-    monkeypatch.setattr(radius, "moved", lambda model, starts, time: starts)
-    found = [at(0.0, radius=0.04, patience=patience, **CHAOS), at(0.05 if inner else 9.0, radius=0.04, patience=70.0)]
-    captured(MODEL, found, 0, 1e-5, 1e-6, SETTINGS)
-    assert asked == [[0.0, 70.0]] * 3

@@ -9,14 +9,15 @@ from scipy.stats import poisson
 
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of
 from burridge_knopoff.attractors import lifetime
-from burridge_knopoff.attractors.lifetime import Lifetime, lifetimes
-from burridge_knopoff.motion.tuning import TUNING
+from burridge_knopoff.attractors.capture_radius import PATIENT_TIME
+from burridge_knopoff.attractors.lifetime import EXPOSURE, FOLLOWED, UNDECIDED, Lifetime, lifetimes
+from burridge_knopoff.motion.set_distance import SPACINGS
 from tests.motion.stand_in import stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.2))
 SETTINGS = SearchSettings(lifetime=800.0, time_limit=50.0, seed=5, window=10.0)
 #: Of each trajectory.
-TIME = TUNING.exposure * SETTINGS.lifetime / TUNING.followed
+TIME = EXPOSURE * SETTINGS.lifetime / FOLLOWED
 
 
 @pytest.mark.parametrize("ends", [0, 1, 5, 40])
@@ -46,24 +47,24 @@ def test_the_interval_holds_the_lifetime_as_often_as_it_says():
 
 def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
     """The time of all trajectories is just enough for that."""
-    assert Lifetime(0, TUNING.exposure * 1e5).lasts(1e5)
-    assert not Lifetime(1, TUNING.exposure * 1e5).lasts(1e5)
+    assert Lifetime(0, EXPOSURE * 1e5).lasts(1e5)
+    assert not Lifetime(1, EXPOSURE * 1e5).lasts(1e5)
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(1.0, 0.025, 0.04), (0.8, 0.0, 0.012)])
 def test_chaos_that_is_too_short_passes_for_lasting_no_more_often_than_settings_say(monkeypatch, share, least, most):
     """Both looks together, by lifetimes drawn at random: of just that mean, and of a shorter one."""
 
-    def drawn(model, attractors, index, settings, tuning, random, count):
+    def drawn(model, attractors, index, settings, exposure, random, count):
         lives = random.exponential(share * settings.lifetime, count)
-        time = tuning.exposure * settings.lifetime / tuning.followed
+        time = exposure * settings.lifetime / FOLLOWED
         return Lifetime(int((lives < time).sum()), float(np.minimum(lives, time).sum()))
 
     monkeypatch.setattr(lifetime, "_followed", drawn)
     passed = 0
     for seed in range(6000):
         settings = replace(SETTINGS, seed=seed)
-        passed += lifetime._lifetime(MODEL, [], 0, settings, TUNING).lasts(settings.lifetime)
+        passed += lifetime._lifetime(MODEL, [], 0, settings, EXPOSURE).lasts(settings.lifetime)
     assert least <= passed / 6000 <= most
 
 
@@ -112,7 +113,7 @@ def chaos(partner=0):
     return stand_in(partner=partner, kind=MotionKind.CHAOTIC)
 
 
-MANY = 32 * TUNING.undecided
+MANY = 32 * UNDECIDED
 NEVER = math.nan
 #: More than enough to show that chaos lasts: none of so many trajectories leaves.
 ALL_STAY = ([NEVER] * MANY, 0, [])
@@ -159,9 +160,9 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
     ("rate", "radius", "way"),
     [
         # A torus, chaos or a locked torus.
-        (0.0, 0.2 / math.e, 0.5 * TUNING.patient_time - 20.0),
-        (0.99e-4, 0.005, 0.5 * TUNING.patient_time - 20.0),
-        (-1e-4, 0.2, 0.5 * TUNING.patient_time - 20.0),
+        (0.0, 0.2 / math.e, 0.5 * PATIENT_TIME - 20.0),
+        (0.99e-4, 0.005, 0.5 * PATIENT_TIME - 20.0),
+        (-1e-4, 0.2, 0.5 * PATIENT_TIME - 20.0),
         (1.01e-4, 0.2 / math.e, 1.0 / 1.01e-4),
         (5e-4, 0.2 / math.e, 2000.0),
         (5e-4, 0.4, 0.0),
@@ -214,4 +215,4 @@ def test_thin_chaos_is_begun_on_and_known_however_small_its_radius(tell):
     states = np.concatenate(followed[0][2:4], axis=1)
     away = [min(np.abs(state - row).max() for row in returns) for state in states]
     assert 0.9e-8 < max(away) <= 1e-8
-    assert [one.radius for one in asked[0][1]] == [pytest.approx(TUNING.spacings * 0.01)]
+    assert [one.radius for one in asked[0][1]] == [pytest.approx(SPACINGS * 0.01)]

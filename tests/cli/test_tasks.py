@@ -21,8 +21,9 @@ from burridge_knopoff.study.formatting import plain, with_error
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 GIVEN = ["--law", "linearized", "--a", "0.08"]
 #: Little of a search, in settings and as options.
-SHORT = {"samples": 12, "lifetime": 1000.0, "transient": 500.0, "window": 500.0, "time_limit": 5000.0, "perturbations":
-4} OPTIONS = [word for key, value in SHORT.items() for word in (f"--{key.replace('_', '-')}", f"{value:g}")]
+SHORT = {"samples": 12, "lifetime": 1000.0, "transient": 500.0, "window": 500.0, "time_limit": 5000.0}
+SHORT |= {"perturbations": 4}
+OPTIONS = [word for key, value in SHORT.items() for word in (f"--{key.replace('_', '-')}", f"{value:g}")]
 
 
 def said(capsys, *arguments):

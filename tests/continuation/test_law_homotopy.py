@@ -5,9 +5,9 @@ import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
 from burridge_knopoff.continuation import law_homotopy as joining
-from burridge_knopoff.continuation.law_homotopy import follow_law, joined
+from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, joined
+from burridge_knopoff.continuation.matching import SAME_SET
 from burridge_knopoff.motion.set_distance import least_distance
-from burridge_knopoff.motion.tuning import TUNING
 from tests.motion.stand_in import shown
 
 SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, perturbations=4)
@@ -65,7 +65,7 @@ def test_mirror_images_are_one_branch():
 def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monkeypatch):
     models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
     one, other = (part[1].motion.state() for part in found)
-    near = other.vector()[None] + 1.5 * TUNING.same_set
+    near = other.vector()[None] + 1.5 * SAME_SET
     monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
     assert joined([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
 
@@ -85,7 +85,7 @@ def follow(tell):
 
 
 def test_a_law_is_changed_in_even_steps(follow):
-    places = [0.01 * step for step in range(TUNING.law_steps + 1)]
+    places = [0.01 * step for step in range(STEPS + 1)]
     end, asked = follow(places)
     assert end.returns[0, 0] == pytest.approx(places[-1])
     models, starts, transients, *_ = zip(*asked, strict=True)
@@ -126,7 +126,7 @@ def test_of_two_branches_that_come_to_one_the_longer_one_is_it(monkeypatch):
 
 def test_what_does_not_go_on_smoothly_is_given_up(follow):
     """A set may move by the distance of one branch, twice the paper's for twice the velocity, and not by more."""
-    limit = 2.0 * TUNING.same_set
+    limit = 2.0 * SAME_SET
     assert follow([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None
     for places in ([0.0, 1.01 * limit], [0.0, 0.0, None]):
         end, asked = follow(places)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff.continuation.matching import Outline, branches, matched, outlines
-from burridge_knopoff.motion.tuning import TUNING
+from burridge_knopoff.continuation.branches import branches
+from burridge_knopoff.continuation.matching import COMPARED_RETURNS, SAME_SET, Matcher, Outline, outlines
 from tests.motion.stand_in import ASYMMETRIC, SYNCHRONIZED, at
 
 
@@ -18,23 +18,21 @@ def pair(place, ahead, mean=0.1):
 
 def followed(found, memory):
     """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
-    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, 1.0)
+    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, Matcher(1.0))
     return tuple([row.tolist() for row in values] for values in numbers)
 
 
 def test_a_set_is_as_near_as_two_directions_tell():
     """An orbit on a torus is near it, although most of the torus is not near the orbit."""
     torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
-    one, other = (Outline(item, 1000) for item in (torus, orbit))
-    assert one.distances(other, 1.0) == pytest.approx(np.array([[0.0, 0.5]] * 2))
-    assert other.distances(one, 1.0) == pytest.approx(np.array([[0.0, 0.5]] * 2))
-    far = Outline(at(0.5, 0.8), 1000)
-    assert far.distances(other, 1.0)[0] == pytest.approx([0.0, 0.3])
-    # By the share of the returns that lie near: the last one of two does not.
-    assert Outline(at(0.9, 0.8), 1000).distances(other, 0.0)[0] == pytest.approx([0.3, 0.3])
+    one, other = (Outline(item) for item in (torus, orbit))
+    # Within which 95 % of the returns lie.
+    assert one.distances(other) == pytest.approx(np.array([[0.0, 0.48]] * 2))
+    assert other.distances(one) == pytest.approx(np.array([[0.0, 0.48]] * 2))
+    assert Outline(at(0.5, 0.8)).distances(other)[0] == pytest.approx([0.0, 0.285])
     # Block 1 of one and block 3 of the other are ahead: mirror images.
-    left, right = (Outline(item, 1000) for item in pair(0.0, 0.2))
-    assert left.distances(right, 1.0) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
+    left, right = (Outline(item) for item in pair(0.0, 0.2))
+    assert left.distances(right) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
 
 
 def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
@@ -42,43 +40,45 @@ def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
     here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
     before = outlines([at(*here, partner=0), at(0.041, partner=1)])
     after = outlines([at(0.042, partner=0), at(*there, partner=1)])
-    assert matched(before, after, 1.0) == {0: 1, 1: 0}
+    assert Matcher(1.0).matched(before, after) == {0: 1, 1: 0}
     # Alone each may follow the other.
-    assert matched({0: before[0]}, {0: after[0]}, 1.0) == {0: 0}
-    assert matched({1: before[1]}, {1: after[1]}, 1.0) == {1: 1}
+    assert Matcher(1.0).matched({0: before[0]}, {0: after[0]}) == {0: 0}
+    assert Matcher(1.0).matched({1: before[1]}, {1: after[1]}) == {1: 1}
 
 
 def test_returns_are_thinned_out_evenly():
-    outline = Outline(at(*np.linspace(0.0, 1.0, 101)), 5)
-    assert outline.own[:, 0].tolist() == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
-    assert len(Outline(at(0.0, 1.0), 5).own) == 2
+    own = Outline(at(*np.linspace(0.0, 1.0, 1501))).own[:, 0]
+    assert own == pytest.approx(np.linspace(0.0, 1.0, COMPARED_RETURNS), abs=1e-3)
+    assert len(Outline(at(0.0, 1.0)).own) == 2
 
 
 def test_pairs_are_chosen_together():
     """Of two that are near one set the nearer one has it, if the other finds another; none reaches beyond the limit."""
     before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
     after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
-    assert matched(before, after, 1.0) == {0: 0, 1: 1}
-    assert matched(before, outlines([at(0.015, partner=0)]), 1.0) == {0: 1}
-    limit = TUNING.same_set
+    assert Matcher(1.0).matched(before, after) == {0: 0, 1: 1}
+    assert Matcher(1.0).matched(before, outlines([at(0.015, partner=0)])) == {0: 1}
+    limit = SAME_SET
     for place, found in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
-        one = {0: Outline(at(0.0), 10)}
-        assert matched(one, {0: Outline(at(place), 10)}, 1.0) == found
-    assert matched(one, {0: Outline(at(1.01 * limit), 10)}, 1.1) == {0: 0}
-    assert matched({}, after, 1.0) == {}
+        one = {0: Outline(at(0.0))}
+        assert Matcher(1.0).matched(one, {0: Outline(at(place))}) == found
+    assert Matcher(1.1).matched(one, {0: Outline(at(1.01 * limit))}) == {0: 0}
+    assert Matcher(1.0).matched({}, after) == {}
 
 
 def test_synchrony_is_followed_by_synchrony_alone():
     """However far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
     for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
-        assert matched(outlines([before]), outlines([after]), 1.0) == found
+        assert Matcher(1.0).matched(outlines([before]), outlines([after])) == found
 
 
 def test_several_synchronized_attractors_are_several_branches():
     one, other = (at(place, symmetry=SYNCHRONIZED, mean_distance=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
     swapped = [replace(other, partner=0), replace(one, partner=1)]
-    branch, side = branches([0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], range(3), 0.1, 1.0)
+    branch, side = branches(
+        [0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], range(3), 0.1, Matcher(1.0)
+    )
     assert [row.tolist() for row in branch] == [[0, 1], [1, 0], [1]]
     assert not np.concatenate(side).any()
 
@@ -124,7 +124,7 @@ def test_what_does_not_change_keeps_its_number_though_it_is_not_looked_at_in_bet
         ([again], [[1], [1], [1, 2]]),
         ([again, new], [[1], [1, 2], [1, 2]]),
     ):
-        numbers, _ = branches([0.1, 0.2, 0.3], [[still], between, [again, new]], [0, 2], 0.3, 1.0)
+        numbers, _ = branches([0.1, 0.2, 0.3], [[still], between, [again, new]], [0, 2], 0.3, Matcher(1.0))
         assert [row.tolist() for row in numbers] == expected
 
 

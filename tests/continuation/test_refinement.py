@@ -1,13 +1,10 @@
 """Values of a put in between: where they are put, against changes at known places."""
 
-from dataclasses import replace
-
 import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, law_of
 from burridge_knopoff.attractors.search import Search
-from burridge_knopoff.attractors.settings import SEARCH
-from burridge_knopoff.continuation import refinement
+from burridge_knopoff.continuation.matching import Matcher
 from burridge_knopoff.continuation.refinement import refined
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.running.processes import shared_out
@@ -18,7 +15,7 @@ BISECTED = [0.25, 0.3125, 0.375, 0.5]
 
 
 @pytest.fixture
-def values(monkeypatch):
+def values():
     """Return the values of a put in between two, where the attractors at each a are told by a function."""
 
     def put_in(attractors, low=0.0, high=1.0, resolution=0.1):
@@ -26,13 +23,12 @@ def values(monkeypatch):
 
         class Scripted(Search):
             def labels(self, starts, check=True):
-                asked.append((self.model.a, sorted(start.position[1] for start in starts), self.tuning.trials, check))
+                asked.append((self.model.a, sorted(start.position[1] for start in starts), self.trials, check))
                 self.attractors = attractors(self.model.a)
 
-        monkeypatch.setattr(refinement, "Search", Scripted)
-        ends = [Search(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
+        ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
         with shared_out(1) as each:
-            (inner,) = refined(ends, Refine(resolution), each)
+            (inner,) = refined(ends, Refine(resolution), Matcher(1.0), each)
         return [search.model.a for search in inner], asked
 
     return put_in
@@ -91,14 +87,3 @@ def test_only_what_changes_is_followed(values):
 )
 def test_every_way_to_differ_counts(values, later, found):
     assert values(after(0.3, [at(STILL)], [later]))[0] == found
-
-
-def test_little_work_tells_what_known_attractors_have_become():
-    """A quarter of the patience, one trial, and radii from a sixteenth of the usual one down in steps of sixteen."""
-    model = Model(Chain(3), law_of("linearized", 0.1))
-    gap = refinement._gap(Search(model, replace(SEARCH, samples=7, perturbations=16)), Search(model.at(0.2)), [], [])
-    tuning = gap.search.tuning
-    assert (gap.search.settings.perturbations, gap.search.settings.samples) == (4, 7)
-    assert (tuning.patience, tuning.trials, tuning.shrinking) == (4, 1, 16.0)
-    assert (tuning.largest_radius, tuning.far) == (0.00125, 160.0)
-    assert (gap.first.a, gap.last.a) == (0.1, 0.2)

@@ -1,7 +1,5 @@
 """What attractors are: of one kind whatever window shows them, and none that still drifts."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,6 @@ from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.kind import motion_of_run
 from burridge_knopoff.motion.settings import MOTION
-from burridge_knopoff.motion.tuning import TUNING
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 
@@ -27,7 +24,7 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
     ],
 )
 def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(law, a, kind, points, period):
-    search = Search(Model(Chain(3), law_of(law, a)), tuning=replace(TUNING, growth_window=0.0))
+    search = Search(Model(Chain(3), law_of(law, a)), growth_window=0.0)
     index = search.reach(search.model.begin(PAPER_STATES["plus"]))
     found = search.attractors[index].motion
     assert (found.kind.name, found.section_period) == (kind, points)

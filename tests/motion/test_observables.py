@@ -1,7 +1,6 @@
 """What is measured of a steady motion: of whole runs, and of hand-made motions."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,12 +17,10 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import sampled_states
-from burridge_knopoff.motion import observables as steady
-from burridge_knopoff.motion.kind import Motion
-from burridge_knopoff.motion.observables import lies_on, measure
+from burridge_knopoff.motion.classification import Classifier
+from burridge_knopoff.motion.observables import lies_on
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION
-from burridge_knopoff.motion.tuning import TUNING
 from tests.motion.stand_in import ROWS, nearest, shown, stand_in
 
 #: Some of them again and again.
@@ -51,7 +48,7 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     assert found.drift == pytest.approx(max(ways))
     assert found.state().vector().tolist() == found.returns[-1].tolist()
 
-    motion = measure(chain, start, 500.0, 300.0, MOTION)
+    motion = Classifier(chain, 500.0, 300.0, MOTION).measure(start)
     assert motion.returns == pytest.approx(found.returns, abs=1e-9)
     assert motion.spacing == pytest.approx(found.spacing, abs=1e-9)
     assert motion.stop_rate.tolist() == [np.sum(chosen) / 300.0 for chosen in stops]
@@ -61,7 +58,7 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     assert motion.state().vector().tolist() == motion.returns[-1].tolist()
     # Too few returns say nothing.
     assert visit(chain, start, 500.0, 20.0) is None
-    assert measure(chain, start, 500.0, 20.0, MOTION) is None
+    assert Classifier(chain, 500.0, 20.0, MOTION).measure(start) is None
 
 
 def test_attractors_whose_ends_never_stop_are_known():
@@ -123,40 +120,3 @@ def test_motions_seen_at_other_blocks_are_others():
     found = shown(ROWS, ROWS, 0.0, 0.0)
     assert lies_on(found, attractor, 1e-3, 1e-6)
     assert not lies_on(replace(found, block=2), attractor, 1e-3, 1e-6)
-
-
-@pytest.mark.parametrize(
-    ("mean", "threshold", "judged"), [(0.1, 1.0, 0.1), (1e-9, 1.0, 1e-9), (1e-9, (1.0, 1.0, 0.9), np.inf)]
-)
-def test_what_is_measured_in_one_window(tell, mean, threshold, judged):
-    states = np.zeros((3, 3))
-    run = SimpleNamespace(
-        status="completed",
-        event_position=states,
-        event_velocity=states,
-        event_block=np.array([1, 3, 3]),
-        event_time=np.array([0.5, 2.0, 3.0]),
-        lyapunov_exponent=np.zeros(3),
-        lyapunov_error=np.zeros(3),
-        mean_distance=mean,
-        mean_distance_error=0.5,
-    )
-    runs = tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
-    tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, 0.9e-6, 0.0), block=1, mirror_block=3), None])
-    told = Motion(MotionKind.PERIODIC, 7, 40.0)
-    asked, looked = tell(steady, "motion_of", [told]), tell(steady, "recurrence", [21.0])
-    found = steady.measure_once(model(threshold), None, 50.0, 30.0, MOTION, TUNING)
-    # Of all events only stops are kept.
-    assert runs[0][3:] == (False, True)
-    # Those of the block at which the motion is seen.
-    assert (looked[0][0].tolist(), found.recurrence) == ([0.5], 21.0)
-    assert looked[0][1] is found.returns
-    assert (found.kind, found.section_period, found.period) == (MotionKind.PERIODIC, 7, 40.0)
-    assert (found.mean_distance, found.mean_distance_error) == (mean, 0.5)
-    assert (found.block, found.mirror_block) == (1, 3)
-    assert found.stop_rate.tolist() == pytest.approx([1 / 30, 0.0, 2 / 30])
-    # The end blocks of a chain that is not its own mirror image do not synchronize.
-    assert asked[0][1] == judged
-    # A run that is cut short, and one of hardly any stops, tell nothing.
-    for _ in range(2):
-        assert steady.measure_once(model(), None, 50.0, 30.0, MOTION, TUNING) is None

@@ -10,7 +10,6 @@ from burridge_knopoff import Chain, Model, OrbitError, Settings, Symmetry, law_o
 from burridge_knopoff.motion import phase_locking as locking
 from burridge_knopoff.motion.phase_locking import locked_orbit, recurrence
 from burridge_knopoff.motion.section_returns import state_of, visit
-from burridge_knopoff.motion.tuning import Tuning
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.running.simulation import run
 
@@ -94,7 +93,7 @@ def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached(monkeypatch):
 
     monkeypatch.setattr(locking, "find_periodic_orbit", find)
     monkeypatch.setattr(locking, "multipliers", lambda orbit: SimpleNamespace(unstable=orbit.unstable))
-    monkeypatch.setattr(locking, "_approaches", lambda returns, orbit, tuning: orbit.approached)
+    monkeypatch.setattr(locking, "_approaches", lambda returns, orbit: orbit.approached)
     returns = np.random.default_rng(3).uniform(0.1, 1.0, (5, 6))
     for unstable, approached, expected in ((0, True, True), (1, True, False), (0, False, False)):
         orbit = SimpleNamespace(unstable=unstable, approached=approached)
@@ -127,11 +126,11 @@ def test_each_turn_has_to_be_nearer(tell, v, away, expected):
     orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
     # The oldest turn is not whole, and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
-    assert locking._approaches(returns, orbit, Tuning()) == expected
+    assert locking._approaches(returns, orbit) == expected
     assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
 def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):
     tell(locking, "visit", [None])
     orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)
-    assert not locking._approaches(np.zeros((5, 6)), orbit, Tuning())
+    assert not locking._approaches(np.zeros((5, 6)), orbit)

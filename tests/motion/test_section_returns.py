@@ -7,7 +7,6 @@ from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.motion import period
 from burridge_knopoff.motion.period import orbit_length
 from burridge_knopoff.motion.section_returns import returns_of, state_of, stops_alike
-from burridge_knopoff.motion.tuning import TUNING
 from tests.motion.stand_in import ROWS, shown
 
 
@@ -21,8 +20,8 @@ def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mi
     states = np.random.default_rng(3).uniform(size=(80, 8))
     chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
     number, states = number[stops], states[stops]
-    found = returns_of(chain, 40.0, number, states.__getitem__, TUNING)
-    mirrored = returns_of(chain, 40.0, 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__, TUNING)
+    found = returns_of(chain, 40.0, number, states.__getitem__)
+    mirrored = returns_of(chain, 40.0, 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__)
     if block is None:
         assert found is None
         return
@@ -42,7 +41,7 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
     chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
     block = np.array([1] * first + [3] * last)
     states = np.random.default_rng(3).uniform(size=(len(block), 6))
-    found = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__, TUNING)
+    found = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__)
     assert (found is not None) == seen
 
 
@@ -73,8 +72,8 @@ def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike)
 )
 def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
     """In a window four times as long as well; the mirror image is seen at the mirror block."""
-    assert period.sections(np.array(stops), TUNING) == expected
-    assert period.sections(np.array(stops[::-1]), TUNING) == expected[::-1]
+    assert period.sections(np.array(stops)) == expected
+    assert period.sections(np.array(stops[::-1])) == expected[::-1]
 
 
 def test_a_block_without_velocity_sticks():

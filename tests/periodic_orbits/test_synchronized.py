@@ -198,3 +198,18 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
         found = turns(run)
         assert found[2:] == pytest.approx(found[:-2], abs=1e-6)
         assert (abs(found[1] - found[0]) > 0.05) == doubled
+
+
+@pytest.mark.parametrize("coupling", [0.7, 1.2, 1.5, 2.0])
+def test_the_orbit_of_other_couplings_is_that_of_one_turn(coupling, law):
+    """A run from rest may end on synchronous motion of several turns; the orbits of one turn are one branch."""
+    periods = []
+    for a in (0.04, 0.05, 0.07, 0.1):
+        orbit = synchronized_orbit(Model(Chain(3, coupling=coupling), law_of(law, a)))
+        assert orbit.stop_counts[0] == orbit.stop_counts[2] == 1
+        assert orbit.stop_counts[1] <= 1
+        assert orbit.residual < 1e-13
+        periods.append(orbit.period)
+    # They are a little below that of one block on its own two springs, and grow with a.
+    assert (np.diff(periods) > 0.0).all()
+    assert 5.3 < periods[0] < periods[-1] < 5.8

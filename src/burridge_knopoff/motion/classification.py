@@ -167,10 +167,10 @@ class Classifier:
         """Tell whether ⟨J⟩ of two motions differs beyond its errors."""
         error = float(np.hypot(one.mean_distance_error, other.mean_distance_error))
         allowed = self._at_speed.standard_errors * error + SAME_MEAN * self.model.scale
-        """Return a motion as that of the closed orbit that it is locked to; its multiplier gives the second exponent."""
+        return abs(one.mean_distance - other.mean_distance) > allowed
 
     def _on_orbit(self, motion: SteadyMotion, orbit: PeriodicOrbit) -> SteadyMotion:
-        """Return a motion as that of the closed orbit to which it is locked; its multiplier gives the second exponent."""
+        """Return a motion that is locked to a closed orbit as motion on that; its multiplier gives an exponent."""
         mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
         rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
         kind = closed_kind(mean, orbit.period, self._at_speed)

@@ -6,13 +6,19 @@ is stable or not.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.limit_cycle import limit_cycle
+from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
 
 # A run from rest has settled after this time at the friction parameters that orbits are continued from, and returns
@@ -20,6 +26,9 @@ from burridge_knopoff.values import instance_of
 SETTLING = 4000.0
 LONGEST_PERIOD = 500.0
 SEEDS = (0.05, 0.1, 0.02, 0.2)
+
+# Turns of the run from which the orbit of one turn is looked for.
+TURNS = 8
 
 
 def synchronized_orbit(model: Model) -> PeriodicOrbit:
@@ -51,10 +60,42 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got one that is not its own mirror image, expected one in which blocks move as one")
-    rest = ChainState(np.zeros(model.blocks), np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
-    for a in SEEDS:
+    for find in (_of_one_turn, _settled):
+        for a in SEEDS:
+            try:
+                return KnownOrbits(find(model_at(model, a)))
+            except OrbitError:
+                continue
+    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, SEEDS))}")
+
+
+def _rest(model: Model) -> ChainState:
+    return ChainState(np.zeros(model.blocks), np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
+
+
+def _of_one_turn(model: Model) -> PeriodicOrbit:
+    """Return the orbit on which the end blocks stop once in a period, from the last turns of a run from rest.
+
+    The run itself may end on another synchronous motion, of several turns.
+    """
+    runner = Runner(model, keep_events=True, events_from=SETTLING, stops_only=True)
+    runner.begin(_rest(model))
+    if runner.run(SETTLING + LONGEST_PERIOD) != Status.COMPLETED:
+        raise OrbitError(f"a = {model.a!r}: the run from rest ends at τ = {runner.clock!r}")
+    times, values = runner.log.events.times(), runner.log.events.values()
+    own = np.flatnonzero(values[:, 0] == 1)[-TURNS - 1 :]
+    for first, second in pairwise(own.tolist()):
         try:
-            return KnownOrbits(limit_cycle(model_at(model, a), rest, SETTLING, LONGEST_PERIOD))
+            found = find_periodic_orbit(
+                model, state_of(values[first, 2:]), float(times[second] - times[first]), Symmetry.SYNCHRONIZED
+            )
         except OrbitError:
             continue
-    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, SEEDS))}")
+        if found.stop_counts[0] == 1:
+            return found
+    raise OrbitError(f"a = {model.a!r}: no synchronized orbit of one turn")
+
+
+def _settled(model: Model) -> PeriodicOrbit:
+    """Return the orbit on which a run from rest settles."""
+    return limit_cycle(model, _rest(model), SETTLING, LONGEST_PERIOD)

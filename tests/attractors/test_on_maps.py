@@ -1,0 +1,91 @@
+"""The search for attractors as a contract, on maps whose attractors and basins are known in closed form."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import InitialState, MotionKind, SearchSettings
+from burridge_knopoff.attractors.lifetime import lifetimes
+from burridge_knopoff.attractors.search import Search
+from tests.maps import CIRCLE, LOGISTIC, TWO_WELLS, maps  # noqa: F401
+
+SEARCH = SearchSettings(
+    samples=30, position=(0.05, 0.95), transient=400.0, window=480.0, time_limit=1000.0, lifetime=2000.0
+)
+
+
+def searched(model, settings=SEARCH):
+    search = Search(model, settings)
+    starts = search.starts((), "moving")
+    return search, np.array([start.position[0] for start in starts]), search.labels(starts)
+
+
+@pytest.mark.parametrize(
+    ("r", "period"),
+    [(2.5, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.835, 3)],
+)
+def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):  # noqa: F811
+    """Of the logistic map, also in the window of period 3, in which chaos is a transient."""
+    search, _, labels = searched(LOGISTIC.at(r))
+    (found,) = search.attractors
+    assert (found.motion.kind, found.motion.section_period) == (MotionKind.PERIODIC, period)
+    assert (labels == 0).all()
+    orbit = LOGISTIC.at(r).orbit(0.3, 20_000)[-period:]
+    assert np.sort(found.motion.returns[-period:, 0]) == pytest.approx(np.sort(orbit), abs=1e-6)
+    # The multiplier of the orbit.
+    multiplier = np.abs(LOGISTIC.slope(orbit, r)).prod()
+    assert found.motion.exponent[1] == pytest.approx(np.log(multiplier) / period, abs=1e-6)
+
+
+def test_chaos_is_one_attractor_that_lasts(maps):  # noqa: F811
+    """At r = 4 the exponent is ln 2, and no trajectory leaves [0, 1]."""
+    search, _, labels = searched(LOGISTIC.at(3.999999))
+    (found,) = search.attractors
+    assert found.motion.kind == MotionKind.CHAOTIC
+    assert (labels == 0).all()
+    assert found.motion.exponent[0] == pytest.approx(np.log(2.0), abs=0.02)
+    (life,) = lifetimes(search.model, search.attractors, SEARCH)
+    assert life.lasts(SEARCH.lifetime)
+
+
+def test_motion_that_never_returns_is_quasiperiodic(maps):  # noqa: F811
+    search, _, labels = searched(CIRCLE)
+    (found,) = search.attractors
+    assert found.motion.kind == MotionKind.QUASIPERIODIC
+    assert (labels == 0).all()
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.2, -0.3])
+def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):  # noqa: F811
+    """The unstable fixed point between the wells parts their basins."""
+    model = TWO_WELLS.at(1.0 + mu)
+    settings = SearchSettings(samples=60, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
+    search, x, labels = searched(model, settings)
+    roots = np.sort(np.roots([-1.0, 0.0, 1.0, mu]).real)
+    wells = np.array([item.motion.state().position[0] for item in search.attractors])
+    assert np.sort(wells) == pytest.approx(roots[[0, 2]], abs=1e-9)
+    assert (wells[labels] == np.where(x < roots[1], wells.min(), wells.max())).all()
+    # No radius reaches over the point that parts the basins.
+    for item, well in zip(search.attractors, wells, strict=True):
+        assert 0.0 < item.radius < abs(well - roots[1])
+
+
+def test_the_attractors_do_not_depend_on_the_order_of_the_states(maps):  # noqa: F811
+    settings = SearchSettings(samples=40, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
+    model = TWO_WELLS.at(1.1)
+    first = Search(model, settings)
+    starts = first.starts((), "moving")
+    second = Search(model, settings)
+    wells = []
+    for search, given in ((first, starts), (second, starts[::-1])):
+        labels = search.labels(given)
+        wells.append(np.array([search.attractors[k].motion.state().position[0] for k in labels]))
+    assert wells[0] == pytest.approx(wells[1][::-1], abs=1e-9)
+
+
+def test_a_trajectory_next_to_an_unstable_fixed_point_falls_into_a_well(maps):  # noqa: F811
+    settings = SearchSettings(samples=0, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
+    search = Search(TWO_WELLS, settings)
+    for x in (1e-9, -1e-9):
+        index = search.reach(TWO_WELLS.begin(InitialState("next", (x,), (0.1,))))
+        assert search.attractors[index].motion.state().position[0] == pytest.approx(np.sign(x))
+    assert len(search.attractors) == 2

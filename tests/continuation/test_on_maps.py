@@ -1,0 +1,101 @@
+"""Continuation and matching as contracts, on maps whose bifurcations are known in closed form."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import MotionKind, SearchSettings
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
+from tests.maps import LOGISTIC, TWO_WELLS, maps  # noqa: F401
+
+WELLS = SearchSettings(
+    samples=30, position=(-1.3, 1.3), fraction_width=0.1, transient=200.0, window=200.0, time_limit=2000.0
+)
+LINE = SearchSettings(
+    samples=20, position=(0.05, 0.95), fraction_width=0.2, transient=1000.0, window=400.0, time_limit=2000.0
+)
+
+
+def where(found, branch):
+    """Return the values of a at which a branch is known, and its attractors there."""
+    known = [
+        (model.a, attractors[numbers.tolist().index(branch)])
+        for model, attractors, numbers in zip(found.models, found.attractors, found.branch, strict=True)
+        if branch in numbers
+    ]
+    return np.array([a for a, _ in known]), [item for _, item in known]
+
+
+def test_each_well_is_one_branch_that_ends_at_its_fold(maps):  # noqa: F811
+    """The lower well exists for μ < 2/√27 only, the upper one for μ > −2/√27 only."""
+    fold, refine = 2.0 / np.sqrt(27.0), Refine(2e-3)
+    grid = np.linspace(-0.45, 0.45, 19).tolist()
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=refine)
+    assert {*np.concatenate(found.branch).tolist()} == {1, 2}
+    ranges = {}
+    for branch in (1, 2):
+        a, items = where(found, branch)
+        a = a - 1.0
+        side = np.sign([item.motion.state().position[0] for item in items])
+        assert np.ptp(side) == 0
+        ranges[int(side[0])] = (a.min(), a.max())
+    # Next to a fold motion converges too slowly to be told: the branch may end that much before it.
+    assert fold - 2.0 * refine.resolution < ranges[-1][1] <= fold
+    assert ranges[-1][0] == pytest.approx(-0.45)
+    assert -fold <= ranges[1][0] < -fold + 2.0 * refine.resolution
+    assert ranges[1][1] == pytest.approx(0.45)
+
+
+def test_fractions_are_those_of_the_basins(maps):  # noqa: F811
+    """States are uniform: the fraction of a well is the share of its side of the unstable fixed point."""
+    grid = [-0.2, 0.0, 0.3]
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
+    for mu, attractors, sample in zip(grid, found.attractors, found.samples, strict=True):
+        middle = np.sort(np.roots([-1.0, 0.0, 1.0, mu]).real)[1]
+        for index, item in enumerate(attractors):
+            share = (1.3 - middle) / 2.6 if item.motion.state().position[0] > 0.0 else (middle + 1.3) / 2.6
+            # Half the width of the 95 % interval is 0.1 at most: a deviation of twice that has a chance below 1e-4.
+            assert np.mean(sample == index) == pytest.approx(share, abs=0.2)
+
+
+def test_sweeps_show_the_hysteresis_of_two_folds(maps):  # noqa: F811
+    """Carried upward, motion leaves the lower well beyond its fold; downward it leaves the upper one."""
+    grid = [-0.45, -0.3, 0.0, 0.3, 0.45]
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
+
+    def swept(steps, following):
+        index, x = 0, []
+        for k in steps:
+            x.append(np.sign(found.attractors[k][index].motion.state().position[0]))
+            index = following[k][index]
+        return x
+
+    assert swept(range(5), found.upward) == [-1, -1, -1, -1, 1]
+    assert swept(range(4, -1, -1), found.downward) == [1, 1, 1, 1, -1]
+
+
+@pytest.mark.parametrize(
+    ("grid", "at", "periods"), [((2.8, 2.9, 3.1, 3.2), 3.0, (1, 2)), ((3.35, 3.4, 3.5), 1.0 + np.sqrt(6.0), (2, 4))]
+)
+def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods):  # noqa: F811
+    """The logistic map doubles the period at 3 and at 1 + √6; what branches off goes on under the same number."""
+    refine = Refine(0.01)
+    found = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)
+    a, items = where(found, 1)
+    period = np.array([item.motion.section_period for item in items])
+    assert {*np.concatenate(found.branch).tolist()} == {1}
+    assert all(item.motion.kind == MotionKind.PERIODIC for item in items)
+    assert (np.diff(period) >= 0).all()
+    last, first = a[period == periods[0]].max(), a[period == periods[1]].min()
+    assert first - last <= 2.0 * refine.resolution
+    # Next to a doubling orbits converge slowly, so that the period is told a little late.
+    assert last - 0.01 <= at <= first + 0.01
+
+
+def test_no_result_depends_on_what_is_asked_of_other_values(maps):  # noqa: F811
+    """The attractors at a value of a are the same whatever other values there are."""
+    one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=Refine(1.0))
+    several = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=Refine(1.0))
+    both = one.attractors[0], several.attractors[1]
+    states = [sorted(item.motion.state().position[0] for item in found) for found in both]
+    assert states[0] == pytest.approx(states[1], abs=1e-9)
