@@ -1,4 +1,4 @@
-"""The site, built by Sphinx of the README, the pages beside it and the docstrings of the library: `make site`."""
+"""The documentation site, built by Sphinx from the README, its pages and the docstrings: `make site`."""
 
 from __future__ import annotations
 
@@ -50,13 +50,15 @@ def setup(app: Sphinx) -> None:
 
 
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
-    """Add the contents to the README, in the order of its links, and every public name to docs/api.md."""
+    """Add a table of contents to the README, from its list of pages, and every public name to docs/api.md."""
     text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
     # A block that is a file has its path after the language, where no page shows it.
     text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
     if page == root_doc:
-        pages = dict.fromkeys(re.findall(r"\]\(([\w/]+)\.md\)", text.split("## More")[1]))
-        text += "\n```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+        listed = text.split("## Documentation")[1].split("\n## ")[0]
+        for caption, links in re.findall(r"^- ([\w ]+): (.*(?:\n  .*)*)", listed, re.MULTILINE):
+            pages = re.findall(r"\]\(([\w/]+)\.md\)", links)
+            text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n" + "\n".join(pages) + "\n```\n"
     elif page == "docs/api":
         for name in library.__all__:
             kind = "class" if inspect.isclass(getattr(library, name)) else "function"
