@@ -70,8 +70,8 @@ def headline(content: dict) -> str:
     }
     *parts, last = (f"{counts[verdict]} {said}" for verdict, said in words.items() if counts[verdict])
     sentence = (
-        f"**Of {number} independent statements {', '.join(parts)}, and {last}**; {every - number} more repeat these or "
-        "follow from them. [docs/claims.md](docs/claims.md) has each with its numbers."
+        f"**Of {number} independent statements, {', '.join(parts)}, and {last}**; {every - number} more repeat these "
+        "or follow from them. [docs/claims.md](docs/claims.md) lists all with their numbers."
     )
     return textwrap.fill(sentence, 120, break_on_hyphens=False) + "\n"
 
