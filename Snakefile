@@ -24,7 +24,7 @@ include: "workflow/rules/simulate.smk"
 
 
 # Stages that the config can leave out, with all files that they make.
-for stage in ("attractors", "basins", "edges", "phases", "solvers", "proof"):
+for stage in ("attractors", "basins", "bifurcations", "phases", "solvers", "proof"):
     if stage not in STUDY.left_out:
 
         include: f"workflow/rules/{stage}.smk"

@@ -17,10 +17,10 @@ import numpy as np
 from measure import cpu_times, print_table, verdict
 
 from burridge_knopoff import Chain, Model, find_attractors, law_of, simulate
+from burridge_knopoff.attractors.labels import label_states
+from burridge_knopoff.basins.plane import pixel_centres, plane
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.basins import pixel_centres, plane
-from burridge_knopoff.stability.labels import label_states
 
 A = 0.08
 LIMIT_MINUTES = 10.0

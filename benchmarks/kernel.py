@@ -93,8 +93,8 @@ def now() -> dict[str, float]:
     from burridge_knopoff.kernel.clouds import Clouds
     from burridge_knopoff.laws import LAWS as BUILT_IN
     from burridge_knopoff.model.initial import PAPER_STATES
+    from burridge_knopoff.running.ensemble import new_ensemble
     from burridge_knopoff.running.runner import Runner
-    from burridge_knopoff.running.together import new_ensemble
 
     def bare(model: Model, initial: str) -> float:
         solver, start = Runner(model), model.begin(PAPER_STATES[initial])

@@ -18,11 +18,11 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.stability.basins import known_attractors
-from burridge_knopoff.stability.lifetime import Lifetime, lifetimes
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
-from burridge_knopoff.stability.tuning import TUNING
+from burridge_knopoff.attractors.lifetime import Lifetime, lifetimes
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.stored_returns import known_attractors
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.tuning import TUNING
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 
@@ -30,16 +30,17 @@ LONGER = replace(TUNING, exposure=10.0 * TUNING.exposure)
 CHAOTIC = (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS)
 
 
-def followed(study: Study, attractors: xarray.Dataset, law: str) -> Iterator[tuple[xarray.Dataset, Lifetime]]:
+def followed(
+    results: Path, study: Study, attractors: xarray.Dataset, law: str
+) -> Iterator[tuple[xarray.Dataset, Lifetime]]:
     """Yield each chaotic set of a law as it stands in the file, and its lifetime now."""
     search = SearchSettings(**study.config["attractors"])
-    threshold = study.config["synchronization_threshold"]
-    motion = MotionSettings(**study.config["motion"], synchronization_threshold=threshold)
+    returns = xarray.load_dataset(results / f"returns/{law}.nc")
     here = attractors.sel(law=law)
     for a in here["a"].values[np.isin(here["kind"].values, CHAOTIC).any(axis=1)].tolist():
         one = here.sel(a=a)
         slots = one.isel(attractor=np.flatnonzero(one["branch"].values >= 0))
-        known = known_attractors(attractors, study.model(law, a), search, motion).attractors
+        known = known_attractors(attractors, returns, study.model(law, a)).attractors
         # Also what is not known to last is chaos.
         sets = [
             replace(item, motion=replace(item.motion, kind=MotionKind.CHAOTIC)) if item.motion.kind in CHAOTIC else item
@@ -64,7 +65,7 @@ def main() -> None:
         least = study.config["attractors"]["lifetime"]
         rows, bounds = [], []
         for law in study.laws:
-            for one, lifetime in followed(study, attractors, law):
+            for one, lifetime in followed(results, study, attractors, law):
                 if not lifetime.ends:
                     bounds.append(lifetime.interval[0])
                     continue

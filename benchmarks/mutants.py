@@ -43,12 +43,12 @@ ROOMS = ("summaries", "stability", "periodic_orbits", "claims", "dataset", "mode
 #: What else meets a change in a room, quick tests first. Whether builds agree is no question to a changed source.
 TESTS = {
     "model": ("study", "running", "periodic_orbits", "stability"),
-    "periodic_orbits": ("stability", "summaries/test_edges.py"),
+    "periodic_orbits": ("stability", "summaries/test_bifurcations.py"),
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
     "stability": ("study/test_keys.py", "dataset/test_numbers.py"),
     "running": ("dataset", "kernel/test_exponents.py", "study/test_keys.py"),
-    "kernel": ("stability/test_ensemble.py", "laws", "running", "periodic_orbits/test_synchronized.py"),
+    "kernel": ("attractors/test_ensemble.py", "laws", "running", "periodic_orbits/test_synchronized.py"),
 }
 DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
 

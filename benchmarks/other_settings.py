@@ -3,7 +3,7 @@
     python benchmarks/other_settings.py results/paper
 
 For docs/attractors.md the uncertainty exponents from ten times the pairs, and which phases synchronize by how much the
-inner block oscillates; for docs/edges.md where the orbit with 9, 9 and 6 stops is born. It takes some minutes.
+inner block oscillates; for docs/bifurcations.md where the orbit with 9, 9 and 6 stops is born. It takes some minutes.
 """
 
 from __future__ import annotations
@@ -15,13 +15,16 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
-from burridge_knopoff.periodic_orbits.edges import locate_edges
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors
+from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.limit_cycle import limit_cycle
+from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcations import locate_bifurcations
 from burridge_knopoff.periodic_orbits.following import follow
-from burridge_knopoff.stability.closed_motion import closed_motion
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.returns import instant_of
-from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings, PhaseSettings
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries import basins, phases
@@ -32,11 +35,17 @@ PHASES = PhaseSettings((AMPLITUDE, 0.07), (30.0, 180.0), (0.0, 0.1, 0.2, 0.3, 0.
 BIRTH_FROM, BIRTH_RANGE, STOPS = 0.17, (0.15, 0.172), (9, 9, 6)
 
 
-def exponents(study: Study, attractors: xarray.Dataset, a: float) -> list[str]:
+def known_of(results: Path, attractors: xarray.Dataset, model: Model) -> KnownAttractors:
+    """Return the attractors of a model with the section returns that the study has stored."""
+    return known_attractors(attractors, xarray.load_dataset(results / f"returns/{model.law.name}.nc"), model)
+
+
+def exponents(results: Path, study: Study, attractors: xarray.Dataset, a: float) -> list[str]:
     """Return the uncertainty exponent of the plane of the maps at one a under each law, and the dimension."""
     plane = BasinSettings(initial=study.state(study.config["basins"]["initial"]), pairs=PAIRS)
     start = study.config["start"]
-    found = [basins.pairs(attractors, study.model(law, a), plane, SEARCH, MOTION, start) for law in study.laws]
+    known = [known_of(results, attractors, study.model(law, a)) for law in study.laws]
+    found = [basins.pairs(one, plane, SEARCH.label_limit, SEARCH.seed, start) for one in known]
     values = [(one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()) for one in found]
     alpha = "; ".join(f"{value:.3f} ± {error:.3f}" for value, error in values)
     return [f"{a:g}", alpha, "; ".join(f"{2.0 - value:.2f}" for value, _ in values)]
@@ -48,10 +57,10 @@ def born_at(study: Study, attractors: xarray.Dataset) -> float:
     one = attractors.sel(law="linearized", a=BIRTH_FROM)
     one = one.isel(attractor=(one["kind"] == MotionKind.PERIODIC).values)
     states = np.concatenate([one["position"].values - model.sliding_offset, one["velocity"].values], axis=1)
-    orbits = [closed_motion(model, instant_of(state)) for state in states]
-    orbit = next(orbit for orbit in orbits if orbit.signature == STOPS)
-    edges = locate_edges(follow(orbit, BIRTH_RANGE, upward=False))
-    return next(edge.a for edge in edges if edge.kind == EdgeKind.GRAZING and edge.turns)
+    orbits = [limit_cycle(model, state_of(state)) for state in states]
+    orbit = next(orbit for orbit in orbits if orbit.stop_counts == STOPS)
+    found = locate_bifurcations(follow(orbit, BIRTH_RANGE, upward=False))
+    return next(one.a for one in found if one.kind == BifurcationKind.GRAZING and one.turns)
 
 
 def main() -> None:
@@ -60,9 +69,12 @@ def main() -> None:
     _, study = recorded_study(results)
     attractors = xarray.load_dataset(results / "summary/attractors.nc")
     laws = "; ".join(study.laws)
-    print_table(["a", f"α ({laws})", "dimension 2 − α"], [exponents(study, attractors, a) for a in EXPONENTS_AT])
+    print_table(
+        ["a", f"α ({laws})", "dimension 2 − α"], [exponents(results, study, attractors, a) for a in EXPONENTS_AT]
+    )
     model = study.model("linearized", PHASES_AT[0])
-    found = phases.one_law(attractors, model, PHASES_AT, PHASES, SEARCH, MOTION)["synchronized_fraction"]
+    known = [known_of(results, attractors, model.at(a)) for a in PHASES_AT]
+    found = phases.one_law(known, PHASES, SEARCH.label_limit)["synchronized_fraction"]
     table = 100.0 * found.sel(amplitude=AMPLITUDE).transpose("inner_share", "phase_difference", "a").values
     header = ["share", *(f"{angle:g}°, a = {a:g}" for angle in PHASES.phase_difference for a in PHASES_AT)]
     rows = [

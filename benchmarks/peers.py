@@ -25,7 +25,7 @@ from peer_scipy import ScipyPeer
 
 from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.running.ensemble import new_ensemble
 
 A = 0.08
 V = 0.1

@@ -24,7 +24,9 @@ from process import AS_TYPED, BIN, IMPORTS, ONE_THREAD, REPOSITORY, SNAKEFILE, c
 
 RATIO_LIMIT = 1.5
 #: All that the default study makes from its point files, but figures.
-TARGETS = [f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation", "lyapunov", "agreement")]
+TARGETS = [
+    f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation_diagram", "lyapunov", "agreement")
+]
 POINT_RULE = "workflow/rules/simulate.smk"
 POINT_COMMAND = '"{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"'
 PLANNED = re.compile(r"^(\d+) jobs: ", re.MULTILINE)

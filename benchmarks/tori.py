@@ -16,10 +16,10 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.stability.motion import CHAOS, MotionKind
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 
@@ -45,7 +45,7 @@ def resolved(study: Study, law: str, places: list[xarray.Dataset]) -> list[objec
     chaotic, closed = 0, []
     for one in places:
         model, velocity = study.model(law, float(one["a"])), one["velocity"].values
-        start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
+        start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         trajectory = run(model, start, OPTIONS)
         above, below = trajectory.lyapunov_exponent / (CERTAIN * trajectory.lyapunov_error)
         chaotic += int(above > 1.0)

@@ -4,7 +4,7 @@ import numpy as np
 
 from burridge_knopoff.kernel.exponents import Exponents
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
@@ -70,10 +70,10 @@ def differences(model, start, end, step):
                 shifted = start.vector() + side * direction
                 if (start.velocity * shifted[blocks:] < 0.0).any():
                     return None
-                runner, events = carry(model, Instant(shifted[:blocks], shifted[blocks:], start.stuck), end)
+                runner, events = carry(model, ChainState(shifted[:blocks], shifted[blocks:], start.stuck), end)
                 if _by_block(events, blocks) != expected:
                     return None
-                ends.append(runner.instant().vector())
+                ends.append(runner.state().vector())
             columns.append((ends[0] - ends[1]) / (2.0 * size))
         estimates.append(np.array(columns).T)
     coarse, fine = estimates

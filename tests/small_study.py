@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import xarray
 
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors, returns_of_law
+from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.continuation import continue_attractors
-from burridge_knopoff.stability.sampling import sampled_states
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, PhaseSettings, Refine, SearchSettings
+from burridge_knopoff.model.sampling import sampled_states
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
     all_laws,
     attractors,
     basins,
-    bifurcation,
-    edges,
+    bifurcation_diagram,
+    bifurcations,
     equilibrium,
     lyapunov,
     mean_distance,
@@ -55,7 +59,7 @@ SMALL = {
         "transient": 100,
         "window": 100,
         "time_limit": 1000,
-        "pushes": 4,
+        "perturbations": 4,
     },
     "basins": {"pixels": 4, "pairs": 10, "tiles": 1},
     "phases": {"amplitude": [0.05, 0.5], "phase_difference": [30, 180], "inner_share": [0, 1], "samples": 2},
@@ -97,10 +101,12 @@ class SmallStudy:
     """A study whose points have been run.
 
     folder : of its results; models : one for each law, at the first a
+    returns : the section returns of the attractors by law, once they have been found
     """
 
     study: Study
     folder: Path
+    returns: dict[str, xarray.Dataset] = field(default_factory=dict)
 
     @property
     def grid(self) -> Grid:
@@ -143,12 +149,15 @@ class SmallStudy:
         parts = [attractors.one_law(item, states, *options, config["start"]) for item in found]
         numbers = all_laws.branch_numbers(parts, self.models, self.search)
         attracting = all_laws.merge(parts, numbers)
+        for item, part in zip(found, parts, strict=True):
+            rows = [item.rows(place) for place in item.grid]
+            self.returns[part.attrs["law"]] = returns_of_law([item.models[k] for k in item.grid], rows, part.attrs)
         further = [refined.one_law(item, *options, refine, config["start"]) for item in found]
         everywhere = all_laws.merge(further, all_laws.with_branches_between(numbers, further), refined.VARIABLES)
         everywhere = all_laws.named_alike(everywhere, attracting)
         return {
             "mean_distance": mean_distance.summarize(grid, threshold),
-            "bifurcation": bifurcation.summarize(grid),
+            "bifurcation_diagram": bifurcation_diagram.summarize(grid),
             "lyapunov": kinds,
             "agreement": agreement.summarize(
                 grid, kinds, attracting, synchronization_threshold=threshold, agreement=config["agreement"]
@@ -173,20 +182,27 @@ class SmallStudy:
             "solvers": self._solvers(),
             "two_blocks": two_blocks.summarize(pair, sample, values, *told),
             "basins": self._basins(found["attractors"]),
-            "edges": self._edges(found["attractors"], found["refined"]),
+            "bifurcations": self._bifurcations(found["attractors"], found["refined"]),
             **self._phases(found["attractors"]),
         }
 
-    def _edges(self, found: xarray.Dataset, further: xarray.Dataset) -> xarray.Dataset:
+    def _bifurcations(self, found: xarray.Dataset, further: xarray.Dataset) -> xarray.Dataset:
         laws = zip(self.models, found["law"].values, strict=True)
-        return edges.merge([edges.one_law(model, found.sel(law=law), further.sel(law=law)) for model, law in laws])
+        return bifurcations.merge(
+            [bifurcations.one_law(model, found.sel(law=law), further.sel(law=law)) for model, law in laws]
+        )
 
     def _phases(self, found: xarray.Dataset) -> dict[str, xarray.Dataset]:
         section = dict(self.study.config["phases"])
         grid = section.pop("a")
-        told = (grid, PhaseSettings(**section), self.search, self.motion)
-        parts = [phases.one_law(found, model, *told) for model in self.models if grid]
+        told = PhaseSettings(**section), self.search.label_limit
+        parts = [
+            phases.one_law([self._known(found, model.at(a)) for a in grid], *told) for model in self.models if grid
+        ]
         return {"phases": phases.merge(parts)} if grid else {}
+
+    def _known(self, found: xarray.Dataset, model: Model) -> KnownAttractors:
+        return known_attractors(found, self.returns[model.law.name], model)
 
     def _solvers(self) -> xarray.Dataset:
         study = self.study
@@ -207,8 +223,9 @@ class SmallStudy:
         for law, where in config["basins"]["a"].items():
             for a in where:
                 model = self.study.model(law, a)
-                told = (plane, self.search, self.motion, config["start"])
-                maps.append((model, [basins.tile(found, model, 0, *told)], basins.pairs(found, model, *told)))
+                known, limit = self._known(found, model), self.search.label_limit
+                tile = basins.tile(known, 0, plane, limit, config["start"])
+                maps.append((model, [tile], basins.pairs(known, plane, limit, self.search.seed, config["start"])))
         return basins.merge(maps, found, self.study.laws, plane, self.search.label_limit, config["start"])
 
 

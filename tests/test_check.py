@@ -302,7 +302,7 @@ def test_a_folder_of_another_name_is_said_to_be_that_study(results, capsys):
 #: Of another state, law, a or number of blocks than those of the study, or where none is computed.
 LEFT_OVER = """
 points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc
-solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc attractors/other.nc edges/other.nc
+solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc attractors/other.nc bifurcations/other.nc
 basins/nonlinear/a0.0500/tile0.nc basins/other/a0.0800/pairs.nc basins/linearized/a0.0800/tile2.nc
 figures/motion_wave.pdf figures/motion_wave.png chains/blocks11.nc logs/chains/blocks11.log
 logs/simulate/linearized/wave/a0.0500.log benchmarks/simulate/linearized/wave/a0.0500.tsv
@@ -317,10 +317,11 @@ chains/blocks10.nc summary/chains.nc figures/chains.png summary/attractors.txt s
 """
 #: Of the attractors, of stages that need them, and of the proof.
 OF_STAGES = """
-attractors/linearized.nc refined/linearized.nc edges/nonlinear.nc phases/nonlinear.nc basins/linearized/a0.0800/tile0.nc
-summary/attractors.nc summary/attractors.txt summary/refined.nc summary/edges.nc summary/basins.txt summary/proof.nc
-figures/basin_fractions.pdf figures/windows.png logs/attractors.log logs/attractors/linearized.log logs/figure_edges.log
-benchmarks/proof.tsv benchmarks/basins/linearized/a0.0800/pairs.tsv
+attractors/linearized.nc refined/linearized.nc bifurcations/nonlinear.nc phases/nonlinear.nc returns/linearized.nc
+basins/linearized/a0.0800/tile0.nc
+summary/attractors.nc summary/attractors.txt summary/refined.nc summary/bifurcations.nc summary/basins.txt
+summary/proof.nc figures/basin_fractions.pdf figures/windows.png logs/attractors.log logs/attractors/linearized.log
+logs/figure_bifurcations.log benchmarks/proof.tsv benchmarks/basins/linearized/a0.0800/pairs.tsv
 """
 
 

@@ -14,7 +14,7 @@ import pytest
 from burridge_knopoff import Chain, FormulaLaw, Settings, simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.laws import LAWS
-from burridge_knopoff.study.words import plain, with_error
+from burridge_knopoff.study.formatting import plain, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]
@@ -315,4 +315,4 @@ def test_start_up_imports_no_heavy_library(tmp_path):
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     own = ["burridge_knopoff.cli.options", "burridge_knopoff.cli.simulate"]
-    assert run.stdout.splitlines()[1:] == ["[]", f"{own}", "['burridge_knopoff.study.words']"]
+    assert run.stdout.splitlines()[1:] == ["[]", f"{own}", "['burridge_knopoff.study.formatting']"]

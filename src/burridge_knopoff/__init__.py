@@ -3,7 +3,7 @@
 The library is what is imported from here; `help` of each name has its shapes, units, errors and an example.
 
 The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built in, `FormulaLaw` for one of one's own);
-an `InitialState` to begin from, an `Instant` on the way.
+an `InitialState` to begin from, an `ChainState` on the way.
 
 Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them along a;
 `open_study` reads those of a study.
@@ -12,13 +12,13 @@ Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings
 `SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
 plane.
 
-Orbits: `closed_motion`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise `OrbitError`.
+Orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise `OrbitError`.
 Its stability: `multipliers` returns `Multipliers`.
 
 Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is that of synchrony.
 
-Edges: `follow` leads along a branch, each orbit a `BranchOrbit`, as `Following` says; `locate_edges` finds every `Edge`
-on it, and its `EdgeKind`.
+Bifurcations: `follow` leads along a branch, each orbit a `BranchOrbit`, as `Following` says; `locate_bifurcations`
+finds every `Bifurcation` on it, and its `BifurcationKind`.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from burridge_knopoff.version import __version__ as __version__
 
 __all__ = [
     "Attractor",
+    "Bifurcation",
+    "BifurcationKind",
     "BranchOrbit",
     "Chain",
-    "Edge",
-    "EdgeKind",
+    "ChainState",
     "Following",
     "FormulaLaw",
     "InitialState",
-    "Instant",
     "Law",
     "Model",
     "MotionKind",
@@ -52,13 +52,13 @@ __all__ = [
     "Symmetry",
     "Trajectory",
     "basin_map",
-    "closed_motion",
     "find_attractors",
     "find_periodic_orbit",
     "follow",
     "label_states",
     "law_of",
-    "locate_edges",
+    "limit_cycle",
+    "locate_bifurcations",
     "multipliers",
     "open_study",
     "simulate",
@@ -68,6 +68,9 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from burridge_knopoff.attractors.attractor import Attractor
+    from burridge_knopoff.attractors.labels import label_states
+    from burridge_knopoff.attractors.settings import SearchSettings
     from burridge_knopoff.laws import FormulaLaw, Law, law_of
     from burridge_knopoff.library.basin_map import basin_map
     from burridge_knopoff.library.find_attractors import find_attractors
@@ -77,9 +80,15 @@ if TYPE_CHECKING:
     from burridge_knopoff.library.sweep import sweep
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.initial import InitialState
-    from burridge_knopoff.model.model import Instant, Model
-    from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
-    from burridge_knopoff.periodic_orbits.edges import Edge, locate_edges
+    from burridge_knopoff.model.model import ChainState, Model
+    from burridge_knopoff.motion.chain_synchronization import transverse_exponent
+    from burridge_knopoff.motion.kind import MotionKind
+    from burridge_knopoff.motion.limit_cycle import limit_cycle
+    from burridge_knopoff.motion.observables import SteadyMotion
+    from burridge_knopoff.motion.settings import MotionSettings
+    from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
+    from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+    from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
     from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
     from burridge_knopoff.periodic_orbits.flow import OrbitError
     from burridge_knopoff.periodic_orbits.following import Following, follow
@@ -89,53 +98,45 @@ if TYPE_CHECKING:
     from burridge_knopoff.running.section import Section
     from burridge_knopoff.running.settings import Settings
     from burridge_knopoff.running.trajectory import Trajectory
-    from burridge_knopoff.stability.attractor import Attractor
-    from burridge_knopoff.stability.chains import transverse_exponent
-    from burridge_knopoff.stability.closed_motion import closed_motion
-    from burridge_knopoff.stability.labels import label_states
-    from burridge_knopoff.stability.motion import MotionKind
-    from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
-    from burridge_knopoff.stability.steady import SteadyMotion
-    from burridge_knopoff.stability.synchronized import synchronized_orbit
 
 _HOME = {
-    "Attractor": "stability.attractor",
+    "Attractor": "attractors.attractor",
     "BranchOrbit": "periodic_orbits.pseudo_arclength",
     "Chain": "model.chain",
-    "Edge": "periodic_orbits.edges",
-    "EdgeKind": "periodic_orbits.edge_kind",
+    "Bifurcation": "periodic_orbits.bifurcations",
+    "BifurcationKind": "periodic_orbits.bifurcation_kind",
     "Following": "periodic_orbits.following",
     "FormulaLaw": "laws",
     "InitialState": "model.initial",
-    "Instant": "model.model",
+    "ChainState": "model.model",
     "Law": "laws",
     "Model": "model.model",
-    "MotionKind": "stability.motion",
-    "MotionSettings": "stability.settings",
+    "MotionKind": "motion.kind",
+    "MotionSettings": "motion.settings",
     "Multipliers": "periodic_orbits.floquet",
     "OrbitError": "periodic_orbits.flow",
     "PeriodicOrbit": "periodic_orbits.periodic",
-    "SearchSettings": "stability.settings",
+    "SearchSettings": "attractors.settings",
     "Section": "running.section",
     "Settings": "running.settings",
-    "SteadyMotion": "stability.steady",
+    "SteadyMotion": "motion.observables",
     "Symmetry": "periodic_orbits.symmetry",
     "Run": "library.run",
     "Trajectory": "running.trajectory",
     "basin_map": "library.basin_map",
-    "closed_motion": "stability.closed_motion",
+    "limit_cycle": "motion.limit_cycle",
     "find_attractors": "library.find_attractors",
     "find_periodic_orbit": "periodic_orbits.periodic",
     "follow": "periodic_orbits.following",
-    "label_states": "stability.labels",
+    "label_states": "attractors.labels",
     "law_of": "laws",
-    "locate_edges": "periodic_orbits.edges",
+    "locate_bifurcations": "periodic_orbits.bifurcations",
     "multipliers": "periodic_orbits.floquet",
     "open_study": "library.open_study",
     "simulate": "library.simulate",
     "sweep": "library.sweep",
-    "synchronized_orbit": "stability.synchronized",
-    "transverse_exponent": "stability.chains",
+    "synchronized_orbit": "motion.synchronized_orbit",
+    "transverse_exponent": "motion.chain_synchronization",
 }
 
 

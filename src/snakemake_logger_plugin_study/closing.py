@@ -11,8 +11,8 @@ import numpy as np
 
 from burridge_knopoff.claims.formats import untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
+from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import failure, interrupted
-from burridge_knopoff.study.words import counted
 from snakemake_logger_plugin_study.display import elapsed
 from snakemake_logger_plugin_study.run import DONE, FAILED, Run
 

@@ -15,7 +15,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from burridge_knopoff.study.words import counted
+from burridge_knopoff.study.formatting import counted
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
 #: Seconds between two lines at least, and after which there is one even if no such share of all jobs was done.

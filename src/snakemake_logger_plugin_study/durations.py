@@ -25,14 +25,14 @@ UNKNOWN = (1.5, 0.0, 50_000.0, 0.0)
 #: Seconds of jobs for which what was known before counts as much as what has finished: of all kinds, and of one.
 WEIGHT, WEIGHT_OF_KIND = 5.0, 2.0
 #: Wildcards that decide how fast a job is.
-_BY_WILDCARD = {"simulate_solver": "solver", "attractors_of_law": "law", "edges_of_law": "law"}
+_BY_WILDCARD = {"simulate_solver": "solver", "attractors_of_law": "law", "bifurcations_of_law": "law"}
 #: The search for attractors refines some gaps between values of a if any is wide enough: so many more, by measurement.
 _VALUES_BETWEEN = 6.6
 #: Where there are not three blocks, as in what the tree ships, motion is less simple: the search takes as long as with
 #: so many samples more for each block, by measurement.
 _SAMPLES_A_BLOCK = 20
 #: What a long job keeps late, how often for every gap between values of a, and the share of its time that it spares.
-_LATE = {"attractors_of_law": ("compared with the next", 1.0, 0.7), "edges_of_law": ("followed", 2.7, 0.9)}
+_LATE = {"attractors_of_law": ("compared with the next", 1.0, 0.7), "bifurcations_of_law": ("followed", 2.7, 0.9)}
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ def units_of(study: Study) -> dict[str, float]:
         "watch_chain": samples * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
         "phases_of_law": phases["samples"]
         * prod(len(phases[name]) for name in ("a", "inner_share", "amplitude", "phase_difference")),
-        "edges_of_law": len(values),
+        "bifurcations_of_law": len(values),
         "basin_tile": basins["pixels"] ** 2 / basins["tiles"],
         "basin_pairs": basins["pairs"],
         "basins": len(study.basin_maps),

@@ -8,10 +8,10 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.continuation.branch_changes import Change
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.summaries.branch_changes import Change
 from tests.claims.worlds import Summaries
 
 UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC, TRANSIENT, _ = MotionKind
@@ -293,33 +293,44 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("branch_locked", NOT_TESTABLE, locked(-1, a=lambda a: a > 0.03)),
     # That the end blocks share a frequency, as mirror symmetry makes them, is no locking.
     ("branch_locked", FAILS, both(locked(0), alter("stick_slip", "velocity_frequency", 0.17))),
-    ("locking_precedes_chaos", FAILS, alter("edges", "motion_before", QUASIPERIODIC)),
-    ("locking_precedes_chaos", LOOSELY, alter("edges", "motion_before", QUASIPERIODIC, edge=13)),
+    ("locking_precedes_chaos", FAILS, alter("bifurcations", "motion_before", QUASIPERIODIC)),
+    ("locking_precedes_chaos", LOOSELY, alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=13)),
     # An orbit too long to be followed may be that of a tongue between tori: one of twelve may be, two of twelve decide.
-    ("locking_precedes_chaos", LOOSELY, alter("edges", "kind", EdgeKind.UNDETERMINED, edge=13)),
-    ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "kind", EdgeKind.UNDETERMINED, edge=[13, 14])),
+    ("locking_precedes_chaos", LOOSELY, alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=13)),
+    (
+        "locking_precedes_chaos",
+        NOT_TESTABLE,
+        alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=[13, 14]),
+    ),
     (
         "locking_precedes_chaos",
         FAILS,
         both(
-            alter("edges", "kind", EdgeKind.UNDETERMINED, edge=[13, 14]),
-            alter("edges", "motion_before", QUASIPERIODIC, edge=[14, 15, 16, 17, 18]),
+            alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=[13, 14]),
+            alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15, 16, 17, 18]),
         ),
     ),
     # Tori at two of twelve places may be chance.
-    ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "motion_before", QUASIPERIODIC, edge=[14, 15])),
-    # Chaos that was there before, an edge that is passed, and what is not known before are no beginnings of chaos.
-    ("locking_precedes_chaos", HOLDS, alter("edges", "motion_before", TRANSIENT, edge=13)),
-    ("locking_precedes_chaos", HOLDS, alter("edges", "motion_before", UNDETERMINED, edge=13)),
+    (
+        "locking_precedes_chaos",
+        NOT_TESTABLE,
+        alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15]),
+    ),
+    # Chaos that was there before, a bifurcation that is passed, and unknown motion before it are no onset of chaos.
+    ("locking_precedes_chaos", HOLDS, alter("bifurcations", "motion_before", TRANSIENT, bifurcation=13)),
+    ("locking_precedes_chaos", HOLDS, alter("bifurcations", "motion_before", UNDETERMINED, bifurcation=13)),
     (
         "locking_precedes_chaos",
         HOLDS,
-        both(alter("edges", "motion_before", QUASIPERIODIC, edge=13), alter("edges", "change", Change.PASSED, edge=13)),
+        both(
+            alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=13),
+            alter("bifurcations", "change", Change.PASSED, bifurcation=13),
+        ),
     ),
-    ("locking_precedes_chaos", NOT_TESTABLE, alter("edges", "motion_after", PERIODIC)),
+    ("locking_precedes_chaos", NOT_TESTABLE, alter("bifurcations", "motion_after", PERIODIC)),
     # A branch that ends on another one is the beginning of chaos only if that was not chaotic before.
-    ("locking_precedes_chaos", NOT_TESTABLE, both(alter("edges", "change", Change.END), chaos_from(0.05))),
-    ("locking_precedes_chaos", HOLDS, both(alter("edges", "change", Change.END), chaos_from(0.3))),
+    ("locking_precedes_chaos", NOT_TESTABLE, both(alter("bifurcations", "change", Change.END), chaos_from(0.05))),
+    ("locking_precedes_chaos", HOLDS, both(alter("bifurcations", "change", Change.END), chaos_from(0.3))),
     ("locking_precedes_chaos", HOLDS, chaos_from(0.05)),
     ("periodic_is_synchronized", FAILS, alter("agreement", "kind", PERIODIC, initial="plus")),
     ("periodic_is_synchronized", LOOSELY, alter("agreement", "kind", PERIODIC, **ONE_OF_MINUS)),

@@ -7,7 +7,7 @@ from burridge_knopoff.claims.choices import other_tolerances
 from burridge_knopoff.claims.conventions import of_rounded_states
 from burridge_knopoff.claims.ledger import judge, ledger
 from burridge_knopoff.claims.verdict import FAILS, HOLDS, Range
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.motion.kind import MotionKind
 from tests.claims.said import CLAIMS
 from tests.claims.worlds import evidence, paper_world
 

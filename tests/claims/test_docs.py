@@ -77,7 +77,7 @@ def test_the_page_on_edges_counts_what_precedes_chaos(content: dict) -> None:
     reason = next(claim["reason"] for claim in content["claims"] if claim["name"] == "locking_precedes_chaos")
     counts = re.findall(r"\d+ of \d+ \(\w+\)", reason)
     assert len(counts) == 2
-    text = " ".join((ROOT / "docs/edges.md").read_text(encoding="utf-8").split())
+    text = " ".join((ROOT / "docs/bifurcations.md").read_text(encoding="utf-8").split())
     assert f"a periodic orbit precedes chaos at {' and '.join(counts)} places" in text
 
 

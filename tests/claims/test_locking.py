@@ -6,7 +6,7 @@ import xarray as xr
 
 from burridge_knopoff import MotionKind
 from burridge_knopoff.claims.locking import _chaotic_before
-from burridge_knopoff.summaries.branch_changes import Change
+from burridge_knopoff.continuation.branch_changes import Change
 
 PERIODIC, CHAOTIC = MotionKind.PERIODIC, MotionKind.CHAOTIC
 
@@ -14,18 +14,20 @@ PERIODIC, CHAOTIC = MotionKind.PERIODIC, MotionKind.CHAOTIC
 @pytest.mark.parametrize(
     ("change", "kinds", "expected"),
     [
-        # Known at one value below the edge, or at two: the nearest tells.
+        # Known at one value below the bifurcation, or at two: the nearest tells.
         (Change.END, {0.1: CHAOTIC}, True),
         (Change.END, {0.1: PERIODIC}, False),
         (Change.END, {0.05: PERIODIC, 0.1: CHAOTIC}, True),
         (Change.END, {0.05: CHAOTIC, 0.1: PERIODIC}, False),
-        # Chaos beyond the edge was not there before.
+        # Chaos beyond the bifurcation was not there before.
         (Change.END, {0.2: CHAOTIC}, False),
         (Change.BEGINNING, {0.1: CHAOTIC}, False),
     ],
 )
 def test_a_branch_may_end_on_what_was_chaotic_already(change, kinds, expected):
-    edges = xr.Dataset({"change": ("edge", [change]), "to_branch": ("edge", [7]), "grid_low": ("edge", [0.1])})
+    bifurcations = xr.Dataset(
+        {"change": ("bifurcation", [change]), "to_branch": ("bifurcation", [7]), "grid_low": ("bifurcation", [0.1])}
+    )
     slots = {"branch": np.tile([3, 7], (len(kinds), 1)), "kind": [[CHAOTIC, kind] for kind in kinds.values()]}
     refined = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
-    assert _chaotic_before(edges, refined.assign(a=("value", list(kinds)))).tolist() == [expected]
+    assert _chaotic_before(bifurcations, refined.assign(a=("value", list(kinds)))).tolist() == [expected]

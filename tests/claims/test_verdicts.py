@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import xarray
 
+from burridge_knopoff.attractors.table import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, Measured, Verdict
-from burridge_knopoff.summaries.reached import reached
 from tests.claims import alterations
 from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
 from tests.claims.said import CLAIMS, FILE, altered, judged, said

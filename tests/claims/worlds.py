@@ -6,11 +6,11 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
-from burridge_knopoff.summaries.branch_changes import Change
 from tests.grids import PAPER_MODELS
 from tests.sections import AGREEMENT, MOTION
 
@@ -54,7 +54,7 @@ def paper_world() -> Summaries:
     world = {
         "mean_distance": _mean_distance(),
         "lyapunov": _lyapunov(),
-        "bifurcation": _bifurcation(),
+        "bifurcation_diagram": _bifurcation(),
         "agreement": _dataset(
             {
                 **_compared(PAIR, 1e-4 * MEANS),
@@ -68,7 +68,7 @@ def paper_world() -> Summaries:
         "attractors": _attractors(),
         "refined": _refined(),
         "rotation": _rotation(),
-        "edges": _edges(),
+        "bifurcations": _bifurcations(),
         "phases": _phases(),
         "orbits": _dataset(
             {
@@ -263,13 +263,13 @@ def _rotation() -> xarray.Dataset:
     return xarray.Dataset(data, {"law": list(LAWS)})
 
 
-def _edges() -> xarray.Dataset:
-    """Return twelve edges of each law at which a locked orbit, at a grazing, gives way to chaos."""
+def _bifurcations() -> xarray.Dataset:
+    """Return twelve bifurcations of each law at which a locked orbit, at a grazing, gives way to chaos."""
     told = {"law": np.repeat([0, 1], 12), "kind": 0, "motion_before": PERIODIC, "motion_after": CHAOTIC, "to_branch": 1}
     low = np.tile(A[A >= 0.1][:12], 2)
     told |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
-    edges = {name: ("edge", np.array(np.broadcast_to(value, 24))) for name, value in told.items()}
-    return xarray.Dataset(edges, attrs={"laws": " ".join(LAWS)})
+    values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in told.items()}
+    return xarray.Dataset(values, attrs={"laws": " ".join(LAWS)})
 
 
 def _phases() -> xarray.Dataset:

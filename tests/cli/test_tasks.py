@@ -7,21 +7,22 @@ import pytest
 import xarray as xr
 
 import burridge_knopoff
-from burridge_knopoff import Chain, Model, Settings, closed_motion, law_of, multipliers, synchronized_orbit
+from burridge_knopoff import Chain, Model, Settings, law_of, limit_cycle, multipliers, synchronized_orbit
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.motion.kind import motion_of_run, words_of
+from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.attractors import attractor_table
-from burridge_knopoff.stability.motion import motion_of_run, words_of
-from burridge_knopoff.stability.settings import MOTION, SearchSettings
-from burridge_knopoff.study.words import plain, with_error
+from burridge_knopoff.study.formatting import plain, with_error
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 GIVEN = ["--law", "linearized", "--a", "0.08"]
 #: Little of a search, in settings and as options.
-SHORT = {"samples": 12, "lifetime": 1000.0, "transient": 500.0, "window": 500.0, "time_limit": 5000.0, "pushes": 4}
-OPTIONS = [word for key, value in SHORT.items() for word in (f"--{key.replace('_', '-')}", f"{value:g}")]
+SHORT = {"samples": 12, "lifetime": 1000.0, "transient": 500.0, "window": 500.0, "time_limit": 5000.0, "perturbations":
+4} OPTIONS = [word for key, value in SHORT.items() for word in (f"--{key.replace('_', '-')}", f"{value:g}")]
 
 
 def said(capsys, *arguments):
@@ -86,11 +87,11 @@ def test_the_synchronized_orbit(capsys):
 
 
 def test_the_orbit_that_a_state_comes_to(capsys):
-    orbit = closed_motion(MODEL, MODEL.begin(PAPER_STATES["plus"]), 3000.0)
+    orbit = limit_cycle(MODEL, MODEL.begin(PAPER_STATES["plus"]), 3000.0)
     printed = said(capsys, "orbit", *GIVEN, "--initial", "plus", "--events", "4")
     assert f"period       {orbit.period:.9f}\n" in printed
     assert "symmetry     symmetric\n" in printed
-    assert f"stops        {' '.join(map(str, orbit.signature))} of each block" in printed
+    assert f"stops        {' '.join(map(str, orbit.stop_counts))} of each block" in printed
     assert printed.endswith(f"and {len(orbit.events) - 4} more: --events {len(orbit.events)}\n")
 
 

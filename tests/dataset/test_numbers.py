@@ -3,13 +3,13 @@
 import pytest
 
 from burridge_knopoff import MotionKind, Symmetry
+from burridge_knopoff.basins.uncertainty import ExponentKind
+from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.motion.chain_synchronization import Outcome
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.chains import Outcome
-from burridge_knopoff.stability.uncertainty import ExponentKind
-from burridge_knopoff.summaries.branch_changes import Change
-from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide, OrbitStatus
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
 
 
 @pytest.mark.parametrize(
@@ -27,12 +27,11 @@ from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide,
         ),
         (Symmetry, {0: "synchronized", 1: "symmetric", 2: "asymmetric"}),
         (
-            EdgeKind,
-            {-1: "undetermined", 0: "grazing", 1: "fold", 2: "flip"}
+            BifurcationKind,
+            {-1: "undetermined", 0: "grazing", 1: "fold", 2: "period_doubling"}
             | {3: "neimark_sacker", 4: "pitchfork", 5: "crisis"},
         ),
         (OrbitStatus, {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"}),
-        (Bifurcation, {-1: "undetermined", 1: "pitchfork", 2: "flip"}),
         (BifurcationSide, {-1: "undetermined", 0: "subcritical", 1: "supercritical"}),
         (Outcome, {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}),
         (ExponentKind, {-1: "unknown", 0: "varying", 1: "single"}),

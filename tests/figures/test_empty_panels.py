@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff.figures import agreement, basin_fractions, bifurcation, distance, lyapunov, stick_slip, windows
+from burridge_knopoff.figures import (
+    agreement,
+    basin_fractions,
+    bifurcation_diagram,
+    distance,
+    lyapunov,
+    stick_slip,
+    windows,
+)
 from tests.figures.test_windows import refined
 
 GRID = {"law": ["linearized", "nonlinear"], "initial": ["symmetric"], "a": [0.1, 0.2]}
@@ -46,15 +54,15 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
         },
         {"a": ("point", [2.0, 3.0, 5.0]), "law": ("point", [0] * 3, flag), "initial": ("point", [0] * 3, flag)},
     )
-    (panel,) = bifurcation.draw(points).axes
+    (panel,) = bifurcation_diagram.draw(points).axes
     assert panel.get_xlim() == pytest.approx((1.94, 5.06))
     # Rounding of uniform sliding is no crossing.
-    assert words(bifurcation.draw(points.assign(crossing_velocity=1e-10 * points["crossing_velocity"]))) == [
-        [bifurcation.STAYS]
+    assert words(bifurcation_diagram.draw(points.assign(crossing_velocity=1e-10 * points["crossing_velocity"]))) == [
+        [bifurcation_diagram.STAYS]
     ]
     for nothing in (points.isel(crossing=[]).assign(crossing_count=0 * points["crossing_count"]), down(points)):
-        assert words(bifurcation.draw(nothing)) == [["W never crosses 0 upward: the section is never reached"]]
-    assert words(bifurcation.draw(points)) == [[]]
+        assert words(bifurcation_diagram.draw(nothing)) == [["W never crosses 0 upward: the section is never reached"]]
+    assert words(bifurcation_diagram.draw(points)) == [[]]
 
 
 def compared(agrees: list[int]) -> xr.Dataset:

@@ -7,7 +7,7 @@ from matplotlib.colors import to_hex
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.lyapunov import STRIP, draw
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.motion.kind import MotionKind
 
 
 def frame(exponent, error=0.005):

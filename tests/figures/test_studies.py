@@ -39,6 +39,6 @@ def test_every_figure_is_drawn_and_names_all_laws(small, tmp_path: Path):
     for name, figure in drawn.items():
         write_figure(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 5_000, name
-        if name in ("mean_distance", "bifurcation", "lyapunov", "basin_fractions", "solvers"):
+        if name in ("mean_distance", "bifurcation_diagram", "lyapunov", "basin_fractions", "solvers"):
             titles = " ".join(panel.get_title(loc="left") for panel in figure.axes).replace("\n", " ")
             assert all(f"{law} law" in titles for law in small.study.laws), name

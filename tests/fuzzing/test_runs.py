@@ -15,7 +15,7 @@ from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from tests.fuzzing import check_refusal, examples
@@ -134,7 +134,7 @@ def test_a_run_is_refused_or_ends_with_a_status(seed):
             model = Model(Chain(case["blocks"], **case["chain"]), law, case["v"], case["contact"])
             if case["stuck"]:
                 begun, stuck = model.begin(state), np.array(case["stuck"])
-                state = Instant(begun.position, np.where(stuck, 0.0, begun.velocity), stuck)
+                state = ChainState(begun.position, np.where(stuck, 0.0, begun.velocity), stuck)
             trajectory = run(model, state, Settings(**case["settings"]))
     except ValueError as error:
         check_refusal(error)

@@ -13,7 +13,7 @@ import hashlib
 import numpy as np
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.kernel.vector import WIDTH
-from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.running.ensemble import new_ensemble
 
 print(WIDTH)
 laws = law_of("linearized", 0.2), law_of("nonlinear", 0.3), FormulaLaw(0.3, "0.98*exp(-a*u) + 0.01*(1 + u)**1.5")

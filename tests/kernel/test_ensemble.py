@@ -5,11 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
+from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
+from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.together import new_ensemble
 from tests.flows import carry, check_events
 from tests.kernel.test_event_driven import GRAZES
 from tests.scipy_flow import model_events
@@ -37,7 +37,7 @@ def check_against_scalar(model, ensemble, count, end, start=None):
     tolerance = 1e-12 * max(1.0, 0.1 / model.v)
     for k, (position, velocity, stuck) in enumerate(zip(*start, strict=True)):
         runner = Runner(model, keep_events=True)
-        runner.begin(Instant(position, np.where(stuck, 0.0, velocity), stuck))
+        runner.begin(ChainState(position, np.where(stuck, 0.0, velocity), stuck))
         assert found["status"][k] == runner.run(end)
         time, block, kind = runner.events()
         check_events(events_of(found, k), list(zip(time, block + 1, kind, strict=True)), tolerance)
@@ -92,7 +92,7 @@ def test_unequal_springs_and_thresholds_and_a_drop_at_the_start(drop, ends, seed
     position, velocity = generator.uniform(-0.4, 0.4, (2, 4)), generator.uniform(0.05, 0.2, (2, 4))
     found = new_ensemble(model).run(position, velocity, np.zeros((2, 4)), [12.0], events=100)
     for k in range(2):
-        expected, _ = model_events(model, Instant(position[k], velocity[k], np.zeros(4, dtype=bool)), 12.0)
+        expected, _ = model_events(model, ChainState(position[k], velocity[k], np.zeros(4, dtype=bool)), 12.0)
         assert len(expected) > 8
         check_events(events_of(found, k), expected, 1e-8)
 

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Instant, Model, law_of, simulate, synchronized_orbit
+from burridge_knopoff import Chain, ChainState, InitialState, Model, law_of, simulate, synchronized_orbit
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from tests.flows import SYMMETRIC, carry, growth_from, later, wave
@@ -27,7 +27,7 @@ def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
     for _ in range(round(end / interval)):
         position, velocity = np.split(start.vector() + offset, 2)
         # One of the two may stick a little longer than the other.
-        other = runner.after(Instant(position, np.where(stuck, 0.0, np.maximum(velocity, 0.0)), stuck), interval)
+        other = runner.after(ChainState(position, np.where(stuck, 0.0, np.maximum(velocity, 0.0)), stuck), interval)
         start, stuck = runner.after(start, interval), other.stuck
         offset = other.vector() - start.vector()
         length = np.linalg.norm(offset)
@@ -260,7 +260,7 @@ def test_parts_of_a_chain_lose_perturbations_one_after_the_other():
     rank 3. The vectors that are lost are gone: their remainders are rounding and must not pass for finite exponents.
     """
     model = Model(Chain(3), law_of("linearized", 0.1), 0.1)
-    start = Instant(np.array([0.17, 0.3, 0.345]), np.array([0.003, 0.0, 0.3]), np.array([False, True, False]))
+    start = ChainState(np.array([0.17, 0.3, 0.345]), np.array([0.003, 0.0, 0.3]), np.array([False, True, False]))
     runner, events = carry(model, start, 1.0, np.diag([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]))
     assert [event[1:] for event in events] == [(1, 0), (1, 1), (3, 0)]
     assert (np.linalg.svd(runner.perturbations, compute_uv=False) > 1e-12).sum() == 3

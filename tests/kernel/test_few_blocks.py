@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, Section, law_of, simulate
-from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.running.ensemble import new_ensemble
 from tests.flows import carry, check_events, wave
 from tests.kernel.test_ensemble import check_against_scalar
 from tests.refused import refused

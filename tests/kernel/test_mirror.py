@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.running.ensemble import new_ensemble
 
 ENGINES = ("series", "map", "ensemble")
 TIMES = 20

@@ -5,8 +5,8 @@ import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.together import new_ensemble
 from tests.flows import check_events
 from tests.kernel.test_ensemble import check_against_scalar
 from tests.scipy_flow import model_events
@@ -36,7 +36,7 @@ def test_events_against_scipy(name, w, contact):
     time, block, kind = runner.events()
     assert len(expected) > 4
     check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
-    assert np.allclose(runner.instant().vector(), end, rtol=0.0, atol=1e-8)
+    assert np.allclose(runner.state().vector(), end, rtol=0.0, atol=1e-8)
 
 
 @pytest.mark.parametrize("w", [1e-2, 1e-3, 1e-4])

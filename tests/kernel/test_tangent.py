@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag, expm
 
-from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
+from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
@@ -79,7 +79,7 @@ def test_nonlinear_pieces_against_scipy(blocks, amplitude, end):
     An absolute 1e-18 lets SciPy follow the smallest of these motions; its error is 1e-13 of the map per unit of time.
     """
     model = Model(Chain(blocks), law_of("nonlinear", 0.3))
-    start = Instant(*near_sliding(blocks, amplitude), np.zeros(blocks, dtype=bool))
+    start = ChainState(*near_sliding(blocks, amplitude), np.zeros(blocks, dtype=bool))
     expected = variational(model, start, end)
     assert np.abs(without_events(model, start, end) - expected).max() < 1e-11 * np.abs(expected).max()
 
@@ -87,7 +87,7 @@ def test_nonlinear_pieces_against_scipy(blocks, amplitude, end):
 def test_a_nonlinear_piece_beside_stuck_blocks_and_backward_against_scipy():
     model = Model(Chain(5), law_of("nonlinear", 0.9), contact="symmetric")
     velocity = np.array([0.8, 0.0, 0.9, 0.0, -0.7])
-    start = Instant(np.array([0.1, 0.3, 0.0, 0.3, -0.1]), velocity, velocity == 0.0)
+    start = ChainState(np.array([0.1, 0.3, 0.0, 0.3, -0.1]), velocity, velocity == 0.0)
     assert np.abs(without_events(model, start, 0.2) - variational(model, start, 0.2)).max() < 1e-12
 
 
@@ -98,7 +98,7 @@ def test_linearized_pieces_against_the_matrix_exponential(solver, stuck, end, am
     model = Model(Chain(blocks), law_of("linearized", a))
     held = np.isin(np.arange(blocks), stuck)
     position, velocity = near_sliding(blocks, amplitude)
-    start = Instant(position + 0.3 * held, np.where(held, 0.0, velocity), held)
+    start = ChainState(position + 0.3 * held, np.where(held, 0.0, velocity), held)
     slips = np.diag(1.0 - held)
     generator = np.block([[np.zeros((blocks, blocks)), slips], [-slips @ model.chain.stiffness, a * slips]])
     expected = expm(generator * end) @ directions(start)
@@ -130,7 +130,7 @@ def drawn(generator, blocks, law, contact):
     velocity = generator.uniform(0.02 if contact == "one_sided" else -0.6, 0.6, blocks)
     velocity[np.abs(velocity) < 0.02] = 0.1
     stuck = (generator.random(blocks) < 0.4) & (np.abs(spring_force(model, position)) < 0.97)
-    return model, Instant(position, np.where(stuck, 0.0, velocity), stuck)
+    return model, ChainState(position, np.where(stuck, 0.0, velocity), stuck)
 
 
 DRAWN = st.integers(2, 6), st.sampled_from(LAWS), st.sampled_from(CONTACTS), st.integers(0, 2**32 - 1)
@@ -148,7 +148,7 @@ def turns(model, start, events):
     signs = []
     for (time, block, kind), (after, other, start_kind) in pairwise(events):
         if (kind, start_kind) == (0, 1) and block == other and time == after:
-            state = carry(model, start, time)[0].instant()
+            state = carry(model, start, time)[0].state()
             signs.append(int(np.sign(spring_force(model, state.position)[block - 1])))
     return signs
 
@@ -201,12 +201,12 @@ def test_composition_and_the_direction_of_the_flow(blocks, law, contact, seed, s
     half, _ = carry(model, start, share * end, directions(start))
     times = np.array([time for time, _, _ in events])
     assume((np.abs(times - share * end) > 1e-6).all())
-    rest = tangent_map(model, half.instant(), (1.0 - share) * end)
+    rest = tangent_map(model, half.state(), (1.0 - share) * end)
     # Of a short slip or a near graze little more than the square root of the digits is left.
     assume(not any(0.0 < gap < 1e-3 for gap in np.diff(times)))
     size = np.abs(rest).max() * np.abs(half.perturbations).max()
     assert np.abs(whole.perturbations - rest @ half.perturbations).max() < 1e-9 * size
-    flows = [rate(model, state) for state in (start, whole.instant())]
+    flows = [rate(model, state) for state in (start, whole.state())]
     assert np.abs(whole.perturbations @ flows[0] - flows[1]).max() < 1e-9 * size
 
 
@@ -220,9 +220,11 @@ def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v):
     generator = np.random.default_rng(1)
     starts = 0
     for _ in range(6):
-        start = Instant(generator.uniform(-0.2, 0.2, 3) / coupling, generator.uniform(0.3, 0.6, 3), np.zeros(3, bool))
+        start = ChainState(
+            generator.uniform(-0.2, 0.2, 3) / coupling, generator.uniform(0.3, 0.6, 3), np.zeros(3, bool)
+        )
         whole, events = carry(model, start, 6.0 / pulling**0.5, directions(start))
-        flows = [rate(model, state) for state in (start, whole.instant())]
+        flows = [rate(model, state) for state in (start, whole.state())]
         error = np.abs(whole.perturbations @ flows[0] - flows[1]).max()
         assert error < 1e-9 * np.abs(whole.perturbations).max() * np.abs(flows[0]).max()
         starts += sum(kind for _, _, kind in events)
@@ -244,7 +246,7 @@ def test_perturbations_change_nothing_of_the_run(law):
     start = model.begin(PAPER_STATES["plus"])
     (one, events), (other, others) = (carry(model, start, 100.0, given) for given in (directions(start), None))
     assert events == others
-    assert (one.instant().vector() == other.instant().vector()).all()
+    assert (one.state().vector() == other.state().vector()).all()
     assert one.kernel.steps == other.kernel.steps
 
 
@@ -252,9 +254,9 @@ def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
     """A block that starts at τ = 0 does not turn round from a stop of the run before."""
     model = Model(Chain(2), law_of(law, 0.1))
     # Held beyond their thresholds until τ = 0.
-    held = Instant(np.array([-0.4, -0.5]), np.zeros(2), np.ones(2, dtype=bool))
+    held = ChainState(np.array([-0.4, -0.5]), np.zeros(2), np.ones(2, dtype=bool))
     used = Runner(model, perturbations=np.eye(4))
-    used.begin(Instant(np.zeros(2), np.array([0.2, 0.15]), np.zeros(2, dtype=bool)))
+    used.begin(ChainState(np.zeros(2), np.array([0.2, 0.15]), np.zeros(2, dtype=bool)))
     assert used.run(100.0, halting_block=0) == Status.HALTED
     used.carry(directions(held))
     used.begin(held)
@@ -265,5 +267,5 @@ def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
 def test_all_blocks_stuck_for_long():
     """Under a slow driver: nothing but the positions is left, and they stay."""
     model = Model(Chain(3), law_of("nonlinear", 0.1), v=1e-5)
-    start = Instant(np.array([0.2, 0.21, 0.22]), np.zeros(3), np.ones(3, dtype=bool))
+    start = ChainState(np.array([0.2, 0.21, 0.22]), np.zeros(3), np.ones(3, dtype=bool))
     assert (tangent_map(model, start, 10.0) == block_diag(np.eye(3), np.zeros((3, 3)))).all()

@@ -6,19 +6,19 @@ import xarray as xr
 
 from burridge_knopoff import (
     Chain,
+    ChainState,
     FormulaLaw,
     InitialState,
-    Instant,
     Law,
     Model,
     SearchSettings,
     Symmetry,
-    closed_motion,
     find_attractors,
     find_periodic_orbit,
     follow,
     label_states,
     law_of,
+    limit_cycle,
     multipliers,
     open_study,
     simulate,
@@ -27,7 +27,7 @@ from burridge_knopoff import (
     transverse_exponent,
 )
 from burridge_knopoff.kernel.ensemble import Ensemble
-from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.running.ensemble import new_ensemble
 from tests.refused import refused
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
@@ -69,11 +69,11 @@ def test_states_that_cannot_be_labelled(attractors, given, message):
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: closed_motion(Model(Chain(4), MODEL.law), STATE),
-        lambda: closed_motion(MODEL, Instant(np.zeros(3), np.zeros(2), np.zeros(3, bool)), 10.0),
-        lambda: closed_motion(MODEL, "plus"),
-        lambda: closed_motion(MODEL, STATE, float("nan")),
-        lambda: closed_motion(MODEL, STATE, -5.0),
+        lambda: limit_cycle(Model(Chain(4), MODEL.law), STATE),
+        lambda: limit_cycle(MODEL, ChainState(np.zeros(3), np.zeros(2), np.zeros(3, bool)), 10.0),
+        lambda: limit_cycle(MODEL, "plus"),
+        lambda: limit_cycle(MODEL, STATE, float("nan")),
+        lambda: limit_cycle(MODEL, STATE, -5.0),
         lambda: find_periodic_orbit(MODEL, STATE, float("nan"), Symmetry.ASYMMETRIC),
         lambda: find_periodic_orbit(MODEL, STATE, 0.0, Symmetry.ASYMMETRIC),
         lambda: find_periodic_orbit(MODEL, STATE, 10.0, "none"),

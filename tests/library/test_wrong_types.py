@@ -13,9 +13,9 @@ from burridge_knopoff import (
     Model,
     SearchSettings,
     Symmetry,
-    closed_motion,
     follow,
     law_of,
+    limit_cycle,
     simulate,
     synchronized_orbit,
 )
@@ -41,11 +41,11 @@ WRONG = (
 
 def correct_calls():
     """Return arguments that each public function takes, by its name."""
-    orbit = closed_motion(MODEL, synchronized_orbit(MODEL).reference)
+    orbit = limit_cycle(MODEL, synchronized_orbit(MODEL).reference)
     branch = follow(orbit, (0.0864, 0.0866))
     return {
         "basin_map": {"law": "linearized", "a": 0.08, "initial": "minus", "pixels": 1, "samples": 1},
-        "closed_motion": {"model": MODEL, "state": STATE, "settling": 1000.0},
+        "limit_cycle": {"model": MODEL, "state": STATE, "settling": 1000.0},
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
         "find_periodic_orbit": {
             "model": MODEL,
@@ -56,7 +56,7 @@ def correct_calls():
         "follow": {"orbit": orbit, "a_range": (0.0864, 0.0866), "settings": Following()},
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
         "law_of": {"name": "linearized", "a": 0.08, "description": {}},
-        "locate_edges": {"branch": branch},
+        "locate_bifurcations": {"branch": branch},
         "multipliers": {"orbit": orbit},
         "open_study": {"results": "results/nothing"},
         "simulate": {
@@ -107,7 +107,7 @@ def test_help_shows_plain_types(kind):
 
 def test_results_print_in_a_line_or_two():
     orbit = CALLS["follow"]["orbit"]
-    branch = CALLS["locate_edges"]["branch"]
+    branch = CALLS["locate_bifurcations"]["branch"]
     run = simulate("linearized", 0.08, "plus", **QUICK)
     attractors, _ = burridge_knopoff.find_attractors("linearized", 0.08, SEARCH)
     for result in (run, run.final, MODEL, orbit, branch[0], burridge_knopoff.multipliers(orbit), *attractors):

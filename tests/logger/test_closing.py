@@ -9,7 +9,7 @@ import xarray as xr
 
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.study.job_log import INTERRUPTED, SILENT
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run

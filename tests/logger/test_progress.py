@@ -81,7 +81,7 @@ class Dag:
     """Three jobs: `orbits` after `simulate`, and after `edges` that is up to date; `points` makes no file."""
 
     def __init__(self):
-        files = {"orbits": "stability", "simulate": "simulate", "points": "simulate", "edges": "stability"}
+        files = {"orbits": "stability", "simulate": "simulate", "points": "simulate", "bifurcations": "stability"}
         self.rules = [
             SimpleNamespace(name=name, snakefile=f"rules/{file}.smk", output=["x"] if name != "points" else [])
             for name, file in files.items()
@@ -112,7 +112,7 @@ def test_what_the_snakefile_announces(tmp_path, monkeypatch):
         (7, Job("orbits", "stability", "orbits", 4.0, needs=frozenset({8}))),
         (8, Job("simulate a=0.05", "points", "simulate", 30000.0)),
     ]
-    assert plan.run.wanted == {"simulate", "orbits", "points", "edges"}
+    assert plan.run.wanted == {"simulate", "orbits", "points", "bifurcations"}
     assert plan.run.durations.speed == pytest.approx(3.0)
     # The second time the machine is known.
     for job in plan.run.jobs.values():

@@ -3,7 +3,7 @@
 import pytest
 
 from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.stability.synchronized import synchronized_orbits
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 

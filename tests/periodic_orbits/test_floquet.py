@@ -1,4 +1,4 @@
-"""Multipliers made by hand: how many are unstable, and which edge lies where one is 1 or −1."""
+"""Multipliers made by hand: how many are unstable, and which bifurcation lies where one is 1 or −1."""
 
 from types import SimpleNamespace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Symmetry
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, critical_values
 
 NONE = np.array([])
@@ -21,18 +21,18 @@ def test_unstable_is_what_lies_outside_the_unit_circle():
 @pytest.mark.parametrize(
     ("symmetry", "minus"),
     [
-        (Symmetry.ASYMMETRIC, EdgeKind.FLIP),
-        (Symmetry.SYNCHRONIZED, EdgeKind.FLIP),
+        (Symmetry.ASYMMETRIC, BifurcationKind.PERIOD_DOUBLING),
+        (Symmetry.SYNCHRONIZED, BifurcationKind.PERIOD_DOUBLING),
         # −1 of a half return, in a mirror, is 1 of the whole.
-        (Symmetry.SYMMETRIC, EdgeKind.PITCHFORK),
+        (Symmetry.SYMMETRIC, BifurcationKind.PITCHFORK),
     ],
 )
 def test_a_symmetric_orbit_does_not_double_its_period_but_breaks_its_symmetry(symmetry, minus):
     found = critical_values(SimpleNamespace(symmetry=symmetry), Multipliers(np.array([0.5, -0.25, 3.0]), NONE, 1))
     expected = {
-        (EdgeKind.FOLD, "keeping"): -0.5 * -1.25 * 2.0,
+        (BifurcationKind.FOLD, "keeping"): -0.5 * -1.25 * 2.0,
         (minus, "keeping"): 1.5 * 0.75 * 4.0,
-        (EdgeKind.NEIMARK_SACKER, "keeping"): -1.125 * 0.5 * -1.75,
+        (BifurcationKind.NEIMARK_SACKER, "keeping"): -1.125 * 0.5 * -1.75,
     }
     assert found == pytest.approx(expected)
 
@@ -41,12 +41,12 @@ def test_mirror_blocks_that_move_as_one_part_at_a_pitchfork():
     orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
     found = critical_values(orbit, Multipliers(np.array([0.5]), np.array([3.0, 0.2]), 1))
     expected = {
-        (EdgeKind.FOLD, "keeping"): -0.5,
-        (EdgeKind.FLIP, "keeping"): 1.5,
+        (BifurcationKind.FOLD, "keeping"): -0.5,
+        (BifurcationKind.PERIOD_DOUBLING, "keeping"): 1.5,
         # There is no pair.
-        (EdgeKind.NEIMARK_SACKER, "keeping"): 1.0,
-        (EdgeKind.PITCHFORK, "breaking"): 2.0 * -0.8,
-        (EdgeKind.FLIP, "breaking"): 4.0 * 1.2,
-        (EdgeKind.NEIMARK_SACKER, "breaking"): -0.4,
+        (BifurcationKind.NEIMARK_SACKER, "keeping"): 1.0,
+        (BifurcationKind.PITCHFORK, "breaking"): 2.0 * -0.8,
+        (BifurcationKind.PERIOD_DOUBLING, "breaking"): 4.0 * 1.2,
+        (BifurcationKind.NEIMARK_SACKER, "breaking"): -0.4,
     }
     assert found == pytest.approx(expected)

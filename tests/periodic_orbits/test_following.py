@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Instant, Model, closed_motion, follow, law_of, synchronized_orbit
+from burridge_knopoff import Chain, ChainState, Model, follow, law_of, limit_cycle, synchronized_orbit
 from burridge_knopoff.periodic_orbits import following
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
-from burridge_knopoff.periodic_orbits.edges import locate_edges
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcations import locate_bifurcations
 from burridge_knopoff.periodic_orbits.following import Following
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from tests.periodic_orbits.stand_in import stand_in
@@ -30,7 +30,7 @@ from tests.periodic_orbits.stand_in import stand_in
     ],
 )
 def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, away, touches):
-    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(EdgeKind.FOLD, "keeping"): value})
+    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(BifurcationKind.FOLD, "keeping"): value})
     monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
     points = [SimpleNamespace(orbit=x, tangent=[x], multipliers=v) for x, v in zip(slopes, values, strict=True)]
     assert following._passed(*points) == ("simpler" if touches else None)
@@ -40,11 +40,11 @@ def test_several_turns_of_another_orbit_are_no_way_around_a_corner():
     """At a = 0.11226 an orbit of 29 stops grazes; 3e-5 below it one of a single stop ends, which it does not become."""
     model = Model(Chain(3), law_of("linearized", 0.112265625))
     position = np.array([0.10663254, 0.07868783, 0.06869955])
-    start = Instant(position, np.array([0.0, 0.06015978, 0.02200926]), np.array([True, False, False]))
-    branch = follow(closed_motion(model, start), (0.1122, 0.1123), upward=False, enough=lambda points: len(points) > 12)
+    start = ChainState(position, np.array([0.0, 0.06015978, 0.02200926]), np.array([True, False, False]))
+    branch = follow(limit_cycle(model, start), (0.1122, 0.1123), upward=False, enough=lambda points: len(points) > 12)
     corner = next(number for number, point in enumerate(branch) if point.corner)
-    assert {point.orbit.signature for point in branch[: corner + 1]} == {(29, 29, 10)}
-    assert {point.orbit.signature for point in branch[corner + 1 :]} == {(29, 29, 9)}
+    assert {point.orbit.stop_counts for point in branch[: corner + 1]} == {(29, 29, 10)}
+    assert {point.orbit.stop_counts for point in branch[corner + 1 :]} == {(29, 29, 9)}
     # Both kinds of orbit lie on one side: the branch turns back, and beyond the corner it is unstable.
     assert all(point.orbit.a > branch[corner].orbit.a for point in branch[corner + 1 :])
     assert [point.multipliers.unstable for point in branch] == [0] * (corner + 1) + [1] * (len(branch) - corner - 1)
@@ -54,32 +54,32 @@ def doubled(a):
     """Return the orbit of (12, 26, 26) stops, which has begun as twice (6, 13, 13) at a = 0.136416."""
     model = Model(Chain(3), law_of("linearized", a))
     position = np.array([-0.01583146, -0.00898694, -0.04390718])
-    start = Instant(position, np.array([0.21336224, 0.16773024, 0.2330488]), np.zeros(3, dtype=bool))
-    return closed_motion(model, closed_motion(model.at(0.135), start, settling=3000.0).reference, settling=6000.0)
+    start = ChainState(position, np.array([0.21336224, 0.16773024, 0.2330488]), np.zeros(3, dtype=bool))
+    return limit_cycle(model, limit_cycle(model.at(0.135), start, settling=3000.0).reference, settling=6000.0)
 
 
 @pytest.mark.parametrize("a", [0.135, 0.1355, 0.136])
 def test_no_step_leaps_to_a_simpler_orbit(a):
     """From two of them the long step past the grazing used to end on the simple orbit, which is not near there."""
     orbit = doubled(a)
-    assert orbit.signature == (12, 26, 26)
+    assert orbit.stop_counts == (12, 26, 26)
     branch = follow(orbit, (0.1345, 0.137), upward=False)
     corner = next(point for point in branch if point.corner)
     assert corner.orbit.a == pytest.approx(0.1348243355, abs=1e-10)
     assert all(point.joined is None for point in branch)
     # The other way it does join it.
     branch = follow(orbit, (0.1345, 0.137))
-    assert branch[-1].joined.signature == (6, 13, 13)
-    (edge,) = locate_edges(branch)
-    assert edge.kind == EdgeKind.FLIP
-    assert edge.a == pytest.approx(0.136416049, abs=1e-9)
-    assert edge.at.multipliers.keeping == pytest.approx(edge.at.multipliers.keeping.real)
-    assert np.abs(edge.at.multipliers.keeping + 1.0).min() < 1e-8
+    assert branch[-1].joined.stop_counts == (6, 13, 13)
+    (bifurcation,) = locate_bifurcations(branch)
+    assert bifurcation.kind == BifurcationKind.PERIOD_DOUBLING
+    assert bifurcation.a == pytest.approx(0.136416049, abs=1e-9)
+    assert bifurcation.at.multipliers.keeping == pytest.approx(bifurcation.at.multipliers.keeping.real)
+    assert np.abs(bifurcation.at.multipliers.keeping + 1.0).min() < 1e-8
 
 
 def test_a_branch_is_told_where_it_begins():
     """Also at the very end of its range; a range is one from low to high."""
-    orbit = closed_motion(SLOW, synchronized_orbit(SLOW).reference)
+    orbit = limit_cycle(SLOW, synchronized_orbit(SLOW).reference)
     for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
         assert follow(orbit, a_range, Following(most_orbits=1))[0].orbit is orbit
     with pytest.raises(ValueError, match=r"^a_range: got \(0\.09, 0\.07\), expected \(low, high\) with low ≤ high$"):

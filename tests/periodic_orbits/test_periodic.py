@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Instant, Model, OrbitError, Symmetry, closed_motion, law_of
+from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, law_of, limit_cycle
 from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit, refined
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
-from burridge_knopoff.periodic_orbits.simpler import simplest
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
@@ -36,7 +36,7 @@ def orbits():
         model = Model(chain, law_of(law, a))
         velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
         end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 20_000.0)
-        found[name] = closed_motion(model, end)
+        found[name] = limit_cycle(model, end)
     return found
 
 
@@ -44,7 +44,7 @@ def moved(orbit, direction, size):
     """Return where the return of an orbit leads from a state beside the reference."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + size * direction
-    start = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+    start = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
     return ReturnMap(orbit.model, orbit.symmetry).end(start, orbit.return_time).vector()
 
 
@@ -54,7 +54,7 @@ def test_a_settled_motion_returns_and_attracts(orbits, name):
     end = Runner(orbit.model).after(orbit.reference, orbit.period)
     assert np.abs(end.vector() - orbit.reference.vector()).max() < 1e-11
     assert orbit.residual < 1e-12
-    assert (orbit.symmetry, orbit.signature) == ORBITS[name][4:]
+    assert (orbit.symmetry, orbit.stop_counts) == ORBITS[name][4:]
     assert (float(orbit.model.law(0.0)) < 1.0) == (name == "friction that drops")
     found = multipliers(orbit)
     assert found.unstable == 0
@@ -73,7 +73,7 @@ def test_the_reference_is_in_the_middle_of_the_longest_time_without_events(orbit
     gaps = np.diff(times, append=times[0] + orbit.period)
     ends = [times[gaps.argmax()] + since + late for since in (0.0, gaps.max()) for late in (0.0, 1e-9)]
     guesses = [Runner(orbit.model).after(orbit.reference, time) for time in ends]
-    for guess in (*guesses, *(orbit.start(block) for block in np.flatnonzero(orbit.signature))):
+    for guess in (*guesses, *(orbit.start(block) for block in np.flatnonzero(orbit.stop_counts))):
         found = find_periodic_orbit(orbit.model, guess, orbit.return_time, orbit.symmetry)
         around = [found.events[0][0], found.period - found.events[-1][0]]
         assert around == pytest.approx([0.5 * gaps.max()] * 2, abs=1e-9)
@@ -109,7 +109,7 @@ def test_a_refined_orbit_is_solved_to_rounding(orbits):
 def test_uniform_sliding_is_no_orbit(families, law):
     """It returns after any time; Newton's method comes to it from a guess that returns too early."""
     model = families[law].at(0.08).model
-    nearly = Instant(np.array([1e-4, -1e-4, 1e-4]), np.full(3, model.v), np.zeros(3, dtype=bool))
+    nearly = ChainState(np.array([1e-4, -1e-4, 1e-4]), np.full(3, model.v), np.zeros(3, dtype=bool))
     with pytest.raises(OrbitError, match="no block stops there"):
         find_periodic_orbit(model, nearly, 1e-6, SYNCHRONIZED)
 
@@ -118,7 +118,7 @@ def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
     half = orbits["symmetric"]
     whole = find_periodic_orbit(half.model, half.reference, half.period, ASYMMETRIC)
     assert whole.period == pytest.approx(half.period, abs=1e-12)
-    assert whole.signature == half.signature
+    assert whole.stop_counts == half.stop_counts
     assert np.abs(multipliers(whole).whole) == pytest.approx(np.abs(multipliers(half).whole), abs=1e-11)
     assert half.start(0).mirrored().position == pytest.approx(half.start(2).position, abs=1e-12)
 
@@ -127,15 +127,15 @@ def test_an_orbit_gone_round_twice_is_told(orbits):
     half = orbits["symmetric"]
     twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, ASYMMETRIC)
     found = simplest(twice, 1e-9)
-    assert (found.symmetry, found.signature) == (SYMMETRIC, half.signature)
+    assert (found.symmetry, found.stop_counts) == (SYMMETRIC, half.stop_counts)
     assert simplest(half, 1e-9) is half
     known = orbits["synchronized"]
     twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
-    assert twice.signature == (2, 2, 2)
+    assert twice.stop_counts == (2, 2, 2)
     assert simplest(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
     # What comes back in a mirror after a half does so after three halves too, not after two.
     thrice = find_periodic_orbit(half.model, half.reference, 3.0 * half.return_time, SYMMETRIC)
-    assert thrice.signature == (3, 0, 3)
+    assert thrice.stop_counts == (3, 0, 3)
     assert simplest(thrice, 1e-9).period == pytest.approx(half.period, abs=1e-12)
 
 
@@ -155,7 +155,7 @@ def test_an_orbit_starts_at_the_first_stop_of_a_block(orbits):
         runner = Runner(orbit.model)
         runner.begin(orbit.reference)
         assert runner.run(orbit.period, halting_block=block) == Status.HALTED
-        start, stopped = orbit.start(block), runner.instant()
+        start, stopped = orbit.start(block), runner.state()
         assert start.vector() == pytest.approx(stopped.vector(), abs=1e-12)
         assert start.stuck.tolist() == stopped.stuck.tolist()
         assert start.velocity[block] == 0.0
@@ -170,14 +170,14 @@ def test_what_is_no_orbit_is_refused(orbits):
     with pytest.raises(OrbitError, match="it never stops"):
         orbits["symmetric"].start(1)
     with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found within 20"):
-        closed_motion(orbit.model, orbit.reference, window=20.0)
+        limit_cycle(orbit.model, orbit.reference, window=20.0)
 
 
 @pytest.mark.parametrize("name", ORBITS)
 def test_events_that_were_forgotten_are_found_again(orbits, name):
     orbit = orbits[name]
-    known, signature = orbit.event_rows, orbit.signature
+    known, signature = orbit.event_rows, orbit.stop_counts
     orbit.forget_events()
-    assert orbit.signature == signature
+    assert orbit.stop_counts == signature
     assert orbit.event_rows is not known
     assert np.array_equal(orbit.event_rows, known)

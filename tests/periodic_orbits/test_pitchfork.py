@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, OrbitError, Symmetry, law_of, multipliers, simulate
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.pitchfork import asymmetry_of, branching_orbit
-from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
-from burridge_knopoff.stability.synchronized import synchronized_orbits
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.periodic_orbits.exact import slipping_state
 
@@ -14,7 +14,7 @@ from tests.periodic_orbits.exact import slipping_state
 @pytest.fixture(scope="module")
 def critical(families):
     """{law: the synchronized orbit at a_c}."""
-    return {law: families[law].at(critical_a(edges_of(families[law]))) for law in PAPER_LAWS}
+    return {law: families[law].at(critical_a(bifurcations_of(families[law]))) for law in PAPER_LAWS}
 
 
 def test_the_branch_is_the_attractor_beyond(families, critical, law):
@@ -71,6 +71,6 @@ def test_an_asymmetry_beyond_the_branch_is_refused(critical):
 def test_a_pitchfork_of_five_blocks():
     """Its orbits, too, are apart by the root of the distance from a_c."""
     orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
-    at = orbits.at(critical_a(edges_of(orbits)))
+    at = orbits.at(critical_a(bifurcations_of(orbits)))
     offset = [branching_orbit(at, d).a - at.a for d in (5e-4, 1e-3)]
     assert offset[1] / offset[0] == pytest.approx(4.0, rel=1e-3)

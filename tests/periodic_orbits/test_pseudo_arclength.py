@@ -27,6 +27,6 @@ def test_a_step_ends_at_an_orbit_whatever_its_reference(families, monkeypatch, u
         assert weights(orbit.model) @ one.tangent**2 == pytest.approx(1.0)
     assert moved.orbit.a == usual.orbit.a == pytest.approx(families["nonlinear"].at(usual.orbit.a).model.a)
     assert moved.orbit.period == pytest.approx(families["nonlinear"].at(usual.orbit.a).period, abs=1e-12)
-    there = flow(usual.orbit.model, usual.orbit.reference, share * usual.orbit.period)[0].instant()
+    there = flow(usual.orbit.model, usual.orbit.reference, share * usual.orbit.period)[0].state()
     np.testing.assert_allclose(moved.orbit.reference.vector(), there.vector(), atol=1e-12)
     assert np.abs(moved.tangent) == pytest.approx(np.abs(tangent_of(moved.orbit)))

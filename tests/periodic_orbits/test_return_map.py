@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Instant, Model, law_of
+from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.periodic_orbits import return_map
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
@@ -35,7 +35,7 @@ def test_what_a_law_does_not_allow_is_no_orbit():
 
 def test_the_derivative_by_a_is_that_of_the_same_events_in_the_same_order(monkeypatch):
     model = Model(Chain(3), law_of("linearized", 0.1))
-    end = Instant(np.zeros(3), np.zeros(3), np.zeros(3, dtype=bool))
+    end = ChainState(np.zeros(3), np.zeros(3), np.zeros(3, dtype=bool))
     told = [
         (1e-7, [(0.1, 1, 0), (0.2, 0, 0)]),  # in another order
         (1e-7, [(0.1, 0, 0)]),
@@ -52,7 +52,7 @@ def test_the_derivative_by_a_is_that_of_the_same_events_in_the_same_order(monkey
     def runner(model, keep_events):
         size, events = next(left)
         assert abs(model.a - 0.1) == pytest.approx(size)
-        return ran(events, Instant(np.full(3, -3e-8), np.zeros(3), end.stuck))
+        return ran(events, ChainState(np.full(3, -3e-8), np.zeros(3), end.stuck))
 
     monkeypatch.setattr(return_map, "Runner", runner)
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)

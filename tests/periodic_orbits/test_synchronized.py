@@ -7,9 +7,9 @@ import pytest
 
 from burridge_knopoff import (
     Chain,
+    ChainState,
     FormulaLaw,
     InitialState,
-    Instant,
     Model,
     OrbitError,
     Settings,
@@ -19,10 +19,10 @@ from burridge_knopoff import (
     simulate,
     synchronized_orbit,
 )
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.flow import flow
-from burridge_knopoff.periodic_orbits.synchrony import differenced_multiplier
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import differenced_multiplier
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 
@@ -38,12 +38,12 @@ def turns(run):
 @pytest.mark.parametrize("a", [1e-4, 0.0025, 0.02, 0.0355, 0.036, 0.05, 0.0869, 0.1, 0.2, 0.3])
 def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     orbit = families[law].at(a)
-    end = flow(orbit.model, orbit.reference, orbit.period)[0].instant()
+    end = flow(orbit.model, orbit.reference, orbit.period)[0].state()
     assert np.abs(end.vector() - orbit.reference.vector()).max() <= 1e-14
     assert orbit.residual <= 1e-14
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.reference.position[0] == orbit.reference.position[2]
-    assert (orbit.signature[0], orbit.signature[2]) == (1, 1)
+    assert (orbit.stop_counts[0], orbit.stop_counts[2]) == (1, 1)
     found = multipliers(orbit)
     # Those of the end blocks' velocities, which a stop takes away.
     assert abs(found.breaking[1]) < 1e-12
@@ -72,8 +72,8 @@ def test_multipliers_against_finite_differences(families, law, a):
     orbit = families[law].at(a)
 
     def end(change):
-        start = Instant(*np.split(orbit.reference.vector() + change, 2), orbit.reference.stuck)
-        return flow(orbit.model, start, orbit.period)[0].instant().vector()
+        start = ChainState(*np.split(orbit.reference.vector() + change, 2), orbit.reference.stuck)
+        return flow(orbit.model, start, orbit.period)[0].state().vector()
 
     matrix = np.zeros((6, 6))
     free = [0, 1, 2, *(3 + np.flatnonzero(~orbit.reference.stuck)).tolist()]
@@ -152,7 +152,7 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
     assert differenced_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
     shift = np.zeros(2 * blocks)
     shift[0] = 1e-7
-    start = Instant(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
+    start = ChainState(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
     parted = []
     for turns_made in (40, 80):
         end = Runner(orbit.model).after(start, turns_made * orbit.period).vector()
@@ -186,8 +186,8 @@ def test_any_law_has_an_orbit_that_runs_end_on(law):
 
 
 def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(families, law):
-    flip = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
-    for a, doubled in ((flip - 0.002, False), (flip + 0.002, True)):
+    doubling = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
+    for a, doubled in ((doubling - 0.002, False), (doubling + 0.002, True)):
         orbit = families[law].at(a)
         assert (multipliers(orbit).keeping[0].real < -1.0) == doubled
         position, velocity = slipping_state(orbit)

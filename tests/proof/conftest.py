@@ -8,11 +8,11 @@ from flint import arb
 from mpmath import mpf
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.proof.arcs import State
 from burridge_knopoff.proof.balls import arithmetic
 from burridge_knopoff.proof.krawczyk import Enclosure
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 
 #: Whether blocks 1 and 3 slip, and whether block 2 does.
 SLIPS = list(product((False, True), repeat=2))

@@ -7,7 +7,7 @@ import pytest
 from flint import arb, fmpq
 
 from burridge_knopoff.periodic_orbits.floquet import multipliers
-from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.proof import critical
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.critical import prove_branch, prove_critical
@@ -19,7 +19,7 @@ from tests.proof.exact import exact_orbit
 
 @pytest.fixture(scope="module")
 def found(family):
-    return prove_critical(family.at(critical_a(edges_of(family))))
+    return prove_critical(family.at(critical_a(bifurcations_of(family))))
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_the_interval_holds_a_c_of_50_digits_and_of_the_double_code(found, famil
         assert holds(ball, number)
     assert holds(found.orbit.symmetric_multiplier, exact.symmetric)
     assert width(found.a) < 1e-50
-    assert abs(critical_a(edges_of(family)) - float(found.a)) < 2e-15
+    assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
 
 
 def test_the_multiplier_is_1_there_and_passes_it(found, family):

@@ -9,6 +9,7 @@ from flint import arb
 from scipy.optimize import bisect
 
 from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
@@ -16,7 +17,6 @@ from burridge_knopoff.proof.bounds import check_positive
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.krawczyk import derivatives, enclose, part, solved
 from burridge_knopoff.proof.orbit import PLACES, arcs_of, equations, followed, prove_orbit
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from tests.periodic_orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit

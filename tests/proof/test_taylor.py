@@ -6,8 +6,9 @@ from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.floquet import multipliers
-from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.proof import taylor
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
@@ -16,7 +17,6 @@ from burridge_knopoff.proof.critical import prove_critical
 from burridge_knopoff.proof.krawczyk import derivatives
 from burridge_knopoff.proof.orbit import PLACES, followed, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from tests.proof.conftest import SLIPS, changed, holds, state_of
 
 V, A = "0.1", "0.09"
@@ -156,12 +156,12 @@ def family():
 
 @pytest.fixture(scope="module")
 def found(family):
-    return prove_critical(family.at(critical_a(edges_of(family))))
+    return prove_critical(family.at(critical_a(bifurcations_of(family))))
 
 
 def test_a_c_of_the_nonlinear_law(found, family):
     assert width(found.a) < 1e-17
-    assert abs(critical_a(edges_of(family)) - float(found.a)) < 2e-15
+    assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
     assert found.orbit.multiplier.contains(1)
     assert found.orbit.slope > 5
     assert found.unique.contains(found.a)

@@ -151,8 +151,8 @@ def test_results_depend_on_what_makes_them():
     others = ("stability", "summaries", "figures", "report", "claims", "study")
     assert not {name for name in point if name.startswith(others)}
     assert "kernel/ensemble.py" not in point
-    assert {"kernel/ensemble.py", "stability/attractors.py"} <= names("attractors_of_law")
-    assert not {"dataset/point.py", "stability/basins.py"} & names("attractors_of_law")
+    assert {"kernel/ensemble.py", "attractors/search.py"} <= names("attractors_of_law")
+    assert not {"dataset/point.py", "basins/plane.py"} & names("attractors_of_law")
     assert {"figures/agreement.py", "figures/style.py"} <= names("figure_of_summaries figures.agreement")
     drawn = names("figure_of_summaries figures.agreement")
     assert not {name for name in drawn if name.startswith(("kernel", "stability", "report"))}

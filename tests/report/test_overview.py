@@ -2,8 +2,8 @@
 
 import pytest
 
+from burridge_knopoff.motion.chain_synchronization import Sample, Watch
 from burridge_knopoff.report.overview import foreign_settings
-from burridge_knopoff.stability.chains import Sample, Watch
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.study.study import load_study
 from burridge_knopoff.summaries.chains import chain_dataset, merge

@@ -18,7 +18,7 @@ def test_pictures_keep_every_pixel(tmp_path):
     pixels[:300] = np.arange(2100, dtype="u1")[:, None]
     for n, color in enumerate(COLORS):
         pixels[400 + 20 * n, 100:1400] = np.round(255 * np.array(to_rgb(color)))
-    path = tmp_path / "bifurcation.png"
+    path = tmp_path / "bifurcation_diagram.png"
     Image.fromarray(pixels).convert("RGBA").save(path)
     picture = read_picture(path)
     content = base64.b64decode(picture.data.split(",")[1])

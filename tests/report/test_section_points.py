@@ -24,7 +24,7 @@ def test_section_counts_lose_no_crossing(lowest):
     rng = np.random.default_rng(1)
     velocity = np.concatenate([rng.uniform(lowest, 0.4, 900), [lowest, 0.4], np.full(600, 0.25)])
     counts = section_counts(sections(velocity, [502, 0, 400, 600]))
-    low, high = counts["edges"]
+    low, high = counts["bifurcations"]
     runs = [counts["runs"][law][0] for law in (0, 1)]
     for run, own in zip(runs, (velocity[:502], velocity[502:]), strict=True):
         assert sum(count for count in run["count"] if count > 0) == (own >= 0.0).sum()

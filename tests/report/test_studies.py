@@ -12,7 +12,16 @@ from tests.report.conftest import CLAIMS
 from tests.report.test_page import Page
 from tests.small_study import SMALL, STUDIES
 
-STORED = ("mean_distance", "bifurcation", "lyapunov", "agreement", "orbits", "attractors", "basins", "two_blocks")
+STORED = (
+    "mean_distance",
+    "bifurcation_diagram",
+    "lyapunov",
+    "agreement",
+    "orbits",
+    "attractors",
+    "basins",
+    "two_blocks",
+)
 
 
 @pytest.fixture(scope="module", params=STUDIES)

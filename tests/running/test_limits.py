@@ -19,7 +19,7 @@ simulate("nonlinear", 5.0, (range(256), [0.1] * 256), chain=Chain(256, coupling=
 MANY = """
 import numpy as np
 from burridge_knopoff import Chain, Model, law_of
-from burridge_knopoff.running.together import new_ensemble
+from burridge_knopoff.running.ensemble import new_ensemble
 ensemble = new_ensemble(Model(Chain(256, coupling=100.0), law_of("nonlinear", 5.0), 0.1))
 start = np.random.default_rng(1).uniform(0.0, 0.1, (2, 16, 256))
 print("begun", flush=True)

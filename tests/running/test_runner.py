@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Instant, Model, Settings, law_of, simulate
+from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.kernel import events as kernel_events
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -31,12 +31,12 @@ def test_unequal_chains_and_rings_against_scipy(chain, law):
     model = Model(Chain(4, **UNEQUAL[chain]), law_of(law, 0.3))
     assert not model.has_closed_form
     position = -0.3 + 0.25 * np.sin(1.0 + 2.0 * np.arange(4)) * model.chain.thresholds
-    start = Instant(position, 0.1 + 0.05 * np.cos(3.0 * np.arange(4)), np.zeros(4, dtype=bool))
+    start = ChainState(position, 0.1 + 0.05 * np.cos(3.0 * np.arange(4)), np.zeros(4, dtype=bool))
     expected, state = model_events(model, start, 10.0)
     solver, found = carry(model, start, 10.0)
     assert len(found) >= 4
     check_events(found, expected, 1e-8)
-    assert np.abs(solver.instant().vector() - state).max() < 1e-8
+    assert np.abs(solver.state().vector() - state).max() < 1e-8
 
 
 # The example studies with laws and springs of their own: stiffness, static friction and Φ as their pages say.
@@ -121,15 +121,15 @@ def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
     assert chain.is_mirror_symmetric
     model = Model(chain, law_of(law, generator.uniform(0.0, 0.5)))
     position, velocity = generator.uniform(-0.4, 0.4, blocks), generator.uniform(0.02, 0.3, blocks)
-    start = Instant(position, velocity, np.zeros(blocks, dtype=bool))
+    start = ChainState(position, velocity, np.zeros(blocks, dtype=bool))
     solver, events = carry(model, start, 12.0)
     # Which of two events of one instant comes first is nobody's matter.
     assume(all(gap > 1e-12 for gap in np.diff([time for time, _, _ in events])))
     mirror, mirrored = carry(model, start.mirrored(), 12.0)
     assert events == [(time, blocks + 1 - block, kind) for time, block, kind in mirrored]
-    assert (solver.instant().vector() == mirror.instant().mirrored().vector()).all()
+    assert (solver.state().vector() == mirror.state().mirrored().vector()).all()
     half, first = carry(model, start, 5.0)
-    second = [(5.0 + time, block, kind) for time, block, kind in carry(model, half.instant(), 7.0)[1]]
+    second = [(5.0 + time, block, kind) for time, block, kind in carry(model, half.state(), 7.0)[1]]
     assume(len(first) + len(second) == len(events) > 0)
     times = [time for time, _, _ in (*first, *second)]
     assert np.abs(np.subtract(times, [time for time, _, _ in events])).max() < 1e-11 * np.exp(0.5 * 12.0)

@@ -18,7 +18,7 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import summary_lines
-from burridge_knopoff.study.words import plain, with_error
+from burridge_knopoff.study.formatting import plain, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
 

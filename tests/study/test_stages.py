@@ -7,7 +7,7 @@ from burridge_knopoff.study.study import load_study
 
 STATES = {"minus": {}, "plus": {}}
 CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
-ALL = ("attractors", "edges", "basins", "phases", "solvers", "two_blocks", "proof", "claims")
+ALL = ("attractors", "bifurcations", "basins", "phases", "solvers", "two_blocks", "proof", "claims")
 
 
 @pytest.mark.parametrize(
@@ -15,7 +15,7 @@ ALL = ("attractors", "edges", "basins", "phases", "solvers", "two_blocks", "proo
     [
         ({}, set()),
         ({"without": ["solvers", "claims"]}, {"solvers", "claims"}),
-        ({"without": ["attractors"]}, {"attractors", "edges", "basins", "phases"}),
+        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases"}),
         ({"laws": {"linearized": {}}}, {"two_blocks"}),
         ({"a": [0.31]}, {"basins", "phases"}),
         ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof"}),
@@ -30,12 +30,12 @@ def test_what_is_left_out_has_no_values_of_a():
     """So that nobody who looks at the section alone takes it for wanted."""
     study = load_study({**CONFIG, "without": ["attractors", "solvers"]}, "some.yaml")
     assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
-    assert study.left_out == ("attractors", "edges", "basins", "phases", "solvers")
+    assert study.left_out == ("attractors", "bifurcations", "basins", "phases", "solvers")
     assert study.stage_summaries == ("two_blocks", "proof")
 
 
 def test_figures_of_a_study_without_attractors():
     study = load_study({**CONFIG, "without": ["attractors"]}, "some.yaml")
     names = {figure.name for figure in study_figures(study, ())}
-    assert {"mean_distance", "bifurcation", "distance"} <= names
-    assert not {"edges", "branches_reached", "bifurcation_refined", "chains"} & names
+    assert {"mean_distance", "bifurcation_diagram", "distance"} <= names
+    assert not {"bifurcations", "branches_reached", "bifurcation_diagram_refined", "chains"} & names

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.stability.settings import MOTION
+from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.summaries import attractors
 from tests.summaries.continued import SETTINGS, STATES, continuation
 

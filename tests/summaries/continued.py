@@ -3,9 +3,9 @@
 import numpy as np
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
-from burridge_knopoff.stability.continuation import Continuation
-from burridge_knopoff.stability.lifetime import Lifetime
-from tests.stability.stand_in import stand_in
+from burridge_knopoff.attractors.lifetime import Lifetime
+from burridge_knopoff.continuation.along_a import Continuation
+from tests.motion.stand_in import stand_in
 
 STATES = [InitialState("here", (0.0,) * 3, (0.1,) * 3), InitialState("back", (0.0,) * 3, (0.1, -0.1, 0.1))]
 SETTINGS = SearchSettings(samples=9, fraction_width=0.33, time_limit=123.0, lifetime=500.0)

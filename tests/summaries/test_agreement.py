@@ -72,7 +72,7 @@ def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
             "initial_branch": own,
             "initial_side": xarray.zeros_like(own),
         },
-        attrs={"contact_convention": "there", "start_convention": "now", "resolution": 1e-3, "v": v},
+        attrs={"contact": "there", "start": "now", "resolution": 1e-3, "v": v},
     )
 
 

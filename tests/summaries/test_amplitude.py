@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, OrbitError, law_of
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import amplitude
 from burridge_knopoff.summaries.amplitude import fit_power_law, sweep

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
+from burridge_knopoff.attractors.lifetime import Lifetime
+from burridge_knopoff.attractors.table import name_branches, slot_values
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.continuation import continue_attractors
-from burridge_knopoff.stability.lifetime import Lifetime
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MOTION, Refine
+from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.summaries import all_laws, attractors, refined
-from burridge_knopoff.summaries.slots import name_branches, slot_values
 from tests.summaries.continued import SETTINGS, STATES, continuation
 
 
@@ -51,7 +52,7 @@ def test_features_are_sorted_by_branch_and_side(one_law):
     assert found["position"].values[1, 0] == pytest.approx([2.0 - 0.98 * 5 / 6, -0.98 * 2 / 3, -0.98 * 5 / 6])
     assert found["velocity"].values[0, 0].tolist() == [0.0, 0.5, 0.25]
     assert found["block"].values.tolist() == [1, 2, 3]
-    told = {"law": "linearized", "v": 0.2, "contact_convention": "one_sided", "start_convention": "tested", "seed": 1}
+    told = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
     assert {key: found.attrs[key] for key in told} == told
 
 

@@ -1,19 +1,21 @@
 """Maps of basins put together from hand-made tiles, and pairs of states labelled by a rule that is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
+from burridge_knopoff.basins.settings import BasinSettings
+from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.basins import KnownAttractors
-from burridge_knopoff.stability.settings import MOTION, SEARCH, BasinSettings
-from burridge_knopoff.stability.splitting import SEPARATIONS, follow_pairs
-from burridge_knopoff.stability.uncertainty import ExponentKind, uncertainty_exponent
 from burridge_knopoff.summaries import basins
 
 PLANE = BasinSettings(pixels=4, first_position=(-1.0, 3.0), last_position=(0.0, 2.0), pairs=50, tiles=2)
-FOUND = (PLANE, SEARCH, MOTION, "moving")
 MODELS = [Model(Chain(3), law_of(law, a), 0.2, "symmetric") for law, a in (("nonlinear", 0.1), ("linearized", 0.3))]
 
 
@@ -27,11 +29,11 @@ def ruled(monkeypatch):
         assert (velocity == PAPER_STATES["minus"].velocity).all()
         return rule(position), 100.0 + position[:, 0]
 
-    def known(attractors, model, settings, motion):
-        return KnownAttractors(model, [None, None], np.array([0, 5]), np.array([0, -1]))
-
     monkeypatch.setattr(basins, "label_states", label_states)
-    monkeypatch.setattr(basins, "known_attractors", known)
+
+
+#: Two attractors that only the rule tells apart.
+KNOWN = KnownAttractors(MODELS[0], [None, None], np.array([0, 5]), np.array([0, -1]))
 
 
 def rule(position):
@@ -40,7 +42,7 @@ def rule(position):
 
 
 def test_a_tile_is_a_band_of_rows(ruled):
-    tiles = [basins.tile(None, MODELS[0], number, *FOUND) for number in (0, 1)]
+    tiles = [basins.tile(KNOWN, number, PLANE, SEARCH.label_limit, "moving") for number in (0, 1)]
     # Pixels of the first position in the middles of [−1, 3], of the last one in those of [0, 2].
     for tile, last in zip(tiles, ([0.25, 0.75], [1.25, 1.75]), strict=True):
         assert tile["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
@@ -54,7 +56,7 @@ def test_a_tile_is_a_band_of_rows(ruled):
 
 
 def test_pairs_are_those_of_the_plane(ruled):
-    found = basins.pairs(None, MODELS[0], *FOUND)
+    found = basins.pairs(KNOWN, PLANE, SEARCH.label_limit, SEARCH.seed, "moving")
 
     def label(points):
         return rule(np.insert(points, 1, 0.0, axis=1))
@@ -76,8 +78,9 @@ def test_pairs_are_those_of_the_plane(ruled):
 
 
 def test_maps_are_put_together_and_told(ruled):
-    near = [basins.pairs(None, model, *FOUND) for model in MODELS]
-    tiles = [[basins.tile(None, model, k, *FOUND) for k in (0, 1)] for model in MODELS]
+    known, limit = [replace(KNOWN, model=model) for model in MODELS], SEARCH.label_limit
+    near = [basins.pairs(one, PLANE, limit, SEARCH.seed, "moving") for one in known]
+    tiles = [[basins.tile(one, k, PLANE, limit, "moving") for k in (0, 1)] for one in known]
     maps = list(zip(MODELS, tiles, near, strict=True))
     near[0]["uncertainty_exponent"][...], near[0]["uncertainty_exponent_error"][...] = 0.8125, 0.025
     near[0]["exponent_kind"][...] = ExponentKind.SINGLE

@@ -8,12 +8,13 @@ import pytest
 import xarray
 
 from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff.attractors.asymptotic_states import endings
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.figures.chains import draw
-from burridge_knopoff.stability.chains import Sample, Watch
-from burridge_knopoff.stability.endings import endings
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MOTION, SearchSettings
+from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.chain_synchronization import Sample, Watch
+from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.summaries import chains, two_blocks
 from burridge_knopoff.summaries.event_order import common_order
 from tests.sections import AGREEMENT

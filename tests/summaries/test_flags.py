@@ -10,7 +10,15 @@ MOTION = {
     **{-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"},
     **{4: "transient_chaos", 5: "synchronized_chaos"},
 }
-EDGE = {-1: "undetermined", 0: "grazing", 1: "fold", 2: "flip", 3: "neimark_sacker", 4: "pitchfork", 5: "crisis"}
+BIFURCATION = {
+    -1: "undetermined",
+    0: "grazing",
+    1: "fold",
+    2: "period_doubling",
+    3: "neimark_sacker",
+    4: "pitchfork",
+    5: "crisis",
+}
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}
 AGREEMENT = {"kind": MOTION, "same_kind": VERDICT, "agrees": VERDICT}
@@ -23,10 +31,10 @@ EXPECTED = {
     "agreement": {**AGREEMENT, "settled": VERDICT},
     "attractors": {**SLOT, "sliding_attracts": YES_NO},
     "refined": {**SLOT, "in_grid": YES_NO},
-    "bifurcation": {"crossing_direction": DIRECTION},
+    "bifurcation_diagram": {"crossing_direction": DIRECTION},
     "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},
-    "edges": {
-        "kind": EDGE,
+    "bifurcations": {
+        "kind": BIFURCATION,
         "change": {0: "beginning", 1: "end", 2: "change", 3: "passed"},
         "motion_before": MOTION,
         "motion_after": MOTION,
@@ -37,7 +45,7 @@ EXPECTED = {
     "mean_distance": {"synchronized": YES_NO, "status": STATUS},
     "orbits": {
         "status": {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"},
-        "bifurcation_kind": {-1: "undetermined", 1: "pitchfork", 2: "flip"},
+        "bifurcation_kind": BIFURCATION,
         "bifurcation_side": {-1: "undetermined", 0: "subcritical", 1: "supercritical"},
     },
     "solvers": {"status": {-1: "no_such_solver", **STATUS}},

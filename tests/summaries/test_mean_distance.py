@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, simulate
-from burridge_knopoff.summaries import bifurcation, lyapunov
+from burridge_knopoff.summaries import bifurcation_diagram, lyapunov
 from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
 from tests.grids import PAPER_MODELS, grid_of
 from tests.sections import MOTION
@@ -136,7 +136,7 @@ def test_kinds_of_motion_of_runs(told):
 
 
 def test_section_points_are_kept_run_by_run(told):
-    found = bifurcation.summarize(told)
+    found = bifurcation_diagram.summarize(told)
     counts = [2 * len(upward) for _, upward, *_ in TOLD.values()]
     assert found["crossing_count"].values.tolist() == 4 * counts
     assert found["a"].values.tolist() == 4 * list(TOLD)
@@ -147,7 +147,7 @@ def test_section_points_are_kept_run_by_run(told):
     found["crossing_velocity"].values[chosen] *= 2.0
     upward = np.concatenate([item[1] for item in TOLD.values()])
     for law, initial, factor in (("nonlinear", "plus", 2.0), ("nonlinear", "minus", 1.0), ("linearized", "plus", 1.0)):
-        a, velocity = bifurcation.section_points(found, law, initial, 1)
+        a, velocity = bifurcation_diagram.section_points(found, law, initial, 1)
         assert velocity.tolist() == (factor * upward).tolist()
         assert a.tolist() == np.repeat(list(TOLD), np.array(counts) // 2).tolist()
-        assert (bifurcation.section_points(found, law, initial, -1)[1] <= -1.0).all()
+        assert (bifurcation_diagram.section_points(found, law, initial, -1)[1] <= -1.0).all()

@@ -6,19 +6,20 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of, multipliers
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
-from burridge_knopoff.periodic_orbits.synchrony import (
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    bifurcations_of,
     critical_a,
     critical_a_error,
-    edges_of,
     grazing_a,
-    symmetric_flip_a,
+    symmetric_period_doubling_a,
 )
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import orbits
 from burridge_knopoff.summaries.amplitude import sweep
-from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide
 from burridge_knopoff.summaries.orbits import COMPARISON, effective_a, summarize
 
 
@@ -52,7 +53,7 @@ def test_the_curve_is_that_of_the_orbits(found):
 
 
 def test_the_bifurcation_is_told_from_the_orbits(found):
-    assert (found["bifurcation_kind"] == Bifurcation.PITCHFORK).all()
+    assert (found["bifurcation_kind"] == BifurcationKind.PITCHFORK).all()
     assert (found["bifurcation_side"] == BifurcationSide.SUPERCRITICAL).all()
     assert (found["branch_offset"] > 0.0).all()
     assert (found["branch_multiplier"] < 1.0).all()
@@ -65,12 +66,12 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
 def test_the_transition_is_that_of_the_stability_room(found):
     """Each number for itself, the fit by another routine."""
     family, one = synchronized_orbits(models()[1]), found.sel(law="nonlinear")
-    edges = edges_of(family)
+    edges = bifurcations_of(family)
     critical = critical_a(edges)
     assert one["critical_a"].item() == pytest.approx(critical, abs=1e-14)
     assert one["critical_a_error"].item() == pytest.approx(critical_a_error(family, critical), abs=1e-11)
     assert one["grazing_a"].item() == pytest.approx(grazing_a(edges, block=1), abs=1e-12)
-    assert one["symmetric_flip_a"].item() == pytest.approx(symmetric_flip_a(edges), abs=1e-12)
+    assert one["symmetric_period_doubling_a"].item() == pytest.approx(symmetric_period_doubling_a(edges), abs=1e-12)
     d = one["branch_asymmetry"].values
     # From a thousandth of v on, five in a decade.
     assert d == pytest.approx(0.1 * 10 ** (np.arange(13) / 5 - 3), rel=1e-3)

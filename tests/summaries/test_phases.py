@@ -6,22 +6,21 @@ from itertools import product
 
 import numpy as np
 import pytest
-import xarray as xr
 
-from burridge_knopoff import Chain, Instant, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, oscillating_states
+from burridge_knopoff.basins.settings import PhaseSettings
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.stability.basins import KnownAttractors
-from burridge_knopoff.stability.phases import common_phases, inner_phases, oscillating_states
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MOTION, SEARCH, PhaseSettings
 from burridge_knopoff.summaries import phases
 from burridge_knopoff.summaries.along_attractor import AlongAttractor, along_attractor
 
 PHASES = PhaseSettings(
     amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
 )
-ATTRACTORS = xr.Dataset(coords={"law": ["linearized", "nonlinear"], "a": [0.05, 0.08]})
 MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinear")]
 
 
@@ -29,19 +28,12 @@ MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinea
 def ruled(monkeypatch):
     """Three attractors; a state reaches the first where x_1 + x_2 > 0.4 v, none where it is < −0.4, else the last."""
 
-    class Known:
-        motion = type("Motion", (), {"instant": staticmethod(lambda: None)})
-
     def label_states(model, attractors, position, velocity, *, time_limit):
         assert time_limit == SEARCH.label_limit
         x = (position - model.sliding_offset)[:, :2].sum(axis=1)
         return np.select([x > 0.04, x < -0.4], [0, -1], 2), np.zeros(len(x))
 
-    def known(found, model, *_):
-        return KnownAttractors(model, [Known] * 3, np.array([0, 7, 7]), np.array([0, 1, -1]))
-
     monkeypatch.setattr(phases, "label_states", label_states)
-    monkeypatch.setattr(phases, "known_attractors", known)
     correlations = iter([1.0, -0.5, -0.7] * 100)
     followed = partial(AlongAttractor, np.empty(0), velocity=np.empty((0, 3)))
     monkeypatch.setattr(
@@ -49,8 +41,14 @@ def ruled(monkeypatch):
     )
 
 
+def known(model):
+    """Return three attractors of which only the rule tells which a state reaches."""
+    one = type("One", (), {"motion": type("Motion", (), {"state": staticmethod(lambda: None)})})
+    return KnownAttractors(model, [one] * 3, np.array([0, 7, 7]), np.array([0, 1, -1]))
+
+
 def test_states_are_counted_by_what_they_reach(ruled):
-    parts = [phases.one_law(ATTRACTORS, model, [0.05, 0.08], PHASES, SEARCH, MOTION) for model in MODELS]
+    parts = [phases.one_law([known(model.at(a)) for a in (0.05, 0.08)], PHASES, SEARCH.label_limit) for model in MODELS]
     found = phases.merge(parts)
     assert found["branch"].dims == ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
     assert found["branch"].shape == (2, 2, 2, 2, 3, 5)
@@ -86,8 +84,8 @@ def test_states_are_counted_by_what_they_reach(ruled):
 
 def test_a_state_is_the_same_whatever_other_shares_there_are(ruled):
     """So that those on which the inner blocks slide uniformly stay when others are added."""
-    alone = phases.one_law(ATTRACTORS, MODELS[0], [0.05], replace(PHASES, inner_share=(0.5,)), SEARCH, MOTION)
-    both = phases.one_law(ATTRACTORS, MODELS[0], [0.05], PHASES, SEARCH, MOTION)
+    alone = phases.one_law([known(MODELS[0])], replace(PHASES, inner_share=(0.5,)), SEARCH.label_limit)
+    both = phases.one_law([known(MODELS[0])], PHASES, SEARCH.label_limit)
     assert both.sel(inner_share=[0.5]).drop_attrs().equals(alone.drop_attrs())
 
 
@@ -112,7 +110,7 @@ def test_velocities_go_together_or_against_each_other(difference, least, most):
     """What close and opposite phases have come to after 3000 time units."""
     model = MODELS[0]
     position, velocity, _ = oscillating_states(model, *(np.array([x]) for x in (0.03, difference, 100.0)))
-    start = Instant(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
+    start = ChainState(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
     end = Runner(model).after(start, 3000.0)
     assert least <= along_attractor(model, end).velocity_correlation <= most
 
@@ -131,7 +129,7 @@ def test_inner_blocks_that_oscillate_break_the_rule_of_close_phases(share, least
     assert not standing.any()
     runner, together = Runner(MODELS[0]), 0
     for x, speed in zip(position - MODELS[0].sliding_offset, velocity, strict=True):
-        end = runner.after(Instant(x, speed, np.zeros(3, dtype=bool)), 3000.0)
+        end = runner.after(ChainState(x, speed, np.zeros(3, dtype=bool)), 3000.0)
         together += abs(end.position[0] - end.position[2]) < 1e-3
     assert least <= together / count <= most
 
@@ -144,6 +142,6 @@ def test_the_correlation_is_that_of_the_velocities_from_the_state_on():
     runner.begin(start)
     for look in range(1, 20_001):
         runner.run(0.05 * look)
-        velocity.append(runner.instant().velocity)
+        velocity.append(runner.state().velocity)
     one, _, other = np.transpose(velocity)
     assert along_attractor(model, start).velocity_correlation == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)

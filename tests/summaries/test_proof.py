@@ -11,12 +11,12 @@ import pytest
 from flint import arb
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import flow
-from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.proof.balls import ProofError
 from burridge_knopoff.proof.scope import is_covered
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.summaries import proof
 from burridge_knopoff.summaries.results import write_results
 from tests.refused import refused
@@ -38,14 +38,14 @@ def linearized(found):
 @pytest.mark.parametrize("model", [PAPER, NONLINEAR], ids=["linearized", "nonlinear"])
 def test_every_interval_is_about_the_number_of_the_double_code(found, model):
     family, of_law = synchronized_orbits(model), found.sel(law=model.law.name)
-    a_c = critical_a(edges_of(family))
+    a_c = critical_a(bifurcations_of(family))
     for name, a in (("given", 0.08), ("critical", a_c)):
         orbit, one = family.at(a), of_law.sel(orbit=name)
         assert one["a"].values == pytest.approx([a, a], abs=2e-15)
         assert one["period"].values == pytest.approx([orbit.period] * 2, abs=TOLD)
         at = {(block, kind): time for time, block, kind in orbit.events}
         first = at[1, 1]
-        state = flow(orbit.model, orbit.reference, first)[0].instant().position[:2]
+        state = flow(orbit.model, orbit.reference, first)[0].state().position[:2]
         assert one["position"].values == pytest.approx(np.stack([state] * 2, axis=1), abs=TOLD)
         times = [*((at[event] - first) % orbit.period for event in ((0, 1), (0, 0), (1, 0))), orbit.period]
         assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLD)

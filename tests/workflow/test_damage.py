@@ -18,7 +18,7 @@ from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.seal import BadFile, read_sealed, write_sealed
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.study import load_study
-from burridge_knopoff.summaries import agreement, bifurcation, lyapunov, mean_distance, solvers, stick_slip
+from burridge_knopoff.summaries import agreement, bifurcation_diagram, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
 from tests.workflow.conftest import TINY, copied
 from tests.workflow.faults import check_end, failures
@@ -115,7 +115,7 @@ def readers(results: Path):
     others = [open_summary(results / f"summary/{name}.nc").sel(a=[0.2]) for name in ("lyapunov", "attractors")]
     return {
         "mean_distance": lambda grid: mean_distance.summarize(grid, 1e-6),
-        "bifurcation": bifurcation.summarize,
+        "bifurcation_diagram": bifurcation_diagram.summarize,
         "lyapunov": lambda grid: lyapunov.summarize(grid, 3, 1e-6, motion),
         "agreement": lambda grid: agreement.summarize(
             grid, *others, synchronization_threshold=1e-6, agreement=compared
@@ -236,7 +236,7 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     points = read_sealed(results / "summary/mean_distance.nc")[1]["points"]
     foreign = {
         "basins/linearized/a0.0800/tile1.nc": lambda path: shutil.copy(path.with_name("tile0.nc"), path),
-        "edges/nonlinear.nc": lambda path: shutil.copy(path.with_name("linearized.nc"), path),
+        "bifurcations/nonlinear.nc": lambda path: shutil.copy(path.with_name("linearized.nc"), path),
         "summary/mean_distance.nc": lambda path: resealed(path, points={**points, "v": 0.3}),
         "summary/stick_slip.nc": lambda path: shutil.copy(
             limited.folder / "results/limits/summary/stick_slip.nc", path
@@ -245,14 +245,17 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     for name, change in foreign.items():
         as_old_as(results / name, change)
     assert {str(finding.path.relative_to(results)) for finding in check_study(results).findings} == foreign.keys()
-    rules = ("basins", "edges", "figure_mean_distance", "figure_stick_slip")
+    rules = ("basins", "bifurcations", "figure_mean_distance", "figure_stick_slip")
     run = copy.run("-R", *rules, "--until", *rules)
     assert run.returncode == 1
     reasons = failures(run.stderr)
     said = "\n".join(reasons.values())
     tiles = "got basins/linearized/a0.0800/tile0.nc, expected basins/linearized/a0.0800/tile1.nc"
     assert f"tile1.nc: is another file: {tiles}; remake it" in said
-    assert "nonlinear.nc: is another file: got edges/linearized.nc, expected edges/nonlinear.nc; remake it" in said
+    assert (
+        "nonlinear.nc: is another file: got bifurcations/linearized.nc, expected bifurcations/nonlinear.nc; remake it"
+        in said
+    )
     assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1; remake it" in said
     assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*; remake it", said)
     remade(copy, reasons.values())
@@ -287,7 +290,7 @@ def test_touching_hides_nothing(copy):
     assert reasons["mean_distance.nc"] == reasons["lyapunov.nc"] == words
     # What needs the key, and what is made from that; no more.
     assert reasons.keys() >= {"linearized.nc", "tile0.nc", "two_blocks.nc", "claims.json", "report.html", "basins.png"}
-    assert not reasons.keys() & {"bifurcation.nc", "orbits.nc", "stick_slip.nc", "proof.nc", "a0.2000.nc"}
+    assert not reasons.keys() & {"bifurcation_diagram.nc", "orbits.nc", "stick_slip.nc", "proof.nc", "a0.2000.nc"}
     for read in (open_summary, open_result):
         with pytest.raises(BadFile, match=words):
             read(results / "summary/mean_distance.nc")

@@ -21,7 +21,7 @@ BASE = {
     "window": 60,
     "batches": 2,
     "attractors": {
-        **{"samples": 2, "fraction_width": 0.4, "pushes": 4},
+        **{"samples": 2, "fraction_width": 0.4, "perturbations": 4},
         **{"transient": 100, "window": 100, "time_limit": 500, "lifetime": 500},
     },
     "refine": {"resolution": 1},
@@ -54,7 +54,7 @@ ENDS = {
     "trajectory": [0, 1000],
     "events": ["all"],
     "event_window": [0],
-    "without": [["attractors"], ["edges"], ["basins", "phases"], ["solvers", "two_blocks"], ["claims"]],
+    "without": [["attractors"], ["bifurcations"], ["basins", "phases"], ["solvers", "two_blocks"], ["claims"]],
     "motion": [{"longest_period": 1}, {"zero_exponent": 0.0, "chaotic_exponent": 0.0}],
     "basins": [{"pixels": 1, "pairs": 0, "tiles": 1}, {"a": {}}],
 }

@@ -17,9 +17,9 @@ CATEGORIES = {
     "Claims": ["claims.csv"],
     "Model": ["equilibrium.png", "friction_laws.png", "sketch.png"],
     "Runs": ["distance.png", "motion_minus.png", "motion_plus.png", "stick_slip.png"],
-    "Synchronization": ["bifurcation.png", "lyapunov.png", "mean_distance.png", "orbits.png", "proof.txt"],
+    "Synchronization": ["bifurcation_diagram.png", "lyapunov.png", "mean_distance.png", "orbits.png", "proof.txt"],
     "Attractors": [
-        *("attractors.txt", "basin_fractions.png", "basins.png", "basins.txt", "edges.png", "edges.txt"),
+        *("attractors.txt", "basin_fractions.png", "basins.png", "basins.txt", "bifurcations.png", "bifurcations.txt"),
         *("phases.png", "rotation.png", "windows.png"),
     ],
     "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],

@@ -13,7 +13,7 @@ from burridge_knopoff.check.leftovers import leftovers
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.synchronized import synchronized_orbits
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study, load_study
 
@@ -57,9 +57,9 @@ def test_mean_distance_summary(results):
 
 
 def test_bifurcation_summary(results):
-    from burridge_knopoff.summaries.bifurcation import section_points
+    from burridge_knopoff.summaries.bifurcation_diagram import section_points
 
-    with xr.open_dataset(results / "summary" / "bifurcation.nc") as summary:
+    with xr.open_dataset(results / "summary" / "bifurcation_diagram.nc") as summary:
         assert summary["crossing_count"].attrs["sample_dimension"] == "crossing"
         assert summary["crossing_count"].sum() == summary.sizes["crossing"]
         run = simulate("nonlinear", 0.22, "minus", **OPTIONS)
@@ -195,8 +195,26 @@ def test_solvers_summary(results):
 @pytest.mark.parametrize(
     "name",
     [
-        *("friction_laws", "mean_distance", "bifurcation", "distance", "motion_minus", "motion_plus", "agreement"),
-        *("lyapunov", "basins", "basin_fractions", "edges", "orbits", "phases", "stick_slip", "equilibrium", "solvers"),
+        *(
+            "friction_laws",
+            "mean_distance",
+            "bifurcation_diagram",
+            "distance",
+            "motion_minus",
+            "motion_plus",
+            "agreement",
+        ),
+        *(
+            "lyapunov",
+            "basins",
+            "basin_fractions",
+            "bifurcations",
+            "orbits",
+            "phases",
+            "stick_slip",
+            "equilibrium",
+            "solvers",
+        ),
     ],
 )
 def test_figures_are_pictures(results, name):
@@ -212,7 +230,7 @@ def test_figures_are_pictures(results, name):
 def test_logs_and_benchmarks(results):
     for folder, suffix in (("logs", ".log"), ("benchmarks", ".tsv")):
         names = {path.name for path in (results / folder).glob(f"*{suffix}")}
-        assert {f"{rule}{suffix}" for rule in ("mean_distance", "agreement", "figure_bifurcation")} <= names
+        assert {f"{rule}{suffix}" for rule in ("mean_distance", "agreement", "figure_bifurcation_diagram")} <= names
         assert len(list((results / folder / "simulate").rglob(f"*{suffix}"))) == 16
     assert all(path.read_text() == "" for path in (results / "logs" / "simulate").rglob("*.log"))
 
@@ -239,10 +257,10 @@ def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, na
     [
         (
             "attractors",
-            "(figure_)?(attractors|refined|rotation|windows|edges|basins|basin_fractions|bifurcation_refined|"
+            "(figure_)?(attractors|refined|rotation|windows|bifurcations|basins|basin_fractions|bifurcation_diagram_refined|"
             "branches_reached|phases)",
         ),
-        ("edges", "(figure_)?edges"),
+        ("bifurcations", "(figure_)?bifurcations"),
         ("solvers", "(figure_)?solvers|simulate_solver"),
         # Longer chains need the summary.
         ("two_blocks", "figure_two_blocks|figures/two_blocks"),

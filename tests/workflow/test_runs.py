@@ -98,7 +98,17 @@ def test_stages_that_the_config_leaves_out(tmp_path):
     study = Study(tmp_path, f"{TINY}\nwithout: [attractors, proof, claims]\nlaws: {{linearized: {{}}}}")
     output = study.ok("-n")
     rules = set(jobs(output))
-    words = ("attractors", "basin", "edges", "phases", "proof", "claims", "two_blocks", "windows", "figure_agreement")
+    words = (
+        "attractors",
+        "basin",
+        "bifurcations",
+        "phases",
+        "proof",
+        "claims",
+        "two_blocks",
+        "windows",
+        "figure_agreement",
+    )
     assert not [rule for rule in rules for word in words if word in rule]
     assert {"simulate_solver", "agreement", "figure_mean_distance", "figure_orbits", "report"} <= rules
     assert re.search(r"^a run takes .* on 2 cores: .* of CPU time, and \d+ MB of disk$", output, re.MULTILINE)
@@ -108,7 +118,7 @@ def test_stages_that_the_config_leaves_out(tmp_path):
 
 def test_stage_targets(study):
     assert set(jobs(study.ok("points", "-n"))) == {"simulate", "points"}
-    assert {"simulate", "mean_distance", "bifurcation", "agreement"} < set(jobs(study.ok("summary", "-n")))
+    assert {"simulate", "mean_distance", "bifurcation_diagram", "agreement"} < set(jobs(study.ok("summary", "-n")))
     assert "figure_agreement" in jobs(study.ok("figures", "-n"))
 
 
@@ -129,7 +139,7 @@ def test_a_key_of_the_summaries_reruns_no_simulation(copy):
     copy.config.write_text(TINY + "synchronization_threshold: 0.01\n")
     planned = jobs(copy.ok("-n"))
     assert "simulate" not in planned
-    assert "bifurcation" not in planned
+    assert "bifurcation_diagram" not in planned
     assert {"mean_distance", "agreement", "figure_mean_distance", "figure_agreement"} <= set(planned)
 
 
@@ -146,16 +156,16 @@ def test_a_wider_grid_keeps_the_points_that_are_there(copy):
 def test_a_wider_grid_is_searched_where_it_is_new(copy):
     """What the first run has kept is taken again, and what no value needs any more goes."""
     law, values = "linearized", 4
-    folder = copy.folder / f".snakemake/kept/tiny/attractors {law}"
+    folder = copy.folder / f".snakemake/study_cache/tiny/attractors {law}"
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
     before = {path.name for path in folder.rglob("searched*/*")}
-    copy.ok(f"results/tiny/edges/{law}.nc")
-    search, edges = (
-        (copy.folder / f"results/tiny/logs/{stage}/{law}.log").read_text() for stage in ("attractors", "edges")
+    copy.ok(f"results/tiny/bifurcations/{law}.nc")
+    search, bifurcations = (
+        (copy.folder / f"results/tiny/logs/{stage}/{law}.log").read_text() for stage in ("attractors", "bifurcations")
     )
     assert f"searched from states: {values + 1}, " in search
     assert f"; {values} kept from a run before" in search.splitlines()[0]
-    assert re.search(r"closed orbits: .*; [1-9]\d* kept from a run before", edges)
+    assert re.search(r"closed orbits: .*; [1-9]\d* kept from a run before", bifurcations)
     after = {path.name for path in folder.rglob("searched*/*")}
     assert before < after
     assert len(after) == values + 1

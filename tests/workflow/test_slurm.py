@@ -171,7 +171,7 @@ def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
     assert re.search(rf"Slurm job {cancelled} \S+: CANCELLED, ", log)
     # Of the long jobs each has the cores that the profile asks for, of all others one.
     cores = {job["Name"].rpartition("-")[0]: job["ProcCnt"] for job in cluster.ended()}
-    shared = {"attractors_of_law", "edges_of_law", "two_blocks", "phases_of_law"}
+    shared = {"attractors_of_law", "bifurcations_of_law", "two_blocks", "phases_of_law"}
     assert {name for name, count in cores.items() if count == "8"} == shared
     assert set(cores.values()) == {"1", "8"}
     assert "Nothing to be done" in study.ok("-n")

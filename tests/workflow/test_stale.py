@@ -14,17 +14,33 @@ from tests.workflow.test_runs import jobs
 
 #: Rules by stage; an edit makes some of them run again, and all that needs their output.
 POINTS = ("simulate", "simulate_solver")
-OF_POINTS = ("mean_distance", "bifurcation", "lyapunov", "agreement", "stick_slip")
+OF_POINTS = ("mean_distance", "bifurcation_diagram", "lyapunov", "agreement", "stick_slip")
 SUMMARIES = (*OF_POINTS, "solvers")
 STABILITY = (
-    *("attractors_of_law", "basin_tile", "basin_pairs", "edges_of_law", "phases_of_law", "orbits", "equilibrium"),
+    *(
+        "attractors_of_law",
+        "basin_tile",
+        "basin_pairs",
+        "bifurcations_of_law",
+        "phases_of_law",
+        "orbits",
+        "equilibrium",
+    ),
     *("proof", "two_blocks"),
 )
 FIGURES = tuple(
     f"figure_{name}"
     for name in (
-        *("friction_laws", "mean_distance", "bifurcation", "distance", "lyapunov", "agreement", "basin_fractions"),
-        *("basins", "edges", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion", "phases"),
+        *(
+            "friction_laws",
+            "mean_distance",
+            "bifurcation_diagram",
+            "distance",
+            "lyapunov",
+            "agreement",
+            "basin_fractions",
+        ),
+        *("basins", "bifurcations", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion", "phases"),
         *("windows", "rotation", "sketch"),
     )
 )
@@ -80,7 +96,7 @@ NOTHING = (
     ("kernel/series.py", COMMENT),
     ("kernel/modes.py", DOCSTRING),
     ("kernel/series.pxd", COMMENT),
-    ("stability/attractors.py", DOCSTRING),
+    ("attractors/search.py", DOCSTRING),
     ("figures/style.py", COMMENT),
     ("cli/simulate.py", CODE),
     ("provenance/files.py", CODE),
@@ -101,11 +117,11 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
     [
         ("running/runner.py", (*POINTS, *STABILITY, *SUMMARIES)),
         ("dataset/point.py", POINTS),
-        ("stability/attractors.py", ("attractors_of_law", "two_blocks")),
-        ("stability/chains.py", ()),
-        ("stability/basins.py", ("basin_tile", "basin_pairs", "basins", "phases_of_law", "phases")),
-        ("stability/phases.py", ("phases_of_law", "phases")),
-        ("stability/motion.py", ("attractors_of_law", "lyapunov", "agreement", "two_blocks")),
+        ("attractors/search.py", ("attractors_of_law", "two_blocks")),
+        ("motion/chain_synchronization.py", ()),
+        ("basins/plane.py", ("basin_tile", "basin_pairs", "basins", "phases_of_law", "phases")),
+        ("basins/initial_phases.py", ("phases_of_law", "phases")),
+        ("motion/kind.py", ("attractors_of_law", "lyapunov", "agreement", "two_blocks")),
         ("summaries/mean_distance.py", ("mean_distance",)),
         ("summaries/orbits.py", ("orbits",)),
         ("figures/lyapunov.py", ("figure_lyapunov",)),

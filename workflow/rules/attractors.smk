@@ -1,6 +1,9 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
 
-OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined")]
+OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined", "returns")]
+
+# Their section returns, by which states are labelled.
+RETURNS = OF_LAW[2]
 
 
 # What decides them under one law, but for the values of a.
@@ -32,11 +35,11 @@ rule attractors_of_law:
         model=lambda wildcards: model_config([wildcards.law]),
         sources=sources("attractors_of_law"),
         seals=seals,
-        kept=lambda wildcards: kept_folder(
+        kept=lambda wildcards: cache_folder(
             f"attractors {wildcards.law}",
             SEARCH_PARAMS,
             model_config([wildcards.law]),
-            source_fingerprint("burridge_knopoff.stability.continuation"),
+            source_fingerprint("burridge_knopoff.continuation.along_a"),
         ),
     message:
         "attractors of the {wildcards.law} law along a"

@@ -6,7 +6,6 @@ PLANE_STATE = STUDY.config["basins"]["initial"]
 BASIN_PARAMS = {
     "state": {"name": PLANE_STATE, **STUDY.config["initial"][PLANE_STATE]},
     **keys("start", "attractors"),
-    "motion": motion_config(),
 }
 
 
@@ -14,6 +13,7 @@ rule basin_tile:
     """Map one tile of the basins of attraction over a plane of initial states."""
     input:
         f"{SUMMARY}/attractors.nc",
+        RETURNS,
     output:
         TILE,
     log:

@@ -7,6 +7,7 @@ rule phases_of_law:
     """Find out which initial phases of the end blocks lead to synchrony under one friction law."""
     input:
         f"{SUMMARY}/attractors.nc",
+        RETURNS,
     output:
         f"{RESULTS}/phases/{{law}}.nc",
     log:
@@ -24,7 +25,6 @@ rule phases_of_law:
         grid=PHASES["a"],
         phases={key: value for key, value in PHASES.items() if key != "a"},
         model=lambda wildcards: model_config([wildcards.law]),
-        motion=motion_config(),
         sources=sources("phases_of_law"),
         seals=seals,
     message:

@@ -256,12 +256,12 @@ def motion_config():
     }
 
 
-def kept_folder(what, *decides):
+def cache_folder(what, *decides):
     """Return where a long job keeps what it finds, for a run with other values of a, or after a kill.
 
     decides : all that decides it but the values of a
     """
-    return f".snakemake/kept/{STUDY.name}/{what}/{identity(json.dumps(decides))}"
+    return f".snakemake/study_cache/{STUDY.name}/{what}/{identity(json.dumps(decides))}"
 
 
 def pictures(figures):

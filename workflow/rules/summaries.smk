@@ -14,7 +14,7 @@ SUMMARIES = {
         "of": "points",
         "keys": ["synchronization_threshold"],
     },
-    "bifurcation": {
+    "bifurcation_diagram": {
         "docstring": "Collect the section points of all runs for the bifurcation diagrams.",
         "of": "points",
         "mem_mb": 1000,

@@ -1,5 +1,5 @@
 # Two blocks under each law: a statement of the paper on them is judged in every study.
-from burridge_knopoff.stability.settings import OF_GIVEN_STATES
+from burridge_knopoff.attractors.settings import OF_GIVEN_STATES
 
 CHAINS = STUDY.config["chains"]
 

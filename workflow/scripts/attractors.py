@@ -6,8 +6,8 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 logging.basicConfig(level=logging.INFO, format="%(message)s")
 
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.stability.settings import SearchSettings
 from burridge_knopoff.study.model import models_of
 from burridge_knopoff.summaries import all_laws, refined, rotation
 from burridge_knopoff.summaries.results import write_results

@@ -6,9 +6,11 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 logging.basicConfig(level=logging.INFO, format="%(message)s")
 
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.stability.continuation import continue_attractors
-from burridge_knopoff.stability.settings import MotionSettings, Refine, SearchSettings
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.study.model import model_of
 
 params, law = snakemake.params, snakemake.wildcards.law
@@ -20,10 +22,12 @@ share = {"processes": snakemake.resources.cpus_per_task, "folder": params.kept}
 found = continue_attractors(models, settings, motion, refine, starts=initial, start=params.start, **share)
 
 # Not before: the processes that the search is shared out among would each hold what writes files, 40 MB.
+from burridge_knopoff.attractors.stored_returns import returns_of_law
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries import attractors, refined
 
 on_grid = attractors.one_law(found, initial, settings, motion, params.start)
 between = refined.one_law(found, settings, motion, refine, params.start)
-for dataset, (path, about) in zip((on_grid, between), params.seals.items(), strict=True):
+returns = returns_of_law(models, [found.rows(k) for k in found.grid], on_grid.attrs)
+for dataset, (path, about) in zip((on_grid, between, returns), params.seals.items(), strict=True):
     write_summary(dataset, path, about)

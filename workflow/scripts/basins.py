@@ -4,9 +4,10 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.stability.settings import BasinSettings, SearchSettings
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries import basins
 from burridge_knopoff.summaries.results import write_results

@@ -6,8 +6,10 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 logging.basicConfig(level=logging.INFO, format="%(message)s")
 
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.stability.settings import MotionSettings, Sample, SearchSettings
+from burridge_knopoff.motion.chain_settings import Sample
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.two_blocks import BLOCKS, run_settings, summarize
 

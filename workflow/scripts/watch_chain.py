@@ -5,7 +5,7 @@ import sys
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.stability.settings import Sample, Watch
+from burridge_knopoff.motion.chain_settings import Sample, Watch
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.chains import chain_dataset
 

@@ -86,9 +86,10 @@ def _other_files(study: Study) -> Iterator[Named]:
     tiles = [{**one, "tile": str(tile)} for one in maps for tile in range(study.config["basins"]["tiles"])]
     for form, known in (("basins/{law}/a{a}/pairs", maps), ("basins/{law}/a{a}/tile{tile}", tiles)):
         yield [f"{form}.nc"], form, known
-    for folder in ("attractors", "refined", "edges", "phases"):
-        laws = study.laws if folder in study.stage_summaries else ()
-        yield [f"{folder}/{{law}}.nc"], f"{_STAGE_OF.get(folder, folder)}/{{law}}", [{"law": law} for law in laws]
+    for folder in ("attractors", "refined", "returns", "bifurcations", "phases"):
+        stage = "attractors" if folder == "returns" else folder
+        laws = study.laws if stage in study.stage_summaries else ()
+        yield [f"{folder}/{{law}}.nc"], f"{_STAGE_OF.get(stage, stage)}/{{law}}", [{"law": law} for law in laws]
     numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
     yield ["chains/blocks{blocks}.nc"], "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
     absent = study.absent_summaries

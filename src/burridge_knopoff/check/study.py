@@ -13,10 +13,10 @@ from burridge_knopoff.check.leftovers import leftovers, run_files, study_files, 
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile, check_seal
+from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.study.words import counted
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
 

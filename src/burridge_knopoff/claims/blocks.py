@@ -14,7 +14,7 @@ from burridge_knopoff.claims.verdict import (
     by_share,
     known_share,
 )
-from burridge_knopoff.stability.motion import CHAOS, MotionKind
+from burridge_knopoff.motion.kind import CHAOS, MotionKind
 
 
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:

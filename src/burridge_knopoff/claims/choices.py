@@ -14,8 +14,8 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.stability.motion import MotionKind, motion_with
-from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.motion.kind import MotionKind, motion_with
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.summaries.judgement import compare
 
 FACTORS = (0.5, 2.0)

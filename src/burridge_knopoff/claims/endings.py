@@ -10,8 +10,8 @@ import numpy as np
 
 from burridge_knopoff.claims.conventions import judge_shares
 from burridge_knopoff.claims.verdict import HOLDS, LOOSELY, Measured, NotTestableError, Range
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.study.words import span
+from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.study.formatting import span
 
 if TYPE_CHECKING:
     import xarray

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.attractors.table import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.verdict import (
@@ -23,17 +24,16 @@ from burridge_knopoff.claims.verdict import (
     known_share,
     worst,
 )
-from burridge_knopoff.stability.motion import (
+from burridge_knopoff.motion.kind import (
     CHAOS,
     REGULAR,
     MotionKind,
     with_one_chaos,
     zero_exponents,
 )
-from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.plateaux import plateaux
-from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
     import xarray

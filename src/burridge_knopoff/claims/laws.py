@@ -24,8 +24,8 @@ from burridge_knopoff.claims.verdict import (
     known_share,
 )
 from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.motion.kind import MotionKind, same_result
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.stability.motion import MotionKind, same_result
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.judgement import same_mean
 

@@ -18,11 +18,11 @@ from burridge_knopoff.claims.verdict import (
     share_is_decided,
     worst,
 )
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
-from burridge_knopoff.stability.motion import CHAOS, REGULAR, MotionKind
-from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.continuation.branch_changes import Change
+from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.branch_changes import Change
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 
 if TYPE_CHECKING:
@@ -83,29 +83,31 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
 
     On a closed orbit the blocks stop in a ratio of whole numbers: they are locked. On a torus they are not. What a
     branch is like before it turns chaotic is taken at the value of a next below. Chaos that was there before is no
-    beginning of chaos, whether it died or a branch ended on it, nor is an edge that a branch passes without a change. A
-    torus may be chaos that is weaker than the search resolves, or lock between the values of a, which the verdict says.
-    A closed orbit that is too long to be followed to the edge, as in a tongue of a torus, is counted as one as well:
-    another value of a may show the torus. A closer search finds more places, so that those of a study are a sample: the
-    claim fails if the 95 % interval of the share lies below `loose_share`.
+    beginning of chaos, whether it died or a branch ended on it. Nor is a bifurcation that a branch passes without a
+    change. A torus may be chaos that is weaker than the search resolves, or lock between the values of a, which the
+    verdict says. A closed orbit that is too long to be followed to the bifurcation, as in a tongue of a torus, counts
+    as one as well: another value of a may show the torus. A closer search finds more places, so that those of a study
+    are a sample: the claim fails if the 95 % interval of the share lies below `loose_share`.
 
     loose_share : share of the beginnings of chaos from which on the claim holds loosely
     """
     evidence.check_blocks()
-    edges = evidence.summary("edges")
-    laws = edges.attrs["laws"].split()
+    bifurcations = evidence.summary("bifurcations")
+    laws = bifurcations.attrs["laws"].split()
     verdicts, measured, texts, others = [], [], [], []
     for name in PAPER_LAWS:
         if name not in laws:
             raise NotTestableError(f"the study has no {name} law")
-        own = edges["law"].values == laws.index(name)
-        before, after, kinds = (edges[key].values for key in ("motion_before", "motion_after", "kind"))
-        changes = own & (edges["change"].values != Change.PASSED) & np.isin(after, CHAOS)
-        changes &= ~_chaotic_before(edges, evidence.summary("refined").sel(law=name))
+        own = bifurcations["law"].values == laws.index(name)
+        before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
+        changes = own & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
+        changes &= ~_chaotic_before(bifurcations, evidence.summary("refined").sel(law=name))
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
         unknown = changes & (before == MotionKind.UNDETERMINED)
         places = {
-            (float(edges["grid_low"].values[k]), int(edges["to_branch"].values[k])): _doubt(before[k], kinds[k])
+            (float(bifurcations["grid_low"].values[k]), int(bifurcations["to_branch"].values[k])): _doubt(
+                before[k], kinds[k]
+            )
             for k in np.flatnonzero(onset)
         }
         if not places:
@@ -127,11 +129,11 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         verdicts.append(by_share(share, loose_share))
         texts.append(f"{count['']} of {len(places)} ({name})")
         measured.append(Measured(f"share of the beginnings of chaos at which a closed orbit ends, {name}", share))
-        ends = Counter(int(edges["kind"].values[k]) for k in np.flatnonzero(onset))
+        ends = Counter(int(bifurcations["kind"].values[k]) for k in np.flatnonzero(onset))
         for kind, often in sorted(ends.items()):
-            measured.append(Measured(f"edges there, {EdgeKind(kind).name.lower()}, {name}", often))
+            measured.append(Measured(f"bifurcations there, {BifurcationKind(kind).name.lower()}, {name}", often))
         if unknown.any():
-            values = np.unique(edges["a"].values[unknown])
+            values = np.unique(bifurcations["a"].values[unknown])
             others.append(f"what comes before is not known at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")
         for doubt in (TORUS, UNFOLLOWED):
             if there := sorted(place for (place, _), one in places.items() if one == doubt):
@@ -143,19 +145,19 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     return Verdict(worst(verdicts), reason, measured, "; ".join(others))
 
 
-def _doubt(before: int, edge: int) -> str:
-    """Return what may precede chaos at an edge in place of a closed orbit; nothing where one does."""
+def _doubt(before: int, bifurcation: int) -> str:
+    """Return what may precede chaos at a bifurcation in place of a closed orbit; nothing where one does."""
     if before == MotionKind.QUASIPERIODIC:
         return TORUS
-    return UNFOLLOWED if edge == EdgeKind.UNDETERMINED else ""
+    return UNFOLLOWED if bifurcation == BifurcationKind.UNDETERMINED else ""
 
 
-def _chaotic_before(edges: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
-    """Tell, for each edge, whether a branch ends there on another one that was chaotic already, shape (edge,)."""
+def _chaotic_before(bifurcations: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
+    """Tell at which bifurcations a branch ends on another one that was chaotic already, shape (bifurcation,)."""
     a, kind = refined["a"].values, refined["kind"].values
-    result = np.zeros(edges.sizes["edge"], dtype=bool)
-    for k in np.flatnonzero(edges["change"].values == Change.END):
-        there = refined["branch"].values == edges["to_branch"].values[k]
-        below = np.flatnonzero(there.any(axis=1) & (a <= edges["grid_low"].values[k]))
+    result = np.zeros(bifurcations.sizes["bifurcation"], dtype=bool)
+    for k in np.flatnonzero(bifurcations["change"].values == Change.END):
+        there = refined["branch"].values == bifurcations["to_branch"].values[k]
+        below = np.flatnonzero(there.any(axis=1) & (a <= bifurcations["grid_low"].values[k]))
         result[k] = len(below) > 0 and bool(np.isin(kind[below[-1]][there[below[-1]]], CHAOS).any())
     return result

@@ -21,8 +21,8 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.study.words import with_error
 
 
 def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.attractors.table import reached
 from burridge_knopoff.claims.conventions import by_readings, judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
 from burridge_knopoff.claims.verdict import (
@@ -25,9 +26,8 @@ from burridge_knopoff.claims.verdict import (
     worst,
 )
 from burridge_knopoff.laws import law_of
+from burridge_knopoff.study.formatting import span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.study.words import span, with_error
-from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
     import xarray

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.attractors.table import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.kinds import CLOSED
@@ -21,8 +22,7 @@ from burridge_knopoff.claims.verdict import (
     is_decided,
     known_share,
 )
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.summaries.reached import reached
+from burridge_knopoff.motion.kind import MotionKind
 
 if TYPE_CHECKING:
     import xarray
@@ -159,9 +159,9 @@ def line_returns(
     """
     for name in initial:
         evidence.of_state("lyapunov", name)
-    from burridge_knopoff.summaries.bifurcation import section_points
+    from burridge_knopoff.summaries.bifurcation_diagram import section_points
 
-    bifurcation = evidence.summary("bifurcation")
+    bifurcation = evidence.summary("bifurcation_diagram")
     (line_a, line), (grid, velocity) = (section_points(bifurcation, law, name, 1) for name in initial)
     below = line_a[(line_a > 0.0) & (line_a < claimed)]
     values = np.unique(grid[grid > 0.0])
@@ -194,14 +194,14 @@ def _sections(
     evidence: Evidence, initial: tuple[str, str], law: str, a: Range
 ) -> tuple[np.ndarray, list[np.ndarray], list[np.ndarray]]:
     """Return the values of a in a range at which the runs from two states completed, and the section points of both."""
-    from burridge_knopoff.summaries.bifurcation import section_points
+    from burridge_knopoff.summaries.bifurcation_diagram import section_points
 
     completed = [evidence.of_state("lyapunov", name).sel(law=law)["status"].notnull() for name in initial]
     grid = completed[0]["a"].values
     grid = grid[a.choose(grid) & completed[0].values & completed[1].values]
     if not len(grid):
         raise NotTestableError(f"no run completed with {a}")
-    points = [section_points(evidence.summary("bifurcation"), law, name, 1) for name in initial]
+    points = [section_points(evidence.summary("bifurcation_diagram"), law, name, 1) for name in initial]
     first, second = ([velocity[at == value] for value in grid] for at, velocity in points)
     return grid, first, second
 

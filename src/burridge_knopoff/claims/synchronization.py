@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.attractors.table import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
@@ -23,9 +24,8 @@ from burridge_knopoff.claims.verdict import (
     is_decided,
     worst,
 )
+from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.study.words import with_error
-from burridge_knopoff.summaries.reached import reached
 
 if TYPE_CHECKING:
     import xarray

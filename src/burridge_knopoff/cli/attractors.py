@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.cli.options import (
     add,
     add_model,
@@ -17,8 +18,8 @@ from burridge_knopoff.cli.options import (
     settings_of,
     state_of,
 )
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
 
 DESCRIPTION = """Look for all attractors of a model from initial states drawn in a box, and say what each is.
 What no drawn state reaches is not found; docs/attractors.md tells how the search works."""
@@ -45,7 +46,7 @@ def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> 
     add(search, Settings, "start")
     names = ("samples", *more, "seed", "transient", "window", "time_limit", "resolution")
     add(search, SearchSettings, *names, **defaults)
-    add(search, SearchSettings, "pushes", "lifetime")
+    add(search, SearchSettings, "perturbations", "lifetime")
     add(search, SearchSettings, "position", "velocity", suffix="_box")
     add(parser.add_argument_group("kinds of motion"), MotionSettings)
 
@@ -59,12 +60,12 @@ def run(options: argparse.Namespace) -> int:
     """Look for attractors, and print a line for each."""
     from burridge_knopoff.dataset.summary import write_summary
     from burridge_knopoff.show.attractors import attractor_table, called
-    from burridge_knopoff.summaries.coexisting import coexisting_attractors
+    from burridge_knopoff.summaries.multistability import coexisting_attractors
 
     state, search = state_of(options), search_of(options)
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     starts = [] if state is None else [state]
-    found = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
+    found, _ = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
     count, drawn = int((found["branch"] >= 0).sum()), int(found["sample_count"].sum())
     print(f"{said_of(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
     names = ("", "_low", "_high")

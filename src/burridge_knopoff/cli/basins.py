@@ -6,6 +6,7 @@ import argparse
 import os
 from dataclasses import asdict
 
+from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.cli.attractors import add_search, search_of
 from burridge_knopoff.cli.options import (
     add,
@@ -18,7 +19,7 @@ from burridge_knopoff.cli.options import (
     state_of,
 )
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.values import shown
 
 DESCRIPTION = """Map which attractor each state of a plane of initial states reaches, over U_1(0) and U_N(0).

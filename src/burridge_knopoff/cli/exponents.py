@@ -6,10 +6,10 @@ import argparse
 
 from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
-from burridge_knopoff.stability.settings import MotionSettings
-from burridge_knopoff.study.words import plain, with_error
+from burridge_knopoff.study.formatting import plain, with_error
 
 DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and tell its kind. In a chain that is
 its own mirror image also the transverse exponent: mirror blocks near each other synchronize where it is negative."""
@@ -33,10 +33,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run, and print the exponents."""
     from burridge_knopoff.dataset.point import write_point
+    from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, WINDOW, transverse_exponent
+    from burridge_knopoff.motion.kind import motion_of_run, words_of
     from burridge_knopoff.running import simulation
-    from burridge_knopoff.show.words import table
-    from burridge_knopoff.stability.chains import ALIGNMENT, WINDOW, transverse_exponent
-    from burridge_knopoff.stability.motion import motion_of_run, words_of
+    from burridge_knopoff.show.formatting import table
 
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of
-from burridge_knopoff.library.given import OWN
+from burridge_knopoff.library.coercion import OWN
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state

@@ -60,22 +60,22 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _synchronized(model: Model) -> PeriodicOrbit:
-    from burridge_knopoff.stability.synchronized import synchronized_orbit
+    from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
 
     return synchronized_orbit(model)
 
 
 def _reached(model: Model, state: InitialState, start: str, settling: float) -> PeriodicOrbit:
-    from burridge_knopoff.stability.closed_motion import closed_motion
+    from burridge_knopoff.motion.limit_cycle import limit_cycle
 
-    return closed_motion(model, model.begin(state, start), settling)
+    return limit_cycle(model, model.begin(state, start), settling)
 
 
 def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Return an orbit in lines, at most so many of its events among them."""
     from burridge_knopoff.periodic_orbits.floquet import multipliers
-    from burridge_knopoff.show.words import table
-    from burridge_knopoff.study.words import counted
+    from burridge_knopoff.show.formatting import table
+    from burridge_knopoff.study.formatting import counted
 
     found = multipliers(orbit)
     stability = f"unstable: {counted(found.unstable, 'multiplier')}" if found.unstable else "stable: no multiplier"
@@ -88,7 +88,7 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     if len(found.breaking):
         lines.append(f"             of perturbations that part mirror blocks: {_complex(found.breaking**found.power)}")
     lines += [
-        f"stops        {' '.join(map(str, orbit.signature))} of each block in a period",
+        f"stops        {' '.join(map(str, orbit.stop_counts))} of each block in a period",
         f"residual     {orbit.residual:.1e} after a return",
         "",
     ]

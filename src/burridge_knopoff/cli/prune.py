@@ -23,8 +23,8 @@ def run(options: argparse.Namespace) -> int:
     """Delete what is left over, and print it."""
     from burridge_knopoff.check.leftovers import delete, leftovers
     from burridge_knopoff.check.study import changed
+    from burridge_knopoff.study.formatting import counted
     from burridge_knopoff.study.recorded import recorded_study
-    from burridge_knopoff.study.words import counted
 
     studies = []
     for folder in map(Path, options.results):

@@ -12,7 +12,7 @@ from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
-from burridge_knopoff.study.words import plain, with_error
+from burridge_knopoff.study.formatting import plain, with_error
 
 if TYPE_CHECKING:
     from burridge_knopoff.running.trajectory import Trajectory

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from burridge_knopoff.attractors.table import branch_names
 from burridge_knopoff.figures.branches import map_colors, side_color
 from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
-from burridge_knopoff.summaries.slots import branch_names
 
 TITLE = "Basins of attraction"
 CATEGORY = "Attractors"

@@ -8,8 +8,8 @@ from itertools import cycle
 import numpy as np
 import xarray
 
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.summaries.slots import branch_names
+from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.model.sampling import fraction_interval
 
 OTHER_COLOR = "#999999"
 OTHERS = "other branches"

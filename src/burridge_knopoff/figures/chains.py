@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_below, legend_entries, styled
-from burridge_knopoff.stability.chains import STANDARD_ERRORS
+from burridge_knopoff.motion.chain_synchronization import STANDARD_ERRORS
 
 TITLE = "Longer chains"
 CATEGORY = "Longer chains"

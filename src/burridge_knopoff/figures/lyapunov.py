@@ -19,7 +19,7 @@ from burridge_knopoff.figures.style import (
     show_all,
     styled,
 )
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Lyapunov exponents"
 CATEGORY = "Synchronization"

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, say, say_nothing, styled
-from burridge_knopoff.summaries.bifurcation import ROUNDING
+from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
 TITLE = "Motion from {initial}"
 CATEGORY = "Runs"

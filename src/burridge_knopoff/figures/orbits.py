@@ -23,7 +23,7 @@ from burridge_knopoff.figures.style import (
     styled,
     to_decades,
 )
-from burridge_knopoff.summaries.orbit_flags import Bifurcation
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 
 TITLE = "The synchronized orbit"
 CATEGORY = "Synchronization"
@@ -106,7 +106,7 @@ def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
     transverse, critical = one["transverse_multiplier"].values, one["critical_a"].item()
     # Known between the values of a of the study as well.
     at = np.searchsorted(a, critical)
-    side = -1.0 if one["bifurcation_kind"].item() == Bifurcation.FLIP else 1.0
+    side = -1.0 if one["bifurcation_kind"].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
     panel.plot(np.insert(a, at, critical), np.insert(transverse, at, side), "-", **look)
     symmetric = one.sel(mode="symmetric_1")
     real, imaginary = (symmetric["multiplier"].sel(part=part).values for part in ("real", "imaginary"))

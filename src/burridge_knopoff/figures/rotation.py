@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, say, styled
-from burridge_knopoff.stability.motion import MotionKind
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 
 TITLE = "Rotation number"

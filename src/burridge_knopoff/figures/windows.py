@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from burridge_knopoff.attractors.table import branch_names
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, show_all, styled
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.summaries.slots import branch_names
+from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Windows of a"
 CATEGORY = "Attractors"

@@ -1,6 +1,6 @@
 """The state of a chain as a solver moves it on, and the stick-slip rules that change it.
 
-It is set from a `model.Instant` and read out as one. Besides positions, velocities and which blocks stick it holds what
+It is set from a `ChainState` and read out as one. Besides positions, velocities and which blocks stick it holds what
 the next event depends on, and it is changed in place. (An `InitialState` gives U(0) and U'(0), as the paper does.)
 
 Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −threshold Φ(v), velocity is U_i' itself, so

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.library.by_name import SearchOptions, settings_of, shows
-from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.settings import MOTION, POSITIONS, BasinSettings, MotionSettings, SearchSettings
+from burridge_knopoff.model.sampling import POSITIONS
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
 if TYPE_CHECKING:
     import xarray
@@ -61,7 +64,7 @@ def basin_map(
     [0.0, 0.141]
     """
     from burridge_knopoff.summaries import basins as basin_summary
-    from burridge_knopoff.summaries.coexisting import coexisting_attractors
+    from burridge_knopoff.summaries.multistability import coexisting_attractors
 
     state = given_state(initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
@@ -77,10 +80,9 @@ def basin_map(
         tiles=1,
         threads=threads,
     )
-    chosen = settings, motion, start
-    attractors = coexisting_attractors(model, settings, motion, starts=[state], start=start)
-    tile = basin_summary.tile(attractors, model, 0, plane, *chosen)
-    pairs = basin_summary.pairs(attractors, model, plane, *chosen)
+    attractors, known = coexisting_attractors(model, settings, motion, starts=[state], start=start)
+    tile = basin_summary.tile(known, 0, plane, settings.label_limit, start)
+    pairs = basin_summary.pairs(known, plane, settings.label_limit, settings.seed, start)
     basins = basin_summary.merge(
         [(model, [tile], pairs)], attractors, [model.law.name], plane, settings.label_limit, start
     )

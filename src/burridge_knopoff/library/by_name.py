@@ -44,7 +44,7 @@ class SearchOptions(TypedDict, total=False):
     window: float
     time_limit: float
     resolution: float
-    pushes: int
+    perturbations: int
     lifetime: float
 
 

@@ -7,14 +7,15 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from burridge_knopoff.attractors import search as attractors
+from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.library.by_name import AttractorOptions, settings_of, shows
-from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.ranges import OneOf
-from burridge_knopoff.stability import attractors
-from burridge_knopoff.stability.attractor import Attractor
-from burridge_knopoff.stability.settings import MOTION, MotionSettings, SearchSettings
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.values import instance_of, refusal
 
 

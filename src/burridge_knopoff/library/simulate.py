@@ -6,29 +6,29 @@ from typing import Any, Unpack, overload
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
-from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.library.run import Run
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
 
 @overload
 def simulate(
-    law: Model, initial: Initial | Instant, settings: Settings | None, /, **by_name: Unpack[RunSettings]
+    law: Model, initial: Initial | ChainState, settings: Settings | None, /, **by_name: Unpack[RunSettings]
 ) -> Run: ...
 
 
 @overload
 def simulate(
-    law: Model, initial: Initial | Instant, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
+    law: Model, initial: Initial | ChainState, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
 ) -> Run: ...
 
 
 @overload
 def simulate(
-    law: Model, *, initial: Initial | Instant = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
+    law: Model, *, initial: Initial | ChainState = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
 ) -> Run: ...
 
 
@@ -36,7 +36,7 @@ def simulate(
 def simulate(
     law: GivenLaw = ...,
     a: float = ...,
-    initial: Initial | Instant = ...,
+    initial: Initial | ChainState = ...,
     settings: Settings | None = ...,
     *,
     chain: Chain | None = ...,
@@ -65,7 +65,7 @@ def simulate(
         chain, v and contact
     initial : minus (if none is given) or plus (the paper's, three blocks), an `InitialState`,
         {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,); or an
-        `Instant`, as `final` of another run: the run continues from there, and its times count on
+        `ChainState`, as `final` of another run: the run continues from there, and its times count on
     settings : of the run; by_name : some of them, or all, by name (see `Settings`)
     chain : without one the paper's springs, as many blocks as the initial state has
     v, contact : see `Model`, whose defaults they are if none is given
@@ -93,6 +93,6 @@ def simulate(
         if initial is not None and settings is not None:
             raise ValueError("settings: got two, expected one")
         a, initial, settings = None, a, settings if initial is None else initial
-    state = initial if isinstance(initial, Instant) else given_state("minus" if initial is None else initial)
+    state = initial if isinstance(initial, ChainState) else given_state("minus" if initial is None else initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
     return Run(**vars(run(model, state, settings_of(Settings, settings, by_name))))

@@ -12,7 +12,7 @@ import numpy as np
 
 from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
-from burridge_knopoff.library.given import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import Whole

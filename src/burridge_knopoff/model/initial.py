@@ -21,7 +21,7 @@ _ONE_A_BLOCK = Several(COORDINATE, 1, MAXIMUM_BLOCKS)
 class InitialState:
     """Positions U(0) and velocities U'(0), one number a block, under a name: what a person chooses.
 
-    It says neither which blocks stick nor where uniform sliding is: `Model.begin` makes an `Instant` of it.
+    It says neither which blocks stick nor where uniform sliding is: `Model.begin` makes an `ChainState` of it.
 
     Raises ValueError, one line, for anything out of range, and where they do not match in count.
 

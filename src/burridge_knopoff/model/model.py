@@ -96,7 +96,7 @@ class Model:
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
         return read_only(self.chain.sliding_offset(float(self.law(self.v))))
 
-    def begin(self, initial: InitialState, start: str = "moving") -> Instant:
+    def begin(self, initial: InitialState, start: str = "moving") -> ChainState:
         """Return the state at τ = 0 of a run from an initial state.
 
         start : moving or tested, see START
@@ -116,7 +116,7 @@ class Model:
             )
         stuck = self.starts_stuck(np.array(initial.position), start)
         position = np.array(initial.position) - self.sliding_offset
-        return Instant(position, np.where(stuck, 0.0, np.array(initial.velocity)), stuck)
+        return ChainState(position, np.where(stuck, 0.0, np.array(initial.velocity)), stuck)
 
     def starts_stuck(self, position: np.ndarray, start: str) -> np.ndarray:
         """Return which blocks stick at τ = 0 under a convention of start, of the shape of U(0), (…, blocks)."""
@@ -125,7 +125,7 @@ class Model:
 
 
 @dataclass(frozen=True, eq=False)
-class Instant:
+class ChainState:
     """The state of all blocks at one instant of a motion, arrays of shape (blocks,): what a run can continue from.
 
     An `InitialState` becomes one by `Model.begin`, which decides which blocks stick; the kernel's `State` is the one
@@ -153,11 +153,13 @@ class Instant:
     last_step: Any = field(default=None, init=False, repr=False)
 
     def __repr__(self) -> str:
-        return f"<Instant at tau = {self.time:g}: {np.size(self.position)} blocks, {np.sum(self.stuck)} of them stuck>"
+        return (
+            f"<ChainState at tau = {self.time:g}: {np.size(self.position)} blocks, {np.sum(self.stuck)} of them stuck>"
+        )
 
-    def mirrored(self) -> Instant:
+    def mirrored(self) -> ChainState:
         """Return the state seen from the other end of the chain."""
-        return Instant(self.position[::-1].copy(), self.velocity[::-1].copy(), self.stuck[::-1].copy(), self.time)
+        return ChainState(self.position[::-1].copy(), self.velocity[::-1].copy(), self.stuck[::-1].copy(), self.time)
 
     def vector(self) -> np.ndarray:
         """Return positions and velocities in one array, shape (2 blocks,)."""

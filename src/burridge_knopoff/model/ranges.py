@@ -182,3 +182,8 @@ class Either(Range):
 
     def __str__(self) -> str:
         return " or ".join(map(str, self.ranges))
+
+
+#: Shares and tolerances.
+SHARE = Number(0.0, 1.0)
+TOLERANCE = Number(0.0, 1.0, above=True)

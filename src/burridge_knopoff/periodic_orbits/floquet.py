@@ -5,7 +5,7 @@ are those of the whole by μ = ν². ν = −1 breaks the symmetry (a pitchfork,
 would need ν = ±i, both at once: such orbits do not double their period before they have lost the symmetry.
 
 If mirror blocks move as one, perturbations that keep this and those that break it do not mix: +1 is a fold among the
-former and a pitchfork among the latter, −1 a flip among both.
+former and a pitchfork among the latter, −1 a period doubling among both.
 
 References: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2;
 J. W. Swift and K. Wiesenfeld, Phys. Rev. Lett. 52 (1984) 705.
@@ -18,7 +18,7 @@ from itertools import combinations
 
 import numpy as np
 
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import directions, parting
@@ -34,10 +34,10 @@ class Multipliers:
     breaking : of those that part mirror blocks; empty unless these move as one
     power : returns in a period
 
-    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, "plus", transient=0, window=10)
-    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> found = multipliers(orbit)
     >>> abs(found.whole).round(4).tolist(), found.unstable
     ([0.3786, 0.0, 0.0, 0.0, 0.0], 0)
@@ -78,10 +78,10 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
-    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, multipliers, simulate
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, "plus", transient=0, window=10)
-    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> multipliers(orbit).unstable == 0
     True
     """
@@ -100,8 +100,8 @@ def _sorted(values: np.ndarray) -> np.ndarray:
     return values[np.lexsort((-values.imag, -values.real, -np.abs(values)))]
 
 
-def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[EdgeKind, str], float]:
-    """Return for each kind of edge, and part of the perturbations, a smooth function that changes sign there.
+def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
+    """Return for each kind of bifurcation, and part of the perturbations, a smooth function that changes sign there.
 
     They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1, which is also 0 where the
     product of two real ones is 1, at an ordinary saddle.
@@ -111,13 +111,13 @@ def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> d
     for part, own in (("keeping", found.keeping), ("breaking", found.breaking)):
         if not len(own):
             continue
-        plus, minus = EdgeKind.FOLD, EdgeKind.FLIP
+        plus, minus = BifurcationKind.FOLD, BifurcationKind.PERIOD_DOUBLING
         if part == "breaking":
-            plus = EdgeKind.PITCHFORK
+            plus = BifurcationKind.PITCHFORK
         elif orbit.symmetry == Symmetry.SYMMETRIC:
-            minus = EdgeKind.PITCHFORK
+            minus = BifurcationKind.PITCHFORK
         values[plus, part] = float(np.prod(own - 1.0).real)
         values[minus, part] = float(np.prod(own + 1.0).real)
         pairs = [one * other - 1.0 for one, other in combinations(own, 2)]
-        values[EdgeKind.NEIMARK_SACKER, part] = float(np.prod(pairs).real) if pairs else 1.0
+        values[BifurcationKind.NEIMARK_SACKER, part] = float(np.prod(pairs).real) if pairs else 1.0
     return values

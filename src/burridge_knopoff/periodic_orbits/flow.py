@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import Runner, new_observer
 
 
@@ -28,7 +28,7 @@ def model_at(model: Model, a: float) -> Model:
         raise OrbitError(str(error)) from None
 
 
-def flow(model: Model, start: Instant, time: float) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
+def flow(model: Model, start: ChainState, time: float) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
     """Return the runner after a time, and the events on the way: time, block (0 …) and kind (0 stop, 1 start).
 
     Raises OrbitError if the run does not complete.
@@ -38,7 +38,7 @@ def flow(model: Model, start: Instant, time: float) -> tuple[Runner, tuple[tuple
     return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
 
 
-def after(runner: Runner, start: Instant, time: float) -> Instant:
+def after(runner: Runner, start: ChainState, time: float) -> ChainState:
     """Return the state that a runner reaches from a state after a time.
 
     Raises OrbitError if the run does not complete.
@@ -49,14 +49,14 @@ def after(runner: Runner, start: Instant, time: float) -> Instant:
     return end
 
 
-def mean_distance(model: Model, start: Instant, period: float) -> float:
+def mean_distance(model: Model, start: ChainState, period: float) -> float:
     """Return ⟨J⟩ over one period from a state on an orbit."""
     observer = new_observer(model, [0.0, period])
     after(Runner(model, observer=observer), start, period)
     return float(observer.results()["batch_integral"][0]) / period
 
 
-def rate(model: Model, at: Instant) -> np.ndarray:
+def rate(model: Model, at: ChainState) -> np.ndarray:
     """Return the time derivative of positions and velocities, shape (2 blocks,)."""
     friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.law(np.abs(at.velocity))
     weakening = model.chain.thresholds * (model.law(model.v) - friction)

@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from burridge_knopoff.periodic_orbits.corner import come_to_corner, smooth_step, turn_corner
-from burridge_knopoff.periodic_orbits.edge_kind import EdgeKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.border_collision import come_to_corner, smooth_step, turn_corner
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit, simplest
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch
-from burridge_knopoff.periodic_orbits.simpler import simpler_orbit, simplest
 from burridge_knopoff.values import instance_of, real_number, refusal
 
 # Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
@@ -64,11 +64,11 @@ def follow(
     none.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
-    docs/edges.md says how a branch goes on where its orbit grazes.
+    docs/bifurcations.md says how a branch goes on where its orbit grazes.
 
-    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
-    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875))
     >>> [round(point.orbit.a, 4) for point in branch]
     [0.0865, 0.0866, 0.0868, 0.0872, 0.0877]
@@ -122,7 +122,9 @@ def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
     """
     if first.tangent[-1] * second.tangent[-1] > 0.0:
         return None
-    signs = [critical_values(point.orbit, point.multipliers)[EdgeKind.FOLD, "keeping"] for point in (first, second)]
+    signs = [
+        critical_values(point.orbit, point.multipliers)[BifurcationKind.FOLD, "keeping"] for point in (first, second)
+    ]
     if signs[0] * signs[1] < 0.0:
         return None
     found = simplest(first.orbit, JOINED)

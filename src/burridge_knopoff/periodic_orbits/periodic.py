@@ -18,7 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, model_at, rate
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
@@ -54,19 +54,19 @@ class PeriodicOrbit:
 
     Times are in units of 1/ω, states in those of `Model`.
 
-    >>> from burridge_knopoff import Chain, Model, closed_motion, law_of, simulate
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, "plus", transient=0, window=10)
-    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> orbit.monodromy.shape, orbit.residual < 1e-12, round(orbit.period / orbit.return_time)
     ((6, 6), True, 2)
     """
 
     model: Model
     symmetry: Symmetry
-    reference: Instant
+    reference: ChainState
     return_time: float
-    returned: Instant
+    returned: ChainState
     monodromy: np.ndarray
     known_events: InitVar[np.ndarray | None] = None
 
@@ -85,12 +85,12 @@ class PeriodicOrbit:
     def __repr__(self) -> str:
         return (
             f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.law.name} law, a = {self.a:.12g}: "
-            f"period {self.period:.9g}, stops of each block {self.signature}>"
+            f"period {self.period:.9g}, stops of each block {self.stop_counts}>"
         )
 
     def forget_events(self) -> None:
         """Free what the events take, a megabyte on the longest orbits: they are found again when they are asked for."""
-        _ = self.signature
+        _ = self.stop_counts
         self.__dict__.pop("event_rows", None)
 
     @property
@@ -126,7 +126,7 @@ class PeriodicOrbit:
         return self.return_time * (2.0 if self.symmetry == Symmetry.SYMMETRIC else 1.0)
 
     @cached_property
-    def signature(self) -> tuple[int, ...]:
+    def stop_counts(self) -> tuple[int, ...]:
         """How often each block stops in a period."""
         stopped = self.event_rows[self.event_rows[:, 2] == 0, 1].astype(int)
         return tuple(np.bincount(stopped, minlength=self.model.blocks).tolist())
@@ -136,20 +136,20 @@ class PeriodicOrbit:
         """⟨J⟩ over a period."""
         return mean_distance(self.model, self.reference, self.period)
 
-    def start(self, block: int) -> Instant:
+    def start(self, block: int) -> ChainState:
         """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
         time, kind = self.events_of(block)
         if not (kind == 0).any():
             raise OrbitError(f"block = {block!r}: it never stops on this orbit")
-        state = flow(self.model, self.reference, float(time[kind == 0][0]))[0].instant()
+        state = flow(self.model, self.reference, float(time[kind == 0][0]))[0].state()
         stuck = state.stuck.copy()
         stuck[block] = True
-        return Instant(state.position, np.where(stuck, 0.0, state.velocity), stuck)
+        return ChainState(state.position, np.where(stuck, 0.0, state.velocity), stuck)
 
 
 def solve_return(
     model: Model,
-    start: Instant,
+    start: ChainState,
     time: float,
     symmetry: Symmetry,
     constraint: tuple[np.ndarray, float] | None = None,
@@ -172,7 +172,7 @@ def solve_return(
     by_a: np.ndarray | None = None
     mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
-        here = Instant(state[:blocks], state[blocks:], start.stuck)
+        here = ChainState(state[:blocks], state[blocks:], start.stuck)
         end, changed = mapping.with_tangent(here, time)
         residual = float(np.abs(end.vector() - state).max())
         values = np.zeros(unknowns)
@@ -220,7 +220,7 @@ def refined(orbit: PeriodicOrbit) -> PeriodicOrbit:
     return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, enough=0.0)
 
 
-def orbit_of(model: Model, state: Instant, time: float, symmetry: Symmetry) -> PeriodicOrbit:
+def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -> PeriodicOrbit:
     """Return the orbit through a state between two events that returns after a time, whether it does or not.
 
     Raises OrbitError if the run does not complete.
@@ -235,7 +235,7 @@ def safe_offset(orbit: PeriodicOrbit) -> float:
     return _safe_offset(orbit.event_rows[:, 0].tolist(), orbit.period)
 
 
-def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
+def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
     """Return the periodic orbit near a state between two events, by Newton's method.
 
     model, guess : the state, in the model whose orbit is sought
@@ -247,10 +247,10 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
-    >>> from burridge_knopoff import Chain, Model, closed_motion, find_periodic_orbit, law_of, simulate
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, find_periodic_orbit, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, "plus", transient=0, window=10)
-    >>> orbit = closed_motion(model, model.begin(run.initial), settling=1000.0)
+    >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> near = find_periodic_orbit(model.at(0.081), orbit.reference, orbit.return_time, orbit.symmetry)
     >>> near.a, round(near.period, 4)
     (0.081, 157.2682)
@@ -267,12 +267,12 @@ def find_periodic_orbit(model: Model, guess: Instant, return_time: float, symmet
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
     # The guess may lie at a stop itself, which rounding puts before or after it.
     times = sorted([*events[:, 0].tolist(), return_time, period])
-    guess = flow(model, guess, _safe_offset(times, period))[0].instant()
+    guess = flow(model, guess, _safe_offset(times, period))[0].state()
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
-        guess = Instant(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
+        guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
     found = solve_return(model, guess, return_time, symmetry)
-    if not any(found.signature):
+    if not any(found.stop_counts):
         raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess: no block stops there")
     return found
 

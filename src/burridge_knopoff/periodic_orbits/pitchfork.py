@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant
+from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, refined, solve_return
 from burridge_knopoff.periodic_orbits.return_map import parting
@@ -32,7 +32,7 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
     base, blocks = center.reference.vector(), center.model.blocks
     if near is None:
         vector = base + asymmetry * _way_off(center)
-        start = Instant(vector[:blocks], vector[blocks:], center.reference.stuck)
+        start = ChainState(vector[:blocks], vector[blocks:], center.reference.stuck)
         a, time = center.a + (asymmetry / center.model.v) ** 2 * center.a, center.return_time
     else:
         # What is apart grows with the asymmetry, all else with its square.
@@ -40,7 +40,7 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
         change = near.reference.vector() - base
         mirrored = near.reference.mirrored().vector() - base
         vector = base + 0.5 * factor * (change - mirrored) + 0.5 * factor**2 * (change + mirrored)
-        start = Instant(vector[:blocks], vector[blocks:], near.reference.stuck)
+        start = ChainState(vector[:blocks], vector[blocks:], near.reference.stuck)
         a = center.a + factor**2 * (near.a - center.a)
         time = center.return_time + factor**2 * (near.return_time - center.return_time)
     difference = np.zeros(2 * blocks + 2)
@@ -53,11 +53,11 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
     return found
 
 
-def apart(state: Instant, asymmetry: float) -> Instant:
+def apart(state: ChainState, asymmetry: float) -> ChainState:
     """Return a state with the first block moved forward and the last one back, by half the asymmetry each."""
     shift = np.zeros(len(state.position))
     shift[0], shift[-1] = 0.5 * asymmetry, -0.5 * asymmetry
-    return Instant(state.position + shift, state.velocity, state.stuck)
+    return ChainState(state.position + shift, state.velocity, state.stuck)
 
 
 def asymmetry_of(orbit: PeriodicOrbit) -> float:
@@ -84,5 +84,5 @@ def _while_ends_stick(orbit: PeriodicOrbit) -> PeriodicOrbit:
     # The last event of an end block before the middle, the last one of a period before the first.
     sticks = kind[np.searchsorted(at, middle) - 1] == 0
     chosen = float(middle[np.where(sticks, length, -np.inf).argmax()])
-    state = flow(orbit.model, orbit.reference, chosen)[0].instant()
+    state = flow(orbit.model, orbit.reference, chosen)[0].state()
     return refined(orbit_of(orbit.model, state, orbit.return_time, orbit.symmetry))

@@ -13,10 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.periodic_orbits.contacts import Contacts, contacts
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at, rate
+from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
 
@@ -40,9 +40,9 @@ class BranchOrbit:
         of half the period; the branch ends before it
     remaining : length from here to the corner of the branch where the orbit grazes; NaN if it is not right there
 
-    >>> from burridge_knopoff import Chain, Model, closed_motion, follow, law_of, synchronized_orbit
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
-    >>> orbit = closed_motion(model, synchronized_orbit(model).reference)
+    >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875))
     >>> branch[1].tangent.shape, branch[1].corner, branch[1].joined
     ((8,), False, None)
@@ -114,7 +114,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     base = orbit.reference.vector()
     model = model_at(orbit.model, orbit.a + length * float(tangent[-1]))
     guess = base + length * tangent[:-2]
-    start = Instant(guess[:blocks], guess[blocks:], orbit.reference.stuck)
+    start = ChainState(guess[:blocks], guess[blocks:], orbit.reference.stuck)
     time = orbit.return_time + length * float(tangent[-2])
     found = solve_return(
         model,
@@ -134,7 +134,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     if offset == 0.0:
         return BranchOrbit(found, following, length)
     carried = _carried(found, following, offset)
-    there = flow(model, found.reference, offset)[0].instant()
+    there = flow(model, found.reference, offset)[0].state()
     moved = orbit_of(model, there, found.return_time, orbit.symmetry)
     following = tangent_of(moved)
     side = following @ (weights(model) * carried)
@@ -145,9 +145,9 @@ def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float) -> np.ndarr
     """Return a tangent at the state that the reference comes to after a time, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
-    near = Instant(vector[:blocks], vector[blocks:], orbit.reference.stuck)
-    here = flow(orbit.model, orbit.reference, time)[0].instant()
-    there = flow(model_at(orbit.model, orbit.a + PART * float(tangent[-1])), near, time)[0].instant()
+    near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+    here = flow(orbit.model, orbit.reference, time)[0].state()
+    there = flow(model_at(orbit.model, orbit.a + PART * float(tangent[-1])), near, time)[0].state()
     change = (there.vector() - here.vector()) / PART
     along = rate(orbit.model, here)
     return np.concatenate([change - along * (along @ change) / (along @ along), tangent[-2:]])

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at, rate
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
@@ -40,11 +40,11 @@ class ReturnMap:
         # To make one takes longer than most returns do.
         return Runner(self.model, keep_events=True, perturbations=self._free)
 
-    def end(self, start: Instant, time: float) -> Instant:
+    def end(self, start: ChainState, time: float) -> ChainState:
         """Return the state that a state comes to; raises OrbitError if the run does not complete."""
         return self._mirrored(after(self._runner, start, time))
 
-    def with_tangent(self, start: Instant, time: float) -> tuple[Instant, np.ndarray]:
+    def with_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
         """Return the same and how perturbations of the start return, shape (2 blocks, 2 blocks).
 
         Velocities of stuck blocks have no perturbation: their columns are 0.
@@ -57,7 +57,7 @@ class ReturnMap:
         """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, not mirrored."""
         return np.stack(self._runner.events(), axis=1)
 
-    def a_derivative(self, start: Instant, time: float, end: Instant, events: np.ndarray) -> np.ndarray:
+    def a_derivative(self, start: ChainState, time: float, end: ChainState, events: np.ndarray) -> np.ndarray:
         """Return how the end of a return changes with a, shape (2 blocks,).
 
         start, time, end : of the return; events : blocks and kinds of its events in their order, shape (n, 2)
@@ -79,11 +79,11 @@ class ReturnMap:
             step *= 0.1
         raise OrbitError(f"a = {self.model.a!r}: stops and starts change however little a does")
 
-    def time_derivative(self, end: Instant) -> np.ndarray:
+    def time_derivative(self, end: ChainState) -> np.ndarray:
         """Return how the end changes with the time, shape (2 blocks,)."""
         return rate(self.model, end)
 
-    def _mirrored(self, instant: Instant) -> Instant:
+    def _mirrored(self, instant: ChainState) -> ChainState:
         return instant.mirrored() if self.symmetry == Symmetry.SYMMETRIC else instant
 
     def _mirrored_rows(self, matrix: np.ndarray) -> np.ndarray:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.table import branch_names
 from burridge_knopoff.figures.branches import UNDETERMINED_COLOR, map_colors, side_color
 from burridge_knopoff.report.numbers import rounded
-from burridge_knopoff.summaries.slots import branch_names
 
 #: Largest decision time that two bytes hold; 0 stands for undetermined.
 LARGEST_TIME = 65535

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.table import branch_names
 from burridge_knopoff.figures.branches import (
     OTHER_COLOR,
     OTHERS,
@@ -16,10 +17,10 @@ from burridge_knopoff.figures.branches import (
     undetermined_share,
 )
 from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.report.numbers import rounded
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.summaries.orbit_flags import Bifurcation, OrbitStatus
-from burridge_knopoff.summaries.slots import branch_names
+from burridge_knopoff.summaries.orbit_flags import OrbitStatus
 
 
 def kinds() -> list[dict[str, Any]]:
@@ -95,7 +96,9 @@ def orbit_curves(orbits: xarray.Dataset) -> list[dict[str, Any]]:
                 # The modulus, of a complex pair as well, with the sign of the real part: as in the figure.
                 "symmetric": rounded(np.where(real < 0.0, -modulus, modulus)),
                 "critical_a": rounded(one["critical_a"].item()),
-                "critical_multiplier": -1.0 if one["bifurcation_kind"].item() == Bifurcation.FLIP else 1.0,
+                "critical_multiplier": -1.0
+                if one["bifurcation_kind"].item() == BifurcationKind.PERIOD_DOUBLING
+                else 1.0,
                 "offset": rounded(one["branch_offset"].values),
                 "asymmetry": rounded(one["branch_asymmetry"].values),
                 "exponent": rounded(one["amplitude_exponent"].item()),

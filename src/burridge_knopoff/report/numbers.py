@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from burridge_knopoff.study.words import text
+from burridge_knopoff.study.formatting import text
 
 #: Significant digits of curves; exact values are kept for the single runs only.
 DIGITS = 6

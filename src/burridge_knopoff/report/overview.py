@@ -16,8 +16,8 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
+from burridge_knopoff.study.formatting import counted, friction_words, text
 from burridge_knopoff.study.study import Study, all_points
-from burridge_knopoff.study.words import counted, friction_words, text
 
 #: Distributions whose versions the report states.
 LIBRARIES = (

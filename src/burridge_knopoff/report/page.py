@@ -22,11 +22,11 @@ from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.section_points import section_counts
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
+from burridge_knopoff.study.formatting import text, with_error
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.study.words import text, with_error
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.basins import undetermined_alike
-from burridge_knopoff.summaries.bifurcation import NEVER_UPWARD
+from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
 
 FOLDER = Path(__file__).parent
 
@@ -34,7 +34,16 @@ FOLDER = Path(__file__).parent
 SCRIPTS = ("data", "theme", "charts", "runs", "curves", "orbits", "maps", "agreement", "pictures", "start")
 
 #: Figures that stand in a section of their own; all others come together.
-PLACED = ("mean_distance", "bifurcation", "lyapunov", "orbits", "basins", "basin_fractions", "agreement", "chains")
+PLACED = (
+    "mean_distance",
+    "bifurcation_diagram",
+    "lyapunov",
+    "orbits",
+    "basins",
+    "basin_fractions",
+    "agreement",
+    "chains",
+)
 
 #: The result of an optional stage, which may be older than the study.
 OPTIONAL = "chains"

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.motion.kind import Motion, MotionKind, words_of
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.report.numbers import exact
 from burridge_knopoff.running.status import ENDS, Status
-from burridge_knopoff.stability.motion import Motion, MotionKind, words_of
-from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.study.words import with_error
 from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.report.numbers import rounded
-from burridge_knopoff.summaries.bifurcation import ROUNDING
+from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
 BINS = 300
 
@@ -35,7 +35,7 @@ def section_counts(bifurcation: xarray.Dataset) -> dict[str, Any]:
         own = slice(stop - count, stop)
         columns[n] = np.histogram(velocity[own], edges, weights=directions[own])[0]
     runs = columns.reshape(len(laws), len(states), a_size * BINS)
-    return {"edges": rounded([low, high]), "bins": BINS, "runs": [[_sparse(run) for run in law] for law in runs]}
+    return {"bifurcations": rounded([low, high]), "bins": BINS, "runs": [[_sparse(run) for run in law] for law in runs]}
 
 
 def _edges(velocity: np.ndarray) -> tuple[float, float]:

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.study.words import span, text, with_error
-from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide, OrbitStatus
-from burridge_knopoff.summaries.slots import branch_names
+from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.study.formatting import span, text, with_error
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
@@ -60,7 +61,7 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             cells.append(with_error(number, one[error].item()) if error else _long(number))
         return {"name": name, "cells": cells}
 
-    kinds = [_meaning(Bifurcation(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
+    kinds = [_meaning(BifurcationKind(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
     sides = [_meaning(BifurcationSide(orbits.sel(law=law)["bifurcation_side"].item())) for law in laws]
     return {
         "laws": laws,
@@ -71,7 +72,7 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
                 "cells": [f"{side} {kind}" for side, kind in zip(sides, kinds, strict=True)],
             },
             row("a at which block 2 begins to stick", "grazing_a"),
-            row("a at which a mirror-symmetric multiplier reaches −1", "symmetric_flip_a"),
+            row("a at which a mirror-symmetric multiplier reaches −1", "symmetric_period_doubling_a"),
             row("exponent of |x_1 − x_3| against a − a_c", "amplitude_exponent", "amplitude_exponent_error"),
             row("coefficient of that power law", "amplitude_coefficient"),
             row("largest difference of |x_1 − x_3| up and down in a", "hysteresis"),

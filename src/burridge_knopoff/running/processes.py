@@ -14,7 +14,7 @@ from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.running.kept import forget, kept
+from burridge_knopoff.running.cache import forget, kept
 
 _LOG = logging.getLogger(__name__)
 
@@ -23,8 +23,8 @@ _LOG = logging.getLogger(__name__)
 def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
     """Give what calls a function for each item of one or several sequences, in so many processes at once.
 
-    folder : where results are kept for another run, see `running.kept`; None keeps none. Of what is kept there all that
-        no call has asked for is deleted at the end
+    folder : where results are cached for another run, see `running.cache`; None caches none. Entries that no call has
+        asked for are deleted at the end
 
     `each(what, function, *sequences)` returns the list of results. What calls of the same name in a row have taken, in
     seconds, is logged. Function, items and results have to be picklable, and a call must not rely on what another one

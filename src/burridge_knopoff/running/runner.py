@@ -16,7 +16,7 @@ from burridge_knopoff.kernel.springs import Springs
 from burridge_knopoff.kernel.state import State
 from burridge_knopoff.kernel.time_stepping import TimeStepping
 from burridge_knopoff.kernel.vector import WIDTH
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
@@ -86,18 +86,18 @@ class Runner:
         if perturbations is not None:
             self.carry(perturbations)
 
-    def begin(self, at: Instant) -> None:
+    def begin(self, at: ChainState) -> None:
         """Begin from an instant, at its time; raises ValueError if it is none of the model's blocks."""
         blocks = self.model.blocks
-        if not isinstance(at, Instant) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
-            raise refusal("state", at, f"an Instant of {blocks} blocks")
+        if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
+            raise refusal("state", at, f"an ChainState of {blocks} blocks")
         self.kernel.begin(at.position, at.velocity, at.stuck, at.time)
         if at.last_step is not None and at.last_step[0] == self.solver:
             self.kernel.resume(at.last_step[1], at.time)
 
-    def final(self) -> Instant:
+    def final(self) -> ChainState:
         """Return the state at the end of a completed run, from which another one continues with the same steps."""
-        at = replace(self.instant(), time=self.clock)
+        at = replace(self.state(), time=self.clock)
         object.__setattr__(at, "last_step", (self.solver, self.kernel.mark()))
         return at
 
@@ -129,15 +129,15 @@ class Runner:
                 raise ValueError(f"{key}: got more than {most}, expected {remedy}")
         return status
 
-    def after(self, at: Instant, time: float) -> Instant | None:
+    def after(self, at: ChainState, time: float) -> ChainState | None:
         """Return the state that an instant comes to after a time, None if the run fails."""
         self.begin(at)
-        return self.instant() if self.run(time) == Status.COMPLETED else None
+        return self.state() if self.run(time) == Status.COMPLETED else None
 
-    def instant(self) -> Instant:
+    def state(self) -> ChainState:
         """Return the present state."""
         position, velocity, slip = self.kernel.state.values()
-        return Instant(position, velocity, slip == 0)
+        return ChainState(position, velocity, slip == 0)
 
     @property
     def clock(self) -> float:

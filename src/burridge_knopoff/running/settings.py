@@ -18,6 +18,8 @@ EVENTS = ("none", "window", "all")
 #: The longest time that a setting may ask for.
 LONGEST = 1e9
 DURATION = Number(0.0, LONGEST)
+#: The same, above 0.
+TIME = Number(0.0, LONGEST, above=True)
 INTERVAL = Number(1e-6, LONGEST)
 
 #: Steps of rk4 times blocks, at most: an hour of work.

@@ -8,7 +8,7 @@ import numpy as np
 
 from burridge_knopoff.kernel.exponents import Exponents
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import RK4_ORDER, SERIES_ORDER, Runner, new_observer
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.trajectory import Trajectory, collect
@@ -16,7 +16,7 @@ from burridge_knopoff.running.trajectory import Trajectory, collect
 
 def run(
     model: Model,
-    initial: InitialState | Instant,
+    initial: InitialState | ChainState,
     settings: Settings | None = None,
     *,
     section_only: bool = False,
@@ -33,7 +33,7 @@ def run(
     """
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
-    if isinstance(initial, Instant):
+    if isinstance(initial, ChainState):
         begun = initial
         initial = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
     else:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import Status
@@ -44,7 +44,7 @@ class Trajectory:
     begin_time: float
     end_time: float
     initially_slipping: np.ndarray = field(repr=False)
-    final: Instant = field(repr=False)
+    final: ChainState = field(repr=False)
     event_count: int
     step_count: int
     mean_distance: float
@@ -84,7 +84,7 @@ class Trajectory:
 
 
 def collect(
-    model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: Instant, status: Status
+    model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: ChainState, status: Status
 ) -> Trajectory:
     """Return what a run has left that began at an instant."""
     measured = runner.observer.results()
@@ -110,7 +110,7 @@ def collect(
         begin_time=begun.time,
         end_time=runner.clock,
         initially_slipping=~begun.stuck,
-        final=runner.final() if completed else runner.instant(),
+        final=runner.final() if completed else runner.state(),
         event_count=log.count,
         step_count=runner.kernel.steps,
         mean_distance=float(batch.mean()),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
-from burridge_knopoff.show.words import table
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.study.words import plain, with_error
-from burridge_knopoff.summaries.slots import branch_names
+from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.show.formatting import table
+from burridge_knopoff.study.formatting import plain, with_error
 
 
 def called(found: xarray.Dataset, branch: int, side: int) -> str:

@@ -9,13 +9,13 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.motion.kind import motion_of_run, words_of
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.show.formatting import listed, paragraph
 from burridge_knopoff.show.result import Result
-from burridge_knopoff.show.words import listed, paragraph
-from burridge_knopoff.stability.motion import motion_of_run, words_of
-from burridge_knopoff.stability.settings import MotionSettings
-from burridge_knopoff.study.words import counted, plain, with_error
+from burridge_knopoff.study.formatting import counted, plain, with_error
 
 
 def point_lines(result: Result) -> list[str]:

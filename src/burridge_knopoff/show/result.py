@@ -9,10 +9,10 @@ from typing import Any
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.provenance.record import read_study_record, study_folder
 from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.stability.settings import MOTION, MotionSettings
 from burridge_knopoff.study.recorded import check_result
 
 #: {variable that no other summary has: name of the summary}, where the module that made it does not tell.

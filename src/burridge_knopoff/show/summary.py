@@ -11,8 +11,8 @@ import xarray
 
 from burridge_knopoff.provenance.sources import PACKAGE
 from burridge_knopoff.show.attractors import attractor_table
+from burridge_knopoff.show.formatting import paragraph, table, values_in_words
 from burridge_knopoff.show.result import Result
-from burridge_knopoff.show.words import paragraph, table, values_in_words
 
 #: Global attributes that are said elsewhere on the page, or are the same in all files.
 _ELSEWHERE = ("Conventions", "title", "history", "software", "source_module", "source_fingerprint")

@@ -11,26 +11,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
+from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import HUGE, Either, Named, Number, OneOf, Range, Several, Text, Whole
+from burridge_knopoff.model.ranges import HUGE, SHARE, Either, Named, Number, OneOf, Range, Several, Text, Whole
+from burridge_knopoff.model.sampling import SAMPLES
+from burridge_knopoff.motion.chain_settings import Sample, Watch
+from burridge_knopoff.motion.settings import ERRORS, MotionSettings
 from burridge_knopoff.running.section import SECTION_KEYS
-from burridge_knopoff.running.settings import SOLVERS, Settings
-from burridge_knopoff.stability.settings import (
-    ERRORS,
-    SAMPLES,
-    SHARE,
-    TIME,
-    BasinSettings,
-    MotionSettings,
-    PhaseSettings,
-    Refine,
-    Sample,
-    SearchSettings,
-    Watch,
-)
+from burridge_knopoff.running.settings import SOLVERS, TIME, Settings
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 from burridge_knopoff.study.stages import OPTIONAL
 from burridge_knopoff.values import joined

@@ -11,6 +11,7 @@ from functools import reduce
 from operator import getitem
 from typing import Any
 
+from burridge_knopoff.basins.initial_phases import ends_are_neighbours
 from burridge_knopoff.laws import LAWS, law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys
@@ -18,13 +19,12 @@ from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.stability.phases import ends_are_neighbours
 from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 from burridge_knopoff.values import MOST_NUMBERS, refusal
 
-#: States that are labelled at once for each pair of near states: stability/splitting.py.
+#: States that are labelled at once for each pair of near states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
 
 

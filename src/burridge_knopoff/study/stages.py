@@ -3,7 +3,7 @@
 #: {stage that can be left out: the stage whose results it takes, or nothing}
 OPTIONAL = {
     "attractors": "",
-    "edges": "attractors",
+    "bifurcations": "attractors",
     "basins": "attractors",
     "phases": "attractors",
     "solvers": "",
@@ -19,7 +19,7 @@ SUMMARIES = {"attractors": ("attractors", "refined", "rotation"), "claims": ()}
 CHAIN_SUMMARIES = ("chains", "two_blocks")
 
 #: What a summary has beside its netCDF file, by suffix.
-TEXTS = {"agreement": ("csv", "txt"), **dict.fromkeys(("attractors", "basins", "edges", "proof"), ("txt",))}
+TEXTS = {"agreement": ("csv", "txt"), **dict.fromkeys(("attractors", "basins", "bifurcations", "proof"), ("txt",))}
 
 #: All summaries that not every study has.
 OPTIONAL_SUMMARIES = {name for stage in OPTIONAL for name in SUMMARIES.get(stage, (stage,))} | {*CHAIN_SUMMARIES}

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
 
+from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
-from burridge_knopoff.stability.settings import BasinSettings, Sample
 from burridge_knopoff.study import rules, stages
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.grid import grid_of

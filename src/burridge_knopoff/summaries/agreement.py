@@ -10,9 +10,10 @@ import numpy as np
 import scipy
 import xarray
 
+from burridge_knopoff.attractors.table import reached
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
-from burridge_knopoff.stability.motion import (
+from burridge_knopoff.motion.kind import (
     CHAOS,
     OPEN,
     REGULAR,
@@ -20,11 +21,10 @@ from burridge_knopoff.stability.motion import (
     MotionKind,
     same_result,
 )
-from burridge_knopoff.study.words import counted
+from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
-from burridge_knopoff.summaries.reached import reached
 
 # The last bit of a product of vectors depends on where in memory they lie.
 DIGITS = 12
@@ -128,7 +128,7 @@ def _fill_settled(
     that ends on one attractor has one kind.
     """
     relative_tolerance, standard_errors = agreement["relative_tolerance"], agreement["standard_errors"]
-    own = attractors.sel(contact=attractors.attrs["contact_convention"], start=attractors.attrs["start_convention"])
+    own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
     for law, initial in np.ndindex(values["settled"].shape[:2]):
         names = str(own["initial"].values[initial]), str(own["law"].values[law])
         known, mean = reached(own, *names, "mean_distance")

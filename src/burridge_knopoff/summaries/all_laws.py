@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.labels import UNDETERMINED
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.table import NAMES, branch_names, missing, name_branches
+from burridge_knopoff.continuation.law_homotopy import joined
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.sources import provenance
-from burridge_knopoff.stability.joining import joined
-from burridge_knopoff.stability.labels import UNDETERMINED
-from burridge_knopoff.stability.motion import MotionKind
-from burridge_knopoff.stability.settings import SearchSettings
-from burridge_knopoff.study.words import span
+from burridge_knopoff.study.formatting import span
 from burridge_knopoff.summaries.attractors import VARIABLES
-from burridge_knopoff.summaries.slots import NAMES, branch_names, missing, name_branches
 
 _HEAD = ("Conventions", "title", "law", *provenance(__name__))
 
@@ -89,14 +89,14 @@ def _with_others(
     return {**known, **{number: following + k for k, number in enumerate(others, start=1)}}
 
 
-def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, Instant]]:
+def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainState]]:
     """Return {branch: {position of a in the grid: a state on it}}, of mirror images those of one side."""
-    states: dict[int, dict[int, Instant]] = {}
+    states: dict[int, dict[int, ChainState]] = {}
     for k, slot in np.argwhere((part["branch"].values >= 0) & (part["side"].values >= 0)).tolist():
         one = part.isel(a=k, attractor=slot)
         velocity = one["velocity"].values
         position = one["position"].values - model.at(one["a"].item()).sliding_offset
-        states.setdefault(one["branch"].item(), {})[k] = Instant(position, velocity, velocity == 0.0)
+        states.setdefault(one["branch"].item(), {})[k] = ChainState(position, velocity, velocity == 0.0)
     return states
 
 

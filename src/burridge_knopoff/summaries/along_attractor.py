@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
@@ -42,7 +42,7 @@ class AlongAttractor:
         return np.array([leading_frequency(one[::THINNED], FOLLOWED) for one in self.velocity.T])
 
 
-def along_attractor(model: Model, start: Instant, seen_on: Section = SUM) -> AlongAttractor:
+def along_attractor(model: Model, start: ChainState, seen_on: Section = SUM) -> AlongAttractor:
     """Follow an attractor from one of its states; seen_on : the section that is kept."""
     settings = Settings(
         transient=0.0, window=FOLLOWED, batches=2, sampling=FOLLOWED, trajectory=FOLLOWED, events="none",

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from burridge_knopoff.model.model import Instant, Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at
-from burridge_knopoff.periodic_orbits.known import KnownOrbits
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.pitchfork import apart
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -58,14 +58,14 @@ def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
     return found
 
 
-def _settled(model: Model, state: Instant) -> Instant:
+def _settled(model: Model, state: ChainState) -> ChainState:
     """Return the first state after a time in which the end blocks have both just come to stick."""
     runner, last = Runner(model), model.blocks - 1
     after(runner, state, SWEEP_TIME)
     for block in (0, last, 0, last):
         if runner.run(2.0 * SWEEP_TIME, halting_block=block) != Status.HALTED:
             break
-        now = runner.instant()
+        now = runner.state()
         if now.stuck[0] and now.stuck[last]:
             return now
     raise OrbitError(f"a = {model.a!r}: the end blocks no longer stick at the same time")

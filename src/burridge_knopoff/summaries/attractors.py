@@ -13,26 +13,26 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
-from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import CONTACTS, STARTS, Model
-from burridge_knopoff.running.section import Section
-from burridge_knopoff.stability.attractor import Attractor
-from burridge_knopoff.stability.continuation import Continuation
-from burridge_knopoff.stability.labels import UNDETERMINED, label
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MotionSettings, SearchSettings
-from burridge_knopoff.summaries.along_attractor import along_attractor, distinct
-from burridge_knopoff.summaries.equilibrium import sliding_attracts
-from burridge_knopoff.summaries.slots import (
+from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.labels import UNDETERMINED, label
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.table import (
     NOTHING,
-    branch_order,
     empty,
     slot_coordinates,
     slot_values,
     slot_variables,
 )
+from burridge_knopoff.continuation.along_a import Continuation
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import CONTACTS, STARTS, Model
+from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.running.section import Section
+from burridge_knopoff.summaries.along_attractor import along_attractor, distinct
+from burridge_knopoff.summaries.equilibrium import sliding_attracts
 
 _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
@@ -100,7 +100,7 @@ def one_law(
     start : convention for the drawn states
     """
     models = [found.models[k] for k in found.grid]
-    values = slot_values(found, found.grid, settings.lifetime, "a")
+    values = slot_values(models, [found.rows(k) for k in found.grid], settings.lifetime, "a")
     values.update(_basins(found))
     values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
     values.update(_steps(found))
@@ -124,8 +124,8 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
         "law": model.law.name,
         "history": "snakemake, from sampled initial states",
         "v": model.v,
-        "contact_convention": model.contact,
-        "start_convention": start,
+        "contact": model.contact,
+        "start": start,
         "synchronization_threshold": motion.synchronization_threshold,
         "section": str(motion.section),
         "longest_period": motion.at_speed(model.v).longest_period,
@@ -148,8 +148,8 @@ def _basins(found: Continuation) -> dict[str, np.ndarray]:
     for k, (place, reached) in enumerate(zip(found.grid, found.samples, strict=True)):
         values["sample_count"][k] = len(reached)
         values["undetermined_count"][k] = np.count_nonzero(reached == UNDETERMINED)
-        for slot, index in enumerate(branch_order(found, place)):
-            hits = int(np.count_nonzero(reached == index))
+        for slot, row in enumerate(found.rows(place)):
+            hits = int(np.count_nonzero(reached == row.index))
             values["basin_count"][k, slot] = hits
             interval = fraction_interval(hits, len(reached))
             for name, value in zip(("", "_low", "_high"), interval, strict=True):
@@ -165,10 +165,10 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
             (len(found.grid), max(1, *map(len, found.attractors))), UNDETERMINED, dtype="i2"
         )
         for k, place in enumerate(found.grid):
-            for slot, index in enumerate(branch_order(found, place)):
-                if following[k][index] != UNDETERMINED:
+            for slot, row in enumerate(found.rows(place)):
+                if following[k][row.index] != UNDETERMINED:
                     branch = found.branch[found.grid[k + step]]
-                    values[f"{name}_branch"][k, slot] = branch[following[k][index]]
+                    values[f"{name}_branch"][k, slot] = branch[following[k][row.index]]
     return values
 
 
@@ -191,9 +191,9 @@ def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray, section
     values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
     for k, place in enumerate(found.grid):
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
-        for slot, index in enumerate(branch_order(found, place)):
-            if (found.branch[place][index], found.side[place][index]) in wanted:
-                one = along_attractor(found.models[place], found.attractors[place][index].motion.instant(), section)
+        for slot, row in enumerate(found.rows(place)):
+            if (row.branch, row.side) in wanted:
+                one = along_attractor(found.models[place], row.attractor.motion.state(), section)
                 values["section_count"][k, slot] = distinct(one.section)
                 values["section_velocity_mean"][k, slot] = one.section.mean() if len(one.section) else np.nan
                 values["velocity_correlation"][k, slot] = one.velocity_correlation
@@ -259,8 +259,8 @@ def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
     for direction, (end, steps, following) in enumerate(
         zip(ends, (range(ends[0], count), range(ends[1], -1, -1)), (found.upward, found.downward), strict=True)
     ):
-        for sweep, first in enumerate(branch_order(found, found.grid[end])):
-            index = first
+        for sweep, row in enumerate(found.rows(found.grid[end])):
+            index = row.index
             for k in steps:
                 values["sweep_branch"][direction, sweep, k] = found.branch[found.grid[k]][index]
                 values["sweep_mean_distance"][direction, sweep, k] = attractors[k][index].motion.mean_distance

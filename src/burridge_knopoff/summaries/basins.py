@@ -9,16 +9,17 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.labels import UNDETERMINED, label_states
+from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.attractors.table import NAMES, branch_names
+from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
+from burridge_knopoff.basins.plane import pixel_centres, plane, states
+from burridge_knopoff.basins.settings import BasinSettings
+from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.stability.basins import KnownAttractors, known_attractors, pixel_centres, plane, states
-from burridge_knopoff.stability.labels import UNDETERMINED, label_states
-from burridge_knopoff.stability.settings import BasinSettings, MotionSettings, SearchSettings
-from burridge_knopoff.stability.splitting import SEPARATIONS, follow_pairs
-from burridge_knopoff.stability.uncertainty import ExponentKind, uncertainty_exponent
-from burridge_knopoff.study.words import plain, with_error
-from burridge_knopoff.summaries.slots import NAMES, branch_names
+from burridge_knopoff.study.formatting import plain, with_error
 
 _PLANE = ("last_position", "first_position")
 _V = Variable
@@ -69,53 +70,37 @@ COORDINATES = {
 }
 
 
-def tile(
-    attractors: xarray.Dataset,
-    model: Model,
-    number: int,
-    basins: BasinSettings,
-    settings: SearchSettings,
-    motion: MotionSettings,
-    start: str,
-) -> xarray.Dataset:
+def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit: float, start: str) -> xarray.Dataset:
     """Label one tile of a map: a band of rows of equal U_N(0).
 
-    attractors : the summary of that name, made with these settings of the search and of kinds of motion
+    known : the attractors of the model
     number : of the tile, from 0
+    label_limit : time by which a state has to reach an attractor; start : see `Model.begin`
     """
-    known = known_attractors(attractors, model, settings, motion)
     first = pixel_centres(basins.first_position, basins.pixels)
     last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
     position, velocity = plane(basins.initial.position, first, last, basins.initial.velocity)
-    labels, times = _labels(known, position, velocity, basins, settings, start)
+    labels, times = _labels(known, position, velocity, basins, label_limit, start)
     shape = (len(last), len(first))
     values = {
         name: np.where(labels == UNDETERMINED, missing, table[labels] if len(table) else missing).reshape(shape)
         for name, table, missing in (("branch", known.branch, UNDETERMINED), ("side", known.side, 0))
     }
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
-    attributes = {"law": model.law.name, "a": model.a, "history": "snakemake, from attractors.nc"}
+    attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
     coordinates = _coordinates(first, last)
     return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
-def pairs(
-    attractors: xarray.Dataset,
-    model: Model,
-    basins: BasinSettings,
-    settings: SearchSettings,
-    motion: MotionSettings,
-    start: str,
-) -> xarray.Dataset:
+def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str) -> xarray.Dataset:
     """Label pairs of near states of the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
-    known = known_attractors(attractors, model, settings, motion)
 
     def label(points: np.ndarray) -> np.ndarray:
         first, last = points.T
         position, velocity = states(basins.initial.position, first, last, basins.initial.velocity)
-        return _labels(known, position, velocity, basins, settings, start)[0]
+        return _labels(known, position, velocity, basins, label_limit, start)[0]
 
-    found = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, settings.seed)
+    found = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, seed)
     exponent = uncertainty_exponent(found)
     values: dict[str, Any] = {"uncertain_count": found.different_count, "pair_count": found.known_count}
     for name, pair in (
@@ -126,7 +111,7 @@ def pairs(
     ):
         values[name], values[f"{name}_error"] = pair
     values["exponent_kind"] = exponent.kind
-    attributes = {"law": model.law.name, "a": model.a, "history": "snakemake, from attractors.nc"}
+    attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
     coordinates = {"separation": _separation(basins)}
     return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
 
@@ -136,7 +121,7 @@ def _labels(
     position: np.ndarray,
     velocity: np.ndarray,
     basins: BasinSettings,
-    settings: SearchSettings,
+    label_limit: float,
     start: str,
 ) -> tuple[np.ndarray, np.ndarray]:
     return label_states(
@@ -145,7 +130,7 @@ def _labels(
         position,
         velocity,
         start=start,
-        time_limit=settings.label_limit,
+        time_limit=label_limit,
         threads=basins.threads,
     )
 

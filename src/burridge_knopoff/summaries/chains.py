@@ -1,6 +1,6 @@
 """Which fraction of the sampled initial states synchronizes, against a and the number of blocks.
 
-A chain file holds what `stability.chains` found for one number of blocks; the summary puts all of them together.
+A chain file holds what `motion.chain_synchronization` found for one number of blocks; the summary collects all.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from numpy.typing import ArrayLike
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.sources import provenance
-from burridge_knopoff.stability.chains import (
+from burridge_knopoff.model.sampling import CONFIDENCE, fraction_interval
+from burridge_knopoff.motion.chain_synchronization import (
     Outcome,
     Sample,
     Watch,
     watch_chain,
 )
-from burridge_knopoff.stability.sampling import CONFIDENCE, fraction_interval
-from burridge_knopoff.study.words import friction_words
+from burridge_knopoff.provenance.sources import provenance
+from burridge_knopoff.study.formatting import friction_words
 
 _POINT = ("law", "a")
 _OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance(__name__))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.stability.motion import SYNCHRONOUS, MotionKind, same_result
+from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, same_result
 
 
 def compare(

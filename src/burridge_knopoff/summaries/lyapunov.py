@@ -11,9 +11,9 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import PERIOD, YES_OR_NO, Variable, flag
-from burridge_knopoff.stability.motion import MotionKind, motion_of_run, zero_exponents
-from burridge_knopoff.stability.period import SECTION
-from burridge_knopoff.stability.settings import MotionSettings
+from burridge_knopoff.motion.kind import MotionKind, motion_of_run, zero_exponents
+from burridge_knopoff.motion.period import SECTION
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
 
 _AXES = ("law", "initial", "a")

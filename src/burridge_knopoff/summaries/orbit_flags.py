@@ -18,14 +18,6 @@ class OrbitStatus(IntEnum):
     NOT_THREE_BLOCKS = 3
 
 
-class Bifurcation(IntEnum):
-    """How the synchronized orbit is lost, numbered as in netCDF files."""
-
-    UNDETERMINED = -1
-    PITCHFORK = 1
-    FLIP = 2
-
-
 class BifurcationSide(IntEnum):
     """On which side of a_c the orbits that branch off lie, numbered as in netCDF files."""
 

@@ -12,23 +12,24 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, rate
-from burridge_knopoff.periodic_orbits.known import KnownOrbits
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
-from burridge_knopoff.periodic_orbits.synchrony import (
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    bifurcations_of,
     critical_a,
     critical_a_error,
-    edges_of,
     grazing_a,
-    symmetric_flip_a,
+    symmetric_period_doubling_a,
     unit,
 )
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
-from burridge_knopoff.summaries.orbit_flags import Bifurcation, BifurcationSide, OrbitStatus
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
 
 BLOCKS = 3
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
@@ -55,9 +56,11 @@ VARIABLES = {
     "critical_a": Variable(("law",), "f8", "a_c, at which |mu| reaches 1"),
     "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is taken from finite differences of the flow"),
     "grazing_a": Variable(("law",), "f8", "a at which block 2 begins to stick"),
-    "symmetric_flip_a": Variable(("law",), "f8", "a at which a multiplier of symmetric perturbations reaches -1"),
+    "symmetric_period_doubling_a": Variable(
+        ("law",), "f8", "a at which a multiplier of symmetric perturbations reaches -1"
+    ),
     "bifurcation_kind": Variable(
-        ("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", Bifurcation)
+        ("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", BifurcationKind)
     ),
     "bifurcation_side": Variable(
         ("law",), "i1", "side of a_c on which the orbits that branch off lie", flag("i1", BifurcationSide)
@@ -204,20 +207,20 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
     """Fill in where the orbit of the law of that number changes, and what branches off."""
     if orbits is None:
         return
-    edges = edges_of(orbits)
-    critical = critical_a(edges)
+    bifurcations = bifurcations_of(orbits)
+    critical = critical_a(bifurcations)
     values["critical_a"][i] = critical
-    values["grazing_a"][i] = grazing_a(edges, block=1)
-    values["symmetric_flip_a"][i] = symmetric_flip_a(edges)
+    values["grazing_a"][i] = grazing_a(bifurcations, block=1)
+    values["symmetric_period_doubling_a"][i] = symmetric_period_doubling_a(bifurcations)
     if not np.isfinite(critical):
         return
     values["critical_a_error"][i] = critical_a_error(orbits, critical)
-    kind = Bifurcation.PITCHFORK if transverse(orbits, critical) > 0.0 else Bifurcation.FLIP
+    kind = BifurcationKind.PITCHFORK if transverse(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
     values["bifurcation_kind"][i] = kind
     runs = critical + unit(orbits.model.chain) * np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
-    if kind == Bifurcation.PITCHFORK:
+    if kind == BifurcationKind.PITCHFORK:
         _fill_branch(values, i, orbits, critical, asymmetry)
 
 

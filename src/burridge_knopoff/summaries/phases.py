@@ -1,4 +1,4 @@
-"""What initial phases lead to, over (law, a, inner share, amplitude, phase difference): `stability.phases`."""
+"""What initial phases lead to, over (law, a, inner share, amplitude, phase difference): `basins.initial_phases`."""
 
 from __future__ import annotations
 
@@ -10,15 +10,14 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.labels import UNDETERMINED, label_states
+from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
+from burridge_knopoff.basins.settings import PhaseSettings
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import shared_out
-from burridge_knopoff.stability.basins import KnownAttractors, known_attractors
-from burridge_knopoff.stability.labels import UNDETERMINED, label_states
-from burridge_knopoff.stability.phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import MotionSettings, PhaseSettings, SearchSettings
 from burridge_knopoff.summaries.along_attractor import along_attractor
 
 TITLE = "Initial phases of the blocks"
@@ -66,24 +65,17 @@ ATTRIBUTES = ("history", "v", "contact", "seed", "label_limit")
 
 
 def one_law(
-    attractors: xarray.Dataset,
-    model: Model,
-    grid: Sequence[float],
-    phases: PhaseSettings,
-    settings: SearchSettings,
-    motion: MotionSettings,
-    processes: int = 1,
+    known: Sequence[KnownAttractors], phases: PhaseSettings, label_limit: float, processes: int = 1
 ) -> xarray.Dataset:
     """Label states by their phases under one law.
 
-    attractors : the summary of that name, made with these settings of the search and of kinds of motion
-    model : under that law, at any a; grid : values of a, of those of the summary
+    known : the attractors at each a
+    label_limit : time by which a state has to reach one of them
     processes : that work at once; no result depends on them
     """
-    at_each = [attractors.sel(law=[model.law.name], a=[a]).load() for a in grid]
     with shared_out(processes) as each:
-        of_one = partial(_at, phases=phases, settings=settings, motion=motion)
-        found = each("phases", of_one, at_each, [model.at(a) for a in grid])
+        found = each("phases", partial(_at, phases=phases, label_limit=label_limit), known)
+    model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2
     coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}
     for name, item in COORDINATES.items():
@@ -96,7 +88,7 @@ def one_law(
         "v": model.v,
         "contact": model.contact,
         "seed": phases.seed,
-        "label_limit": settings.label_limit,
+        "label_limit": label_limit,
     }
     variables = {**VARIABLES, **COMMON_VARIABLES}
     arrays = {name: np.array([values[name] for values in found]) for name in found[0]}
@@ -104,15 +96,13 @@ def one_law(
     return summary(TITLE, variables, arrays, coordinates, attributes, module=__name__)
 
 
-def _at(
-    attractors: xarray.Dataset, model: Model, phases: PhaseSettings, settings: SearchSettings, motion: MotionSettings
-) -> dict[str, np.ndarray]:
+def _at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
     """Return the values of all variables at one a, but for the slipping amplitude."""
     shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
     amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
+    model = known.model
     inner = model.chain.blocks - 2
-    known = known_attractors(attractors, model, settings, motion)
-    correlations = [along_attractor(model, item.motion.instant()).velocity_correlation for item in known.attractors]
+    correlations = [along_attractor(model, item.motion.state()).velocity_correlation for item in known.attractors]
     common = common_phases(model.a, shape, phases.seed)
     of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
     told = amplitude.ravel(), difference.ravel(), common.ravel()
@@ -120,7 +110,7 @@ def _at(
     for share in phases.inner_share:
         position, velocity, standing = oscillating_states(model, *told, share, of_inner.reshape(-1, inner))
         # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
-        labels, _ = label_states(model, known.attractors, position, velocity, time_limit=settings.label_limit)
+        labels, _ = label_states(model, known.attractors, position, velocity, time_limit=label_limit)
         cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
         cells.append({**cell, **_reached(known, correlations, labels.reshape(shape))})
     values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}

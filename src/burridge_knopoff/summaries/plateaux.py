@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.stability.sampling import fraction_interval
+from burridge_knopoff.model.sampling import fraction_interval
 
 if TYPE_CHECKING:
     import xarray

@@ -16,12 +16,12 @@ from flint import arb, fmpq
 from burridge_knopoff.dataset.summary import AXES, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.periodic_orbits.synchrony import critical_a, edges_of
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, digits, limits, width
 from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
 from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
-from burridge_knopoff.stability.synchronized import synchronized_orbits
 
 #: Number of blocks of the chain.
 CHAIN_BLOCKS = 3
@@ -108,7 +108,7 @@ def _of_law(model: Model) -> dict[str, Any]:
     # Only the guess comes from a simulation. Under the linearized law it serves for every v.
     orbits = synchronized_orbits(replace(model, v=NONLINEAR_V, contact="one_sided"))
     given = prove_orbit(orbits.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
-    critical = prove_critical(orbits.at(critical_a(edges_of(orbits))))
+    critical = prove_critical(orbits.at(critical_a(bifurcations_of(orbits))))
     branch: list[Piece] = []
     between = np.nan, np.nan
     if is_linearized(model):

@@ -1,7 +1,7 @@
 """The attractors of each law at all values of a: those of the grid, and those put in between where something changes.
 
 Each law has values of its own. The file has the slots of `attractors`, over (law, value, attractor), with a over
-(law, value): see `stability.continuation`.
+(law, value): see `continuation.along_a`.
 """
 
 from __future__ import annotations
@@ -9,15 +9,17 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.table import slot_coordinates, slot_values, slot_variables
+from burridge_knopoff.continuation.along_a import Continuation
+from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
-from burridge_knopoff.stability.continuation import Continuation
-from burridge_knopoff.stability.settings import MotionSettings, Refine, SearchSettings
 from burridge_knopoff.summaries import attractors
-from burridge_knopoff.summaries.slots import branch_order, slot_coordinates, slot_values, slot_variables
 
 VARIABLES = {
     "a": Variable(("value",), "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
@@ -40,7 +42,7 @@ def one_law(
 ) -> xarray.Dataset:
     """Return the attractors of one law at all values of a; arguments as in `attractors.one_law`."""
     count = len(found.models)
-    values = slot_values(found, range(count), settings.lifetime, "value")
+    values = slot_values(found.models, [found.rows(k) for k in range(count)], settings.lifetime, "value")
     values["section_velocity"] = _sections(found, settings.window, motion.section)
     values["a"] = np.array([model.a for model in found.models])
     values["in_grid"] = np.isin(np.arange(count), found.grid)
@@ -60,9 +62,9 @@ def _sections(found: Continuation, window: float, section: Section) -> np.ndarra
     shape = len(found.models), max(1, *map(len, found.attractors)), CROSSINGS
     velocity = np.full(shape, np.nan)
     for place, model in enumerate(found.models):
-        for slot, index in enumerate(branch_order(found, place)):
-            if found.side[place][index] >= 0:
-                start = found.attractors[place][index].motion.instant()
+        for slot, row in enumerate(found.rows(place)):
+            if row.side >= 0:
+                start = row.attractor.motion.state()
                 crossings = run(model, start, once, section_only=True).crossing_velocity[:CROSSINGS]
                 velocity[place, slot, : len(crossings)] = crossings
     return velocity

@@ -1,7 +1,7 @@
 """The rotation number of branch 1 over (law, a), at all values of `refined`, and which part of a is locked.
 
 Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. By mirror symmetry its end blocks have one
-frequency at every a; whether it is locked is shown by its rotation number (`stability.rotation`).
+frequency at every a; whether it is locked is shown by its rotation number (`motion.rotation`).
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
-from burridge_knopoff.model.model import Instant, Model
-from burridge_knopoff.stability.motion import REGULAR, MotionKind
-from burridge_knopoff.stability.rotation import rotation_number
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.kind import REGULAR, MotionKind
+from burridge_knopoff.motion.rotation import rotation_number
 
 BRANCH = 1
 
@@ -56,7 +56,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         at = law, value
         one = refined.isel(law=law, value=value, attractor=slot)
         model, velocity = models[law].at(float(values["a"][at])), one["velocity"].values
-        start = Instant(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
+        start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, FOLLOWED)
         values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
     attributes = {"branch": BRANCH, "duration": FOLLOWED, "history": "snakemake, from refined.nc"}

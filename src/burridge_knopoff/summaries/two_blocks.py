@@ -17,19 +17,20 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.asymptotic_states import endings
+from burridge_knopoff.attractors.settings import OF_GIVEN_STATES, SearchSettings
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.kind import MotionKind, motion_of_run
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.stability.endings import endings
-from burridge_knopoff.stability.motion import MotionKind, motion_of_run
-from burridge_knopoff.stability.sampling import fraction_interval
-from burridge_knopoff.stability.settings import OF_GIVEN_STATES, MotionSettings, SearchSettings
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare, excess
 

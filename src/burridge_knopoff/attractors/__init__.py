@@ -1,0 +1,1 @@
+"""The attractors of one model: convergence, search, capture, labels."""

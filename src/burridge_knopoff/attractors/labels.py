@@ -1,0 +1,156 @@
+"""Labels: which of several known attractors a trajectory reaches, by its returns, and when that is certain."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+
+import numpy as np
+
+from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.kernel.clouds import Clouds
+from burridge_knopoff.kernel.ensemble import UNDETERMINED
+from burridge_knopoff.model.model import STARTS, ChainState, Model
+from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.running.ensemble import new_ensemble
+from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.values import each_instance_of, instance_of, real_array
+
+
+def label(
+    model: Model, attractors: Sequence[Attractor], starts: Sequence[ChainState], time_limit: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which attractor each state reaches and when that was certain.
+
+    −1 where no attractor is reached by the time limit.
+    """
+    if not len(attractors) or not len(starts):
+        return np.full(len(starts), UNDETERMINED, dtype=np.intc), np.zeros(len(starts))
+    return label_together(model, attractors, *arrays(starts), time_limit)[:2]
+
+
+def arrays(starts: Sequence[ChainState]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return positions, velocities and which blocks stick of states, each of shape (n, blocks)."""
+    position, velocity, stuck = (
+        np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity", "stuck")
+    )
+    return position, velocity, stuck
+
+
+def label_together(
+    model: Model,
+    attractors: Sequence[Attractor],
+    position: np.ndarray,
+    velocity: np.ndarray,
+    stuck: np.ndarray,
+    time_limit: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Do the work of `label` for states x_i, U_i' and which blocks stick, each of shape (n, blocks).
+
+    The third array has the states at the time limit, shape (n, 2 blocks), NaN where a label was certain before.
+
+    A state has reached an attractor when enough of its successive returns, at the stops of its block, lie within
+    the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these, or any other
+    without patience, if it gets there within the attractor's patience.
+    """
+
+    def first(
+        attractors: Sequence[Attractor], states: np.ndarray | slice, end: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        clouds = Clouds(
+            [attractor.motion.returns for attractor in attractors],
+            2 * model.blocks,
+            [attractor.radius for attractor in attractors],
+        )
+        returns = [attractor.close_returns for attractor in attractors]
+        section = [attractor.motion.block - 1 for attractor in attractors]
+        begun = position[states], velocity[states], stuck[states].astype(np.intc)
+        return new_ensemble(model).label(*begun, clouds, returns, section, end)
+
+    labels, times, last = first(attractors, slice(None), time_limit)
+    prompt = [index for index, attractor in enumerate(attractors) if not attractor.patience]
+    for index, attractor in enumerate(attractors):
+        near = np.flatnonzero(labels == index)
+        if not (attractor.patience and prompt and len(near)):
+            continue
+        others, when, _ = first([attractors[k] for k in prompt], near, min(attractor.patience, time_limit))
+        gone = others != UNDETERMINED
+        labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
+    return labels, times, last
+
+
+def moved(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
+    """Return where states are after a time."""
+    position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
+    stuck = np.array([start.stuck for start in starts], dtype=np.intc)
+    end = new_ensemble(model).run(position, velocity, stuck, [time])
+    return [state_of(state) for state in np.concatenate([end["position"][:, 0], end["velocity"][:, 0]], axis=1)]
+
+
+def label_states(
+    model: Model,
+    attractors: Sequence[Attractor],
+    position: np.ndarray,
+    velocity: np.ndarray,
+    *,
+    start: str = "moving",
+    time_limit: float = SEARCH.time_limit,
+    threads: int = 1,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which attractor each initial state reaches, and the time τ at which that was certain, both of shape (n,).
+
+    model, attractors : as `find_attractors` takes and returns them
+    position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
+    time_limit : by which a state has to reach one of them
+    threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
+
+    A label is the index of an attractor, or −1 where none is reached. Raises ValueError, one line, for shapes, times or
+    a start that are not allowed, for numbers that are not finite, and for velocities below 0 under one-sided contact.
+
+    >>> import numpy as np
+    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> settings = SearchSettings(samples=12, transient=500, window=500)
+    >>> attractors, labels = find_attractors(model, settings)
+    >>> position = np.array([[-0.989, -0.993, -0.991], [0.989, -0.993, -0.991]])
+    >>> velocity = np.array([[0.099, 0.1012, 0.1023]] * 2)
+    >>> labels, times = label_states(model, attractors, position, velocity)
+    >>> labels.tolist(), times.round().tolist()
+    ([0, 1], [62.0, 355.0])
+    """
+    instance_of(model, Model, "model")
+    attractors = each_instance_of(attractors, Attractor, "attractors")
+    position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
+    if not position.shape == velocity.shape == (*position.shape[:1], model.blocks):
+        raise ValueError(
+            f"position, velocity: got shapes {position.shape}, {velocity.shape}, expected (n, {model.blocks}) for both"
+        )
+    slowest = 0.0 if model.contact == "one_sided" else -np.inf
+    if not (np.isfinite(position).all() and np.isfinite(velocity).all() and (velocity >= slowest).all()):
+        raise ValueError(
+            f"position, velocity: expected finite numbers, and velocities of at least {slowest:g} under {model.contact}"
+        )
+    OneOf(STARTS).form(start, "start")
+    time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
+    threads = Whole(1, 1024).form(threads, "threads")
+    stuck = model.starts_stuck(position, start)
+    labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
+    times = np.zeros(len(position))
+    if not attractors:
+        return labels, times
+    offset = position - model.sliding_offset
+    edges = np.linspace(0, len(position), threads + 1).astype(int)
+
+    def work(first: int, last: int) -> None:
+        part = slice(first, last)
+        labels[part], times[part], _ = label_together(
+            model, attractors, offset[part], velocity[part], stuck[part], time_limit
+        )
+
+    with ThreadPoolExecutor(threads) as pool:
+        for task in [pool.submit(work, first, last) for first, last in pairwise(edges)]:
+            task.result()
+    return labels, times

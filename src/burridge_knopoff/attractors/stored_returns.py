@@ -1,0 +1,128 @@
+"""The section returns of the attractors of one law in a netCDF file, by which states are labelled without a search.
+
+A row for each attractor at each a of the grid, its returns one after another (a CF contiguous ragged array).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.labels import UNDETERMINED
+from burridge_knopoff.attractors.table import Row, slot_coordinates
+from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.observables import SteadyMotion
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.provenance.sources import provenance
+
+_RETURN = ("section_return", "block")
+VARIABLES = {
+    "a": Variable(("attractor",), "f8", "friction parameter a"),
+    "slot": Variable(
+        ("attractor",), "i2", "number of the attractor at this a along the dimension `attractor` of attractors.nc"
+    ),
+    "return_count": Variable(
+        ("attractor",), "i4", "section returns of the attractor", {"sample_dimension": "section_return"}
+    ),
+    "section_block": Variable(("attractor",), "i2", "block at whose stops the returns are taken"),
+    "spacing": Variable(("attractor",), "f8", "distance between neighbouring returns"),
+    "position": Variable(
+        _RETURN,
+        "f8",
+        "positions at a stop of that block",
+        {"comment": "relative to the driver: U - v*tau, U the position of the paper"},
+    ),
+    "velocity": Variable(_RETURN, "f8", "velocities U' at this stop"),
+}
+
+
+def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the section returns of the attractors of one law.
+
+    models, rows : at each a of the grid; about : attributes of the table that they belong to
+    """
+    held = [
+        (model, slot, row.attractor.motion)
+        for model, here in zip(models, rows, strict=True)
+        for slot, row in enumerate(here)
+    ]
+    blocks = models[0].blocks
+    states = np.concatenate([np.zeros((0, 2 * blocks)), *(motion.returns for *_, motion in held)])
+    offset = np.concatenate(
+        [np.zeros((0, blocks)), *(np.tile(model.sliding_offset, (len(motion.returns), 1)) for model, _, motion in held)]
+    )
+    values = {
+        "a": [model.a for model, *_ in held],
+        "slot": [slot for _, slot, _ in held],
+        "return_count": [len(motion.returns) for *_, motion in held],
+        "section_block": [motion.block for *_, motion in held],
+        "spacing": [motion.spacing for *_, motion in held],
+        "position": states[:, :blocks] + offset,
+        "velocity": states[:, blocks:],
+    }
+    title = f"Section returns of the attractors, {models[0].law.name} friction law"
+    arrays = {name: np.asarray(value) for name, value in values.items()}
+    attributes = {key: value for key, value in about.items() if key not in ("title", *provenance(__name__))}
+    return summary(title, VARIABLES, arrays, slot_coordinates(blocks), attributes, module=__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class KnownAttractors:
+    """The attractors of one model, with the branch and the side of each, shape (attractors,)."""
+
+    model: Model
+    attractors: list[Attractor]
+    branch: np.ndarray
+    side: np.ndarray
+
+
+def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model: Model) -> KnownAttractors:
+    """Return the attractors of a model from the files of a study.
+
+    attractors : `attractors.nc`, which has the law of the model, by its name, and its a
+    returns : the section returns under that law, of the same search
+    """
+    found = attractors.sel(law=model.law.name, a=model.a)
+    slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
+    branch, side = found["branch"].values[slots], found["side"].values[slots]
+    first = np.concatenate([[0], np.cumsum(returns["return_count"].values)])
+    own = np.flatnonzero(returns["a"].values == model.a)
+    row_of = dict(zip(returns["slot"].values[own].tolist(), own.tolist(), strict=True))
+
+    def states(slot: int) -> np.ndarray:
+        part = slice(first[row_of[slot]], first[row_of[slot] + 1])
+        position = returns["position"].values[part] - model.sliding_offset
+        return np.concatenate([position, returns["velocity"].values[part]], axis=1)
+
+    result = []
+    for index, slot in enumerate(slots.tolist()):
+        one, row = found.isel(attractor=slot), row_of[slot]
+        images = np.flatnonzero((branch == branch[index]) & (side == -side[index]))
+        partner = int(images[0]) if side[index] and len(images) else index
+        mirror_symmetric = model.chain.is_mirror_symmetric
+        motion = SteadyMotion(
+            returns=states(slot),
+            mirror_returns=states(int(slots[partner])) if mirror_symmetric else np.zeros((0, 2 * model.blocks)),
+            spacing=returns["spacing"].values[row].item(),
+            mean_distance=one["mean_distance"].item(),
+            mean_distance_error=one["mean_distance_error"].item(),
+            stop_rate=one["stop_rate"].values,
+            kind=MotionKind(one["kind"].item()),
+            section_period=one["section_period"].item(),
+            exponent=one["lyapunov_exponent"].values,
+            block=int(returns["section_block"].values[row]),
+            mirror_block=int(returns["section_block"].values[row_of[int(slots[partner])]]),
+            period=one["period"].item(),
+        )
+        fixed = {name: one[name].item() for name in ("radius", "close_returns", "patience")}
+        symmetry = Symmetry(one["symmetry"].item())
+        result.append(Attractor(motion, symmetry, partner, slow=bool(one["slow"].item()), **fixed))
+    return KnownAttractors(model, result, branch, side)

@@ -1,0 +1,92 @@
+"""Initial states by their phases: end blocks, and if so told all others, that oscillate about uniform sliding.
+
+`summaries.phases` labels them by the attractors that they reach.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.sampling import seed_at
+
+
+def ends_are_neighbours(chain: Chain) -> bool:
+    """Tell whether a spring joins the end blocks, as with two blocks and in a ring, or one block is both of them.
+
+    Then neither slides uniformly while the other oscillates, and K_ii says nothing of their frequencies: with equal
+    phases of two blocks ω² is K_11 − k, with opposite ones K_11 + k, k the spring, and with others there is no one ω.
+    """
+    return bool(chain.stiffness[0, -1] != 0.0)
+
+
+def block_frequencies(model: Model) -> np.ndarray:
+    """Return the angular frequency ω of each block while its neighbours slide uniformly, shape (blocks,).
+
+    ω² = K_ii: in the paper's chain 2 for the end blocks and 4 for the inner one. Opposite phases of the end blocks are
+    a normal mode of the sliding chain of three blocks, in which the inner one does not oscillate. The slope of the
+    friction law, which lets oscillations grow, makes ω smaller by the share a²/16 at most.
+
+    Raises ValueError, one line, if a spring joins the end blocks: see `ends_are_neighbours`.
+    """
+    if ends_are_neighbours(model.chain):
+        given = f"{model.chain.blocks} blocks, {model.chain.ends}"
+        raise ValueError(
+            f"chain: got {given}, expected no spring that joins the end blocks, for states by their phases"
+        )
+    return np.sqrt(model.chain.diagonal)
+
+
+def slipping_amplitude(model: Model, inner_share: float = 0.0) -> float:
+    """Return the amplitude A of the end blocks up to which all velocities are positive, whatever the phases.
+
+    inner_share : amplitude of the inner blocks over A
+
+    The velocity of a block stays positive all the time if its own amplitude is below v/ω.
+    """
+    frequencies = block_frequencies(model)
+    frequencies[1:-1] *= inner_share
+    return float(model.v / frequencies.max())
+
+
+def oscillating_states(
+    model: Model,
+    amplitude: np.ndarray,
+    phase_difference: np.ndarray,
+    common_phase: np.ndarray,
+    inner_share: float = 0.0,
+    inner_phase: np.ndarray | float = 0.0,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return states U(0) and U'(0) by the phases of the blocks, shape (n, blocks), and where a block stands, (n,).
+
+    amplitude : A of both end blocks, shape (n,)
+    common_phase, phase_difference : θ of the first block and δ, in degrees, shape (n,)
+    inner_share : amplitude of the inner blocks, which are all others, over A
+    inner_phase : θ_i of the inner blocks, in degrees, shape (n, blocks − 2)
+
+    In co-moving coordinates x_1 = A cos θ and x_N = A cos(θ + δ), with U_1' = v − Aω sin θ and
+    U_N' = v − Aω sin(θ + δ); x_i = share · A cos θ_i, with U_i' = v − share · Aω_i sin θ_i, for each inner block, at
+    the frequency that it has while its neighbours do not oscillate. With a share of 0 inner blocks slide uniformly,
+    x_i = 0 and U_i' = v. No block slips backward: where an oscillation would take it there, which happens above
+    `slipping_amplitude` only, the block stands, U' = 0.
+    """
+    angle = np.empty((len(amplitude), model.chain.blocks))
+    angle[:, 0], angle[:, -1], angle[:, 1:-1] = common_phase, common_phase + phase_difference, inner_phase
+    angle = np.radians(angle)
+    own = np.tile(amplitude[:, None], angle.shape[1])
+    own[:, 1:-1] *= inner_share
+    position = model.sliding_offset + own * np.cos(angle)
+    velocity = model.v - own * block_frequencies(model) * np.sin(angle)
+    standing: np.ndarray = np.any(velocity < 0.0, axis=1)
+    return position, np.maximum(velocity, 0.0), standing
+
+
+def common_phases(a: float, shape: tuple[int, ...], seed: int) -> np.ndarray:
+    """Return phases of the first block in degrees, uniform in [0, 360); those of different a are independent."""
+    return 360.0 * np.random.default_rng(seed_at(seed, a)).random(shape)
+
+
+def inner_phases(a: float, shape: tuple[int, ...], seed: int) -> np.ndarray:
+    """Return phases of the inner blocks as `common_phases` does, independent of those."""
+    return 360.0 * np.random.default_rng([*seed_at(seed, a), 1]).random(shape)

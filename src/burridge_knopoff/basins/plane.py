@@ -1,0 +1,33 @@
+"""Planes of initial states: two positions vary, everything else is that of one state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+
+def plane(
+    position: Sequence[float], first: np.ndarray, last: np.ndarray, velocity: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the initial states of a plane, U(0) and U'(0), each of shape (len(last) len(first), blocks).
+
+    The state given by `position` and `velocity`, but for U_1(0) from `first` and U_N(0) from `last`; `first` runs
+    faster.
+    """
+    return states(position, np.tile(first, len(last)), np.repeat(last, len(first)), velocity)
+
+
+def states(
+    position: Sequence[float], first: np.ndarray, last: np.ndarray, velocity: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return initial states, U(0) and U'(0), each of shape (n, blocks): a given one but for U_1(0) and U_N(0), (n,)."""
+    positions = np.tile(np.array(position, dtype=float), (len(first), 1))
+    positions[:, 0], positions[:, -1] = first, last
+    return positions, np.tile(np.array(velocity, dtype=float), (len(first), 1))
+
+
+def pixel_centres(interval: Sequence[float], pixels: int) -> np.ndarray:
+    """Return the middles of equal pixels that fill an interval (low, high), shape (pixels,)."""
+    low, high = interval
+    return low + (high - low) * (np.arange(pixels) + 0.5) / pixels

@@ -1,0 +1,1 @@
+"""Attractors along a: matched into branches, refined, followed to their bifurcations."""

@@ -1,0 +1,189 @@
+"""Bifurcations of the attractors, marked on ⟨J⟩ of periodic orbits versus a."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.continuation.branch_changes import Change
+from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
+from burridge_knopoff.figures.style import (
+    begin_at_zero,
+    label_panels,
+    legend_below,
+    page_width,
+    say_nothing,
+    show_all,
+    styled,
+)
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+
+TITLE = "Bifurcations of the attractors"
+CATEGORY = "Attractors"
+INPUTS = ("attractors", "bifurcations")
+CAPTION = """\
+Above: ⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to:
+solid where they are stable, dashed where they are unstable, a little beyond a bifurcation. Grey points: all
+attractors. Middle: the bifurcations, one row for each kind, in the colour of the branch that begins, ends or changes.
+Crises and undetermined changes are only known to lie in a range of a, the width of the bar. Below, where the study
+covers it: the road from one period to chaos, enlarged, with the bifurcations as symbols on the orbits and the stops of
+all blocks in a period.
+"""
+
+# Marker and name of each kind of bifurcation that is located.
+MARKS = {
+    BifurcationKind.GRAZING: ("v", "grazing"),
+    BifurcationKind.FOLD: ("s", "fold"),
+    BifurcationKind.PERIOD_DOUBLING: ("D", "period doubling"),
+    BifurcationKind.NEIMARK_SACKER: ("o", "Neimark–Sacker"),
+    BifurcationKind.PITCHFORK: ("P", "pitchfork"),
+}
+MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
+# Rows of the panels of bifurcations.
+ROWS = {
+    **{kind: name for kind, (_, name) in MARKS.items()},
+    BifurcationKind.CRISIS: "crisis",
+    BifurcationKind.UNDETERMINED: "unknown",
+}
+
+#: Ranges of a and ⟨J⟩ of the panels below.
+ROAD = ((0.108, 0.182), (0.0412, 0.0488))
+
+# Stretches of stable orbits at least this long in a have their stops beside them there.
+NAMED = 0.01
+
+
+@styled
+def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
+    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and below it the bifurcations by kind."""
+    laws = [str(law) for law in attractors["law"].values]
+    rows = 2 + _covers_road(attractors, bifurcations)
+    heights = [3.0, 1.3, 2.6][:rows]
+    figure = Figure(figsize=(page_width(len(laws)), 1.2 + sum(heights)), layout="constrained")
+    panels = figure.subplots(rows, len(laws), sharey="row", squeeze=False, height_ratios=heights)
+    colors = branch_colors(attractors)
+    for number, column in enumerate(panels.T):
+        law = attractors.sel(law=laws[number])
+        for panel in (column[0], *column[2:]):
+            _attractors(panel, law)
+            _orbits(panel, bifurcations, number, colors)
+        begin_at_zero(column[0])
+        show_all(column[0], attractors["a"].values)
+        if (law["branch"] < 0).all():
+            say_nothing(column[0], "no attractor was found")
+        _bifurcations(column[1], bifurcations, number, colors)
+        column[1].sharex(column[0])
+        column[0].tick_params(labelbottom=False)
+        for panel in column[2:]:
+            _marks(panel, bifurcations, number)
+            _stops(panel, bifurcations, number)
+            panel.set(xlim=ROAD[0], ylim=ROAD[1])
+        for panel in column[1:]:
+            panel.set_xlabel("$a$")
+    for panel in (panels[0, 0], *panels[2:, 0]):
+        panel.set_ylabel(r"$\langle J\rangle$")
+    figure.align_ylabels()
+    _legend(figure, bifurcations, colors, branch_names(attractors), rows > 2)
+    label_panels(
+        panels.flat, [f"{law} law{end}" for end in ("", ": bifurcations", ": road to chaos")[:rows] for law in laws]
+    )
+    return figure
+
+
+def _covers_road(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
+    """Tell whether the values of a reach beyond the road, and orbits of every law lie on it."""
+    a, mean, law = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "law"))
+    inside = (a > ROAD[0][0]) & (a < ROAD[0][1]) & (mean > ROAD[1][0]) & (mean < ROAD[1][1])
+    return bool(attractors["a"].values[-1] >= ROAD[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
+
+
+def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:
+    there = attractors["branch"].values >= 0
+    a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
+    panel.plot(a, attractors["mean_distance"].values[there], ".", color="#bbbbbb", markersize=2.0, zorder=0)
+
+
+def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
+    own = bifurcations["orbit_law"].values == law
+    number, branch = bifurcations["orbit_segment"].values, bifurcations["orbit_branch"].values
+    a, mean, stable = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
+    for one in np.unique(number[own]):
+        chosen = np.flatnonzero(own & (number == one))
+        color = colors.get(int(branch[chosen[0]]), OTHER_COLOR)
+        ends = np.flatnonzero(np.diff(stable[chosen])) + 1
+        for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
+            # An unstable piece is drawn from the stable orbit before it to the one after it.
+            piece = chosen[first:last] if stable[chosen[first]] else chosen[max(first - 1, 0) : last + 1]
+            style, width = ("-", 1.3) if stable[chosen[first]] else ("--", 0.7)
+            panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
+
+
+def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
+    """Draw each bifurcation into the row of its kind: a line where it is located, else a bar over its range of a."""
+    a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
+    # What begins is above the bifurcation, all else below.
+    branch = np.where(
+        bifurcations["change"] == Change.BEGINNING, bifurcations["to_branch"], bifurcations["from_branch"]
+    )
+    for row, one in enumerate(ROWS):
+        for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == one)):
+            color = colors.get(int(branch[k]), OTHER_COLOR)
+            width = 0.0 if one in MARKS else 2.0 * error[k]
+            panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
+    panel.set_yticks(range(len(ROWS)), list(ROWS.values()), fontsize=7.0)
+    panel.tick_params(axis="y", length=0)
+    panel.set_ylim(len(ROWS) - 0.4, -0.6)
+
+
+def _marks(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
+    """Draw a symbol at each bifurcation that is located."""
+    own, kind = bifurcations["law"].values == law, bifurcations["kind"].values
+    a, mean = bifurcations["a"].values, bifurcations["mean_distance"].values
+    for one, (marker, _) in MARKS.items():
+        chosen = own & (kind == one) & np.isfinite(mean)
+        panel.plot(a[chosen], mean[chosen], marker, zorder=3, **MARK)
+
+
+def _stops(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
+    """Write how often each block stops in a period beside the longer segments of stable orbits."""
+    own = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
+    number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
+    for one in np.unique(number[own]):
+        chosen = np.flatnonzero(own & (number == one))
+        inside = chosen[(mean[chosen] > ROAD[1][0]) & (mean[chosen] < ROAD[1][1]) & (a[chosen] > ROAD[0][0])]
+        inside = inside[a[inside] < ROAD[0][1]]
+        if not len(inside) or np.ptp(a[inside]) < NAMED:
+            continue
+        middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]
+        stops = ", ".join(str(count) for count in bifurcations["orbit_stops"].values[middle])
+        panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
+
+
+def _legend(
+    figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str], marked: bool
+) -> None:
+    """Put a legend of what is drawn below all panels; marked : whether there are symbols of bifurcations."""
+    drawn = {int(number): colors.get(int(number), OTHER_COLOR) for number in bifurcations["orbit_branch"].values}
+    stable = bifurcations["orbit_stable"].values
+    located = bifurcations["kind"].values[np.isfinite(bifurcations["mean_distance"].values)]
+    orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
+    handles = [
+        *(
+            Line2D([], [], color="#555555", linewidth=width, linestyle=line, label=name)
+            for number, width, line, name in orbits
+            if number in stable
+        ),
+        *(
+            Line2D([], [], linestyle="", marker=marker, label=name, **MARK)
+            for one, (marker, name) in MARKS.items()
+            if marked and one in located
+        ),
+        *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
+    ]
+    legend_below(figure, handles)

@@ -1,0 +1,88 @@
+"""Initial states drawn at random from a stated box, with a fixed seed, and confidence intervals of their fractions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+
+from burridge_knopoff.model.initial import COORDINATE, InitialState
+from burridge_knopoff.model.ranges import Interval, Number, Whole
+
+#: Default box: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
+POSITIONS = (-1.5, 1.5)
+VELOCITIES = (0.0, 0.2)
+
+#: Ranges of what a box and a sample are given by.
+POSITION = Interval(COORDINATE)
+VELOCITY = Interval(Number(0.0, 1e6))
+SEED = Whole(0, 2**32 - 1)
+SAMPLES = Whole(1, 100_000)
+
+CONFIDENCE = 0.95
+
+
+def seed_at(seed: int, a: float) -> list[int]:
+    """Return a seed of samples that are drawn anew at each a: those of neighbours are not wrong together."""
+    return [seed, int(np.float64(a).view(np.uint64))]
+
+
+def sample_states(
+    blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int | Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return `count` initial states, U(0) and U'(0), each of shape (count, blocks), uniform in a box.
+
+    position, velocity : (low, high) of every U_i(0) and every U_i'(0)
+    seed : one number, or several
+    The first states of a longer sample are those of a shorter one.
+    """
+    generator = np.random.default_rng([*np.atleast_1d(seed).tolist(), blocks])
+    unit = generator.random((count, 2, blocks))
+    low = np.array([position[0], velocity[0]])[:, None]
+    high = np.array([position[1], velocity[1]])[:, None]
+    states = low + (high - low) * unit
+    return states[:, 0], states[:, 1]
+
+
+def sampled_states(
+    blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int | Sequence[int]
+) -> list[InitialState]:
+    """Return the states of `sample_states` one by one, named state1, state2, …"""
+    drawn = sample_states(blocks, count, position, velocity, seed)
+    return [
+        InitialState(f"state{number}", tuple(u), tuple(w)) for number, (u, w) in enumerate(zip(*drawn, strict=True), 1)
+    ]
+
+
+def most_states(width: float) -> int:
+    """Return how many states give any fraction a confidence interval of that half width."""
+    count = 0 if width >= 0.5 else math.ceil(0.5 / width)
+    while count and half_width(count // 2, count) > width:
+        count = math.ceil(1.01 * count)
+    return count
+
+
+def half_width(hits: int, count: int) -> float:
+    """Return half the width of the confidence interval of hits/count; 0.5 for no trials."""
+    _, low, high = fraction_interval(hits, count)
+    return 0.5 * (high - low) if count else 0.5
+
+
+@cache
+def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
+    """Return the fraction hits/count and its Wilson confidence interval (low, high); NaN for no trials.
+
+    Reference: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209-212.
+    """
+    if count == 0:
+        return np.nan, np.nan, np.nan
+    # Imported only here: it would be a fifth of the start of every `snakemake`, which reads claims and counts nothing.
+    # `scipy.stats` has it too, and takes more than half a second.
+    import scipy.special
+
+    z = float(scipy.special.ndtri(0.5 + 0.5 * CONFIDENCE))
+    centre = (hits + 0.5 * z**2) / (count + z**2)
+    half = z / (count + z**2) * math.sqrt(hits * (count - hits) / count + 0.25 * z**2)
+    return hits / count, max(0.0, centre - half), min(1.0, centre + half)

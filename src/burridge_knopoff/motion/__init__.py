@@ -1,0 +1,1 @@
+"""What kind of motion a trajectory settles on: its section returns, period, exponents and observables."""

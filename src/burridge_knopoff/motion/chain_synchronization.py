@@ -1,0 +1,232 @@
+"""Do the mirror blocks of a chain synchronize? Sampled initial states are watched, and symmetric motion is perturbed.
+
+Blocks i and j = N + 1 − i are mirror blocks. The distance of a pair is J_i = sqrt((U_i' − U_j')² + (U_i − U_j)²), J of
+the paper for the end blocks; the mirror distance is the largest of them. For odd N the middle block belongs to no pair.
+All of this is for chains that are their own mirror images; others are refused. `summaries.chains` writes what is
+found to files, and `figures.chains` draws it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.ranges import Number
+from burridge_knopoff.motion.chain_settings import SAMPLE, WATCH, Sample, Watch
+from burridge_knopoff.motion.mirror import pair_distances, symmetrized
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.settings import DURATION, LONGEST, Settings
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import instance_of
+
+
+class Outcome(IntEnum):
+    """Whether the mirror blocks of a chain have synchronized, numbered as in netCDF files."""
+
+    UNDETERMINED = -1
+    NOT_SYNCHRONIZED = 0
+    SYNCHRONIZED = 1
+
+
+# Time between two looks at the distances; no multiple of the period of the synchronous motion, about 5.6.
+INTERVAL = 20.0
+
+# The distance still falls if its maximum over a quarter of the run is below this share of that over the quarter before.
+FALLING = 0.5
+
+# Motion that stays nearer to symmetric motion than this, for v = 0.1, is judged by the transverse exponent there.
+NEAR = 0.01
+STANDARD_ERRORS = 3.0
+
+# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time at most.
+RENEWAL = 10.0
+
+# Time for a perturbation to turn into the direction that grows most, where the motion itself has settled.
+ALIGNMENT = 200.0
+BATCHES = 5
+
+# A batch holds such a time at least, about two periods of synchronous motion: less shows nothing of its own scatter.
+WINDOW = Number(BATCHES * RENEWAL, LONGEST)
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What became of a state.
+
+    outcome : synchronized, the mirror distance has reached the synchronization distance and the transverse exponent
+        of the motion there is negative; undetermined, that exponent is not negative; or at the time limit the distance
+        still falls, or is small and the transverse exponent is not positive beyond its error; or the run failed; else
+        not synchronized
+    time : when the synchronization distance was reached, NaN if it was not
+    distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit; at `time`, if it
+        was reached
+    pairs : number of pairs that stay below the pair distance in the last quarter; all of them, if synchronized
+    transverse_exponent : of the symmetric motion that was reached or is near
+    """
+
+    outcome: Outcome
+    time: float = math.nan
+    distance: float = math.nan
+    mean_distance: float = math.nan
+    pairs: int = 0
+    transverse_exponent: float = math.nan
+
+
+def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate:
+    """Watch a state until it has synchronized or the time limit is over.
+
+    runner : `Runner(model)`, for any number of states
+
+    Raises ValueError if the chain is not its own mirror image.
+    """
+    model = runner.model
+    _check_mirror(model)
+    runner.begin(start)
+    history: list[np.ndarray] = []
+    for check in range(1, int(watch.time_limit / INTERVAL) + 1):
+        if runner.run(check * INTERVAL) != Status.COMPLETED:
+            return Fate(Outcome.UNDETERMINED)
+        state = runner.state()
+        distances = pair_distances(state)
+        history.append(distances)
+        nearest = float(distances.max())
+        if nearest <= watch.synchronization_distance:
+            exponent, _ = transverse_exponent(model, state, ALIGNMENT, watch.quarter)
+            outcome = Outcome.SYNCHRONIZED if exponent < 0.0 else Outcome.UNDETERMINED
+            return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
+    quarter = len(history) // 4
+    last, before = np.array(history[-quarter:]), np.array(history[-2 * quarter : -quarter])
+    undetermined = last.max() < FALLING * before.max()
+    exponent = math.nan
+    if last.max() < NEAR * model.scale:
+        exponent, error = transverse_exponent(model, runner.state(), ALIGNMENT, watch.quarter)
+        undetermined |= not exponent > STANDARD_ERRORS * error
+    return Fate(
+        Outcome.UNDETERMINED if undetermined else Outcome.NOT_SYNCHRONIZED,
+        distance=float(last.max()),
+        mean_distance=float(last.max(axis=1).mean()),
+        pairs=int(np.count_nonzero(last.max(axis=0) < watch.pair_distance * min(1.0, model.scale))),
+        transverse_exponent=exponent,
+    )
+
+
+def transverse_exponent(
+    model: Model, state: ChainState, alignment: float = ALIGNMENT, window: float = WATCH.quarter
+) -> tuple[float, float]:
+    """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
+
+    The state is made symmetric, and an antisymmetric perturbation is carried along exactly (see `kernel.tangent`). The
+    exponent is its mean rate of growth over the window, which begins after a time of alignment. Negative: mirror blocks
+    that are near each other synchronize. NaN if the run fails, −∞ if the perturbation vanishes. Raises ValueError if
+    the chain is not its own mirror image, and for times that are not allowed.
+
+    Two things go into the error: the scatter of BATCHES equal batches, and what the length of the perturbation owes to
+    the phases at which the window begins and ends. If a batch lasts about a whole number of periods all of them have
+    the same share of that, and their scatter shows nothing of it.
+
+    model, state : any state of a motion, as `Model.begin` and `Orbit.reference` are
+    alignment, window : in units of 1/ω, as the exponent is in units of ω; the window is 50 at least
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> state = model.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
+    >>> exponent, error = transverse_exponent(model, state, alignment=500.0, window=2000.0)
+    >>> round(exponent, 3), error < 1e-3
+    (-0.007, True)
+    """
+    instance_of(model, Model, "model")
+    _check_mirror(model)
+    alignment, window = DURATION.form(alignment, "alignment"), WINDOW.form(window, "window")
+    blocks = model.blocks
+    index = np.arange(2 * blocks)
+    # A direction of no special symmetry but this one.
+    perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
+    runner = Runner(model, perturbations=perturbation)
+    before, steps = math.ceil(alignment / RENEWAL), BATCHES * math.ceil(window / BATCHES / RENEWAL)
+    growth = np.zeros(steps)
+    state = symmetrized(state)
+    for step in range(-before, steps):
+        perturbation[blocks:, 0] *= ~state.stuck
+        length = math.sqrt(math.fsum(perturbation[:, 0] ** 2))
+        if length == 0.0:
+            return -math.inf, math.nan
+        perturbation /= length
+        runner.carry(perturbation)
+        after = runner.after(state, alignment / before if step < 0 else window / steps)
+        if after is None:
+            return math.nan, math.nan
+        # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
+        state = symmetrized(after)
+        perturbation = _antisymmetric(runner.perturbations)
+        if step >= 0:
+            growth[step] = 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
+    rate = growth.reshape(BATCHES, -1).sum(axis=1) / (window / BATCHES)
+    # What is left of the growth so far without its trend changes with the phase; the window has that of two instants.
+    by_phase = np.cumsum(growth - growth.mean()).std() * math.sqrt(2.0) / window
+    return float(rate.mean()), math.hypot(rate.std(ddof=1) / math.sqrt(BATCHES), by_phase)
+
+
+def watch_chain(
+    models: Sequence[Model], grid: Sequence[float], sample: Sample = SAMPLE, watch: Watch = WATCH
+) -> dict[str, np.ndarray]:
+    """Watch all sampled states of a chain under each law at each a of a grid.
+
+    models : one for each law, at any a, all of the same number of blocks
+    sample : drawn anew at each a, for all laws alike: laws are compared from the same states, and neighbouring values
+        of a do not err together
+
+    Returns arrays of shape (models, grid, states): the fields of `Fate`; of shape (models, grid, symmetric samples):
+    `symmetric_exponent` and its error, the largest transverse exponent of symmetric motion after a quarter of the time
+    limit, over another quarter; and of shape (models, grid): `lyapunov_exponent`, the largest one of the first state in
+    the second half of the time limit, and its error. Raises ValueError if the chain is not its own mirror image.
+    """
+    shape = (len(models), len(grid))
+    results: dict[str, np.ndarray] = {
+        **{name: np.full((*shape, sample.samples), np.nan) for name in Fate.__dataclass_fields__},
+        **{f"symmetric_{name}": np.full((*shape, sample.symmetric_samples), np.nan) for name in ("exponent", "error")},
+        **{f"lyapunov_{name}": np.full(shape, np.nan) for name in ("exponent", "error")},
+    }
+    for i, of_law in enumerate(models):
+        for j, a in enumerate(grid):
+            model, initial = of_law.at(a), sample.initial(of_law.blocks, a)
+            runner = Runner(model)
+            for k, state in enumerate(initial):
+                fate = watch_state(runner, model.begin(state, sample.start), watch)
+                for name in Fate.__dataclass_fields__:
+                    results[name][i, j, k] = getattr(fate, name)
+            for k, state in enumerate(initial[: sample.symmetric_samples]):
+                results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
+                    model, model.begin(state, sample.start), watch.quarter, watch.quarter
+                )
+            results["lyapunov_exponent"][i, j], results["lyapunov_error"][i, j] = _lyapunov_exponent(
+                model, initial[0], sample.start, watch
+            )
+    return results
+
+
+def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: Watch) -> tuple[float, float]:
+    half = 0.5 * watch.time_limit
+    options: dict[str, Any] = {"transient": half, "window": half, "batches": BATCHES, "events": "none"}
+    kept: dict[str, Any] = {"sampling": half, "trajectory": 0.0}
+    settings = Settings(start=start, lyapunov_exponents=1, **options, **kept)
+    trajectory = run(model, initial, settings, section_only=True)
+    return float(trajectory.lyapunov_exponent[0]), float(trajectory.lyapunov_error[0])
+
+
+def _check_mirror(model: Model) -> None:
+    if not model.chain.is_mirror_symmetric:
+        raise ValueError("chain: expected one that is its own mirror image: only such a chain has mirror blocks")
+
+
+def _antisymmetric(perturbation: np.ndarray) -> np.ndarray:
+    """Return the part of a perturbation, shape (2 blocks, 1), that changes its sign in the mirror."""
+    tables = perturbation.reshape(2, -1)
+    return (0.5 * (tables - tables[:, ::-1])).reshape(-1, 1)

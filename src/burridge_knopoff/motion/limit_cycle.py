@@ -1,0 +1,110 @@
+"""The periodic orbit that a motion has settled on, from one state of it: when it returns, and whether in a mirror."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.motion.set_distance import distance
+from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
+from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
+from burridge_knopoff.periodic_orbits.return_map import mirror
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.settings import DURATION
+from burridge_knopoff.running.status import Status
+
+#: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
+CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
+
+#: Time for which returns are looked for: longer orbits, as locked tori may have, are not found; and how much farther
+#: than it returned the motion may still be from the orbit in the end.
+WINDOW = 8000.0
+FARTHER = 30.0
+
+# Share of the time to the next stop of a block after which a stop of the other one may be a return in a mirror, as that
+# takes half of a period: where they all but stop together it is none.
+SOONEST = 0.1
+
+
+def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: float = WINDOW) -> PeriodicOrbit:
+    """Return the periodic orbit on which a motion that has settled lies; the shortest return that closes it.
+
+    model, state : of the motion
+    settling, window : times that it is left to settle first, and in which it has to return
+
+    It lies on an orbit that attracts if it comes nearer in the window, on one that does not, such as synchrony from
+    equal states, only if it never leaves it: in chaos a motion passes by one unstable orbit after another.
+
+    Raises OrbitError if the motion does not return within the window, or to no periodic orbit on which it lies,
+    ValueError for a time or a state that is not allowed.
+
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
+    >>> round(orbit.period, 4), orbit.symmetry.name, orbit.stop_counts
+    (157.2451, 'SYMMETRIC', (20, 54, 20))
+    """
+    settling, window = DURATION.form(settling, "settling"), DURATION.form(window, "window")
+    runner = Runner(model, keep_events=True, events_from=settling)
+    runner.begin(state)
+    if runner.run(settling + window) != Status.COMPLETED:
+        raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
+    times, values = runner.log.events.times(), runner.log.events.values()
+    for start, time, symmetry, size in _returns(model, times, values):
+        try:
+            found = find_periodic_orbit(model, start, time, symmetry)
+        except OrbitError:
+            continue
+        if _stays(found, values, FARTHER * size * model.scale):
+            return simplest(found, CLOSENESS[0])
+    raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
+
+
+def _returns(
+    model: Model, times: np.ndarray, values: np.ndarray
+) -> Iterator[tuple[ChainState, float, Symmetry, float]]:
+    """Yield a state, after which time it returns, how, and how closely: the closest first, then the shortest."""
+    stops = values[:, 1] == 0
+    if not stops.any():
+        return
+    block = int(values[stops, 0].min())
+    other = model.blocks + 1 - block
+    own = np.flatnonzero(stops & (values[:, 0] == block))
+    state, begun = values[own[0], 2:], times[own[0]]
+    repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
+    if model.chain.is_mirror_symmetric:
+        order = mirror(model.blocks)
+        if np.abs(state - state[order]).max() <= CLOSENESS[0] * model.scale:
+            repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
+        else:
+            soonest = begun + SOONEST * (times[own[1:2]] - begun).sum()
+            mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > soonest))
+            repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
+    repeated.sort(key=lambda item: item[0])
+    for size in CLOSENESS:
+        for time, symmetry, at in repeated:
+            if np.abs(at - state).max() <= size * model.scale:
+                yield state_of(state), float(time), symmetry, size
+                break
+
+
+def _stays(orbit: PeriodicOrbit, values: np.ndarray, reach: float) -> bool:
+    """Tell whether a motion, by its events, lies on an orbit: how far its first and its last turn are from it."""
+    block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
+    around, _ = flow(orbit.model, orbit.reference, orbit.period)
+    own, seen = _stops(around.log.events.values(), block), _stops(values, block)
+    first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
+    rounding = CLOSENESS[0] * orbit.model.scale
+    return last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach)))
+
+
+def _stops(values: np.ndarray, block: int) -> np.ndarray:
+    """Return the states at the stops of one block, from 1, shape (stops, 2 blocks)."""
+    return values[(values[:, 0] == block) & (values[:, 1] == 0), 2:]

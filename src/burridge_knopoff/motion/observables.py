@@ -1,0 +1,176 @@
+"""The steady motion of a trajectory: its section returns and its observables, measured in one window."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, judged_distance, motion_of
+from burridge_knopoff.motion.phase_locking import recurrence
+from burridge_knopoff.motion.section_returns import Returns, returns_of, state_of
+from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
+from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run
+
+BATCHES = 6
+EXPONENTS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyMotion:
+    """A settled motion with its observables.
+
+    mean_distance, mean_distance_error : ⟨J⟩ and its standard error
+    stop_rate : stops of each block in a unit of time, shape (blocks,)
+    kind, section_period, period : see `Motion`; the period also of a closed orbit to which the motion is locked
+    exponent : Lyapunov exponents, the largest first
+
+    returns, mirror_returns, spacing, block, mirror_block : see `Returns`
+    recurrence : see `locking.recurrence`
+    left_for : a state on the other motion that this one came to in a longer time; None if it stayed
+
+    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> settings = SearchSettings(samples=12, transient=500, window=500)
+    >>> attractors, labels = find_attractors(model, settings)
+    >>> motion = attractors[1].motion
+    >>> motion.kind.words, round(motion.mean_distance, 3), motion.returns.shape[1], motion.stop_rate.shape
+    ('periodic', 0.141, 6, (3,))
+    """
+
+    returns: np.ndarray
+    mirror_returns: np.ndarray
+    spacing: float
+    mean_distance: float
+    mean_distance_error: float
+    stop_rate: np.ndarray
+    kind: MotionKind
+    section_period: int
+    exponent: np.ndarray
+    block: int = 1
+    mirror_block: int = 1
+    period: float = math.nan
+    recurrence: float = 0.0
+    left_for: ChainState | None = None
+
+    @property
+    def words(self) -> str:
+        """Kind of motion, period of a closed orbit, ⟨J⟩ and Lyapunov exponents, in a line."""
+        period = f", period {self.period:.6g}" if math.isfinite(self.period) else ""
+        exponents = ", ".join(f"{value:.4f}" for value in self.exponent)
+        return f"{self.kind.words}{period}, <J> = {self.mean_distance:.6g}, exponents {exponents}"
+
+    def __repr__(self) -> str:
+        return f"<SteadyMotion: {self.words}>"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the motion may be a closed orbit of which one has seen too little."""
+        return Motion(self.kind, period=self.period).is_open
+
+    def mirrored(self) -> SteadyMotion:
+        """Return the motion seen from the other end of the chain."""
+        return replace(
+            self,
+            returns=self.mirror_returns,
+            mirror_returns=self.returns,
+            stop_rate=self.stop_rate[::-1],
+            block=self.mirror_block,
+            mirror_block=self.block,
+        )
+
+    def symmetrized(self) -> SteadyMotion:
+        """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
+        both = np.concatenate([self.returns, self.mirror_returns])
+        return self.with_returns(both, both if len(self.mirror_returns) else self.mirror_returns)
+
+    def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray) -> SteadyMotion:
+        """Return the motion with these returns, and these of its mirror image."""
+        return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns))
+
+    def state(self) -> ChainState:
+        """Return the state at the last return."""
+        return state_of(self.returns[-1])
+
+
+def run_options(transient: float, window: float, settings: MotionSettings, exponents: int = EXPONENTS) -> Settings:
+    """Return the settings of a run in which a motion is observed."""
+    return Settings(
+        transient=transient,
+        window=window,
+        batches=BATCHES,
+        sampling=transient + window,
+        trajectory=0.0,
+        event_window=window,
+        section=settings.section,
+        lyapunov_exponents=exponents,
+        lyapunov_alignment=transient,
+    )
+
+
+def observe(
+    model: Model,
+    start: ChainState,
+    transient: float,
+    window: float,
+    settings: MotionSettings,
+    mean_distance: float | None = None,
+    exponents: int = EXPONENTS,
+) -> SteadyMotion | None:
+    """Observe the motion from a state in one window; None if it does not complete or hardly ever stops.
+
+    transient : in which the perturbations turn into the directions of the exponents
+    settings : for the speed of the driver, see `MotionSettings.at_speed`
+    mean_distance : ⟨J⟩ if it is known, instead of being measured; exponents : how many are computed
+    """
+    known = mean_distance is not None
+    options = run_options(transient, window, settings, exponents)
+    trajectory = run(model, start, options, section_only=known, stops_only=True)
+    mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
+    if trajectory.status != "completed":
+        return None
+    block = trajectory.event_block
+
+    def states(chosen: np.ndarray) -> np.ndarray:
+        position = trajectory.event_position[chosen] - model.sliding_offset
+        return np.concatenate([position, trajectory.event_velocity[chosen]], axis=1)
+
+    found = returns_of(model, window, block, states)
+    if found is None:
+        return None
+    mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
+    told = motion_of(vars(trajectory), mean, settings)
+    return SteadyMotion(
+        returns=found.returns,
+        mirror_returns=found.mirror_returns,
+        spacing=found.spacing,
+        mean_distance=mean_distance,
+        mean_distance_error=trajectory.mean_distance_error,
+        stop_rate=np.bincount(block, minlength=model.blocks + 1)[1:] / window,
+        kind=told.kind,
+        section_period=told.section_period,
+        period=told.period,
+        exponent=trajectory.lyapunov_exponent,
+        block=found.block,
+        mirror_block=found.mirror_block,
+        recurrence=recurrence(trajectory.event_time[block == found.block], found.returns),
+    )
+
+
+def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
+    """Tell whether a settled motion lies on an attractor, as far as that is resolved.
+
+    A closed orbit may lie in the midst of a chaotic attractor, but not on it, unless that is so thin that it looks like
+    one itself.
+
+    resolution : distance below which attractors are not told apart
+    tolerance : distance within which the returns of closed orbits repeat
+    """
+    chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
+    if found.block != attractor.block or (found.repeats(tolerance) and chaotic):
+        return False
+    return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

@@ -1,0 +1,232 @@
+"""Where and by what a branch of periodic orbits changes: grazing, fold, period doubling, Neimark-Sacker, pitchfork.
+
+Grazings are corners of the branch, which `following` has come to. Every other kind is a sign of a function of the
+multipliers that changes between two orbits; its root along the branch is found with orbits of their own. The function
+of a fold also changes its sign where a branch joins another one, of which it is a special case: orbits that break a
+symmetry begin as orbits that have it, and orbits of twice the period as orbits of the single one. What they become
+there tells a pitchfork and a period doubling, seen from the branch that begins, from a fold.
+
+Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from scipy.optimize import brentq
+
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.following import follow
+from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.values import each_instance_of
+
+# Lengths along a branch to which roots are found, and by which they are held from both sides, in turn.
+TOLERANCE = 1e-14
+SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
+
+# Rounding of a, below which no error is told.
+ROUNDING = 1e-12
+
+# How far from where a branch has joined another one its end is looked for, in steps.
+NEAR_JOINT = 2.0
+
+# A stick as short as this next to a grazing is the one that shrinks to nothing: it does so like a square root.
+NO_STICK = 1e-4
+
+# Multipliers with an imaginary part below this are real.
+REAL = 1e-6
+
+# Distance, for v = 0.1, within which an orbit at a root is one of more symmetry or of a shorter period: near a root the
+# difference is that of a root, too.
+JOINED = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Bifurcation:
+    """A place on a branch of periodic orbits where it changes.
+
+    a, a_error : friction parameter, and half the width within which it has been held from both sides
+    at : the orbit there, as near as it is known; the simpler one where the branch joins one of these
+    before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
+        a branch of simpler orbits
+    turns : whether the branch turns back in a there
+
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> (bifurcation,) = locate_bifurcations(branch)
+    >>> bifurcation.kind.name, bifurcation.loses_stability, bifurcation.a_error < 1e-9
+    ('PITCHFORK', True, True)
+    """
+
+    a: float
+    a_error: float
+    kind: BifurcationKind
+    at: BranchOrbit
+    before: BranchOrbit
+    after: BranchOrbit | None
+    turns: bool
+
+    def __repr__(self) -> str:
+        at = f"a = {self.a:.12g} +- {self.a_error:.1g}"
+        return f"<Bifurcation: {self.kind.name.lower()} at {at}, period {self.period:.9g}>"
+
+    @property
+    def period(self) -> float:
+        """Period of the stable orbits there: at a period doubling twice that of the orbit itself."""
+        return round(self.before.orbit.period / self.at.orbit.period) * self.at.orbit.period
+
+    @property
+    def mean_distance(self) -> float:
+        """⟨J⟩ over a period of the orbit there."""
+        return self.at.orbit.mean_distance
+
+    @property
+    def stick_time(self) -> float:
+        """Shortest stick of the orbit there; 0 where it shrinks to nothing."""
+        shortest = float(self.at.contacts.stick.min())
+        return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < NO_STICK else shortest
+
+    @property
+    def loses_stability(self) -> bool:
+        """Whether the orbits before it are stable, and those after are not or do not exist."""
+        return self.before.multipliers.unstable == 0 and not self.keeps_stability
+
+    @property
+    def keeps_stability(self) -> bool:
+        """Whether the orbits on both sides of it are stable."""
+        sides = (self.before, self.after)
+        return all(point is not None and point.multipliers.unstable == 0 for point in sides)
+
+
+def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
+    """Yield all bifurcations along a followed branch, in the order in which it meets them, each located on request.
+
+    branch : as `follow` returns it; raises ValueError, one line, for anything else
+
+    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
+    docs/bifurcations.md says how each kind is told.
+
+    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
+    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
+    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> (bifurcation,) = locate_bifurcations(branch)
+    >>> bifurcation.kind.name, round(bifurcation.a, 9)
+    ('PITCHFORK', 0.086972905)
+    """
+    return _bifurcations(each_instance_of(branch, BranchOrbit, "branch"))
+
+
+def _bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
+    for k, point in enumerate(branch):
+        following = branch[k + 1] if k + 1 < len(branch) else None
+        if point.corner:
+            yield _grazing(point, following)
+        elif following is not None and following.joined is not None:
+            yield from _joining(point, following)
+        elif following is not None:
+            yield from _roots(point, following)
+
+
+def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
+    """Return the bifurcation at a corner; its a is known to the length that is left to it."""
+    left = point.remaining * float(point.tangent[-1])
+    turns = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
+    return Bifurcation(
+        point.orbit.a + left, max(abs(left), ROUNDING), BifurcationKind.GRAZING, point, point, following, turns
+    )
+
+
+def _roots(first: BranchOrbit, second: BranchOrbit) -> list[Bifurcation]:
+    """Return the bifurcations between two neighbouring orbits of the same stops, sorted along the branch."""
+    signs = [critical_values(point.orbit, point.multipliers) for point in (first, second)]
+    found: list[tuple[float, Bifurcation]] = []
+    for key in signs[0].keys() & signs[1].keys():
+        if (signs[0][key] > 0.0) != (signs[1][key] > 0.0):
+            root = _root(first, second, key)
+            if root is not None:
+                found.append(root)
+    return [bifurcation for _, bifurcation in sorted(found, key=lambda item: item[0])]
+
+
+def _root(
+    first: BranchOrbit, second: BranchOrbit, key: tuple[BifurcationKind, str]
+) -> tuple[float, Bifurcation] | None:
+    """Return where along the step from the first orbit a function of its kind is 0, and the bifurcation there."""
+    known: dict[float, BranchOrbit] = {0.0: first, second.length: second}
+
+    def value(length: float) -> float:
+        if length not in known:
+            known[length] = step_along(first, length)
+        point = known[length]
+        return critical_values(point.orbit, point.multipliers)[key]
+
+    try:
+        root = float(brentq(value, 0.0, max(known), xtol=TOLERANCE, rtol=1e-12))
+        value(root)
+        at = known[root]
+        for side in SIDES:
+            if value(root - side) * value(root + side) < 0.0:
+                break
+        else:
+            return None
+    except OrbitError:
+        return None
+    low, high = known[root - side], known[root + side]
+    kind = _kind(at, key)
+    turns = first.tangent[-1] * second.tangent[-1] < 0.0
+    # What breaks a symmetry other than the mirror's, as that of a ring of blocks, has a multiplier +1 and is no fold.
+    if kind is None or (kind == BifurcationKind.FOLD and not turns):
+        return None
+    error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
+    return root, Bifurcation(at.orbit.a, error, kind, at, first, second, turns)
+
+
+def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
+    """Return the bifurcation at which a branch has come to one of simpler orbits, found along that one."""
+    simple = following.joined
+    if simple is None:
+        return []
+    reach = NEAR_JOINT * abs(following.orbit.a - point.orbit.a) + point.length + following.length
+    around = following.orbit.a - reach, following.orbit.a + reach
+    kind = _joint_kind(point.orbit, simple)
+    found = []
+    for upward in (True, False):
+        found += [
+            bifurcation
+            for bifurcation in locate_bifurcations(follow(simple, around, upward=upward))
+            if bifurcation.kind == kind
+        ]
+    if not found:
+        return []
+    bifurcation = min(found, key=lambda bifurcation: abs(bifurcation.a - following.orbit.a))
+    return [Bifurcation(bifurcation.a, bifurcation.a_error, bifurcation.kind, bifurcation.at, point, None, False)]
+
+
+def _kind(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:
+    """Return the kind of a bifurcation at the root of a function of multipliers; None for an ordinary saddle."""
+    kind, part = key
+    if kind == BifurcationKind.NEIMARK_SACKER:
+        values = at.multipliers.keeping if part == "keeping" else at.multipliers.breaking
+        pair = min(combinations(values, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
+        return kind if abs(pair[0].imag) > REAL else None
+    if kind == BifurcationKind.FOLD and at.orbit.symmetry != Symmetry.SYNCHRONIZED:
+        return _joint_kind(at.orbit, simplest(at.orbit, JOINED)) or kind
+    return kind
+
+
+def _joint_kind(orbit: PeriodicOrbit, simple: PeriodicOrbit) -> BifurcationKind | None:
+    """Return the kind of bifurcation at which orbits begin as simpler ones; None if these are no simpler."""
+    # A period doubling may break the mirror symmetry as well.
+    if simple.period < 0.75 * orbit.period:
+        return BifurcationKind.PERIOD_DOUBLING
+    return BifurcationKind.PITCHFORK if simple.symmetry != orbit.symmetry else None

@@ -1,0 +1,155 @@
+"""Corners of a branch of periodic orbits, where an orbit grazes: how to come to one, and how to go around it.
+
+The return of a grazing orbit is continuous, but its derivative jumps, since a stop takes a perturbation of the velocity
+away however short the stick is; the next terms are of order 3/2. So the branch has a corner there, and Floquet
+multipliers jump. Either the orbit goes on with one stick more or less, or both kinds of it exist on the same side and
+meet: the branch turns back in a (a non-smooth fold).
+
+Where friction drops at the start of a slip the return itself jumps, and the branch ends.
+
+Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
+2008), Sections 3.1 (border collisions) and 8.3 (grazing-sliding).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
+from burridge_knopoff.periodic_orbits.grazing_distances import drops
+from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit
+from burridge_knopoff.periodic_orbits.periodic import orbit_of
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
+
+# A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
+REACHED = 1e-10
+STEPS = 32
+FAILURES = 14
+
+# First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
+# length that is predicted, changed by these factors after a step that was made and one that was not.
+PROBE = 1e-2
+CAUTIOUS = 0.97
+LONGER = 2.0
+SHORTER = 0.4
+
+# Steps ahead within which a branch may join one of simpler orbits that a step has come to.
+STEPS_TO_JOINT = 2.0
+
+# How far beyond a corner the tangent of its other side is taken, and lengths of first steps along it, in turn.
+BEYOND = (1e-5, 1e-4, 1e-6)
+FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
+
+
+def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
+    """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
+
+    What is 0 there falls in proportion to the length.
+    """
+    last, here = before.contacts.values(), point.contacts.values()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ahead = here * point.length / (last - here)
+    ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
+    return float(ahead.min()) if len(ahead) else np.inf
+
+
+def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
+    """Return the orbit at a length from the end of a way along a branch; None if none with the same stops is found.
+
+    If it is a simpler one, gone round several times or seen without its symmetry, `joined` is that: but only where the
+    way comes to it, as the multiplier does that is 1 there. From afar a step may leap to such an orbit, which is not on
+    the branch.
+    """
+    point = way[-1]
+    try:
+        found = step_along(point, length)
+    except OrbitError:
+        return None
+    if found.orbit.stop_counts != point.orbit.stop_counts:
+        return None
+    simpler = simpler_orbit(found.orbit)
+    if simpler is not None and not _joint_ahead(way) <= STEPS_TO_JOINT * length:
+        return None
+    return replace(found, joined=simpler)
+
+
+def _joint_ahead(way: Sequence[BranchOrbit]) -> float:
+    """Return the length from the end of a way to where a multiplier is 1, if it comes nearer; else infinite.
+
+    There a branch of orbits that break a symmetry, or of twice the period, begins as one of simpler orbits.
+    """
+    if len(way) < 2:
+        return np.inf
+    before, here = (critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "keeping"] for one in way[-2:])
+    nearer = abs(before) - abs(here)
+    return abs(here) * way[-1].length / nearer if nearer > 0.0 else np.inf
+
+
+def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
+    """Return orbits ahead of a way up to the one next to the grazing that lies within a length, or about so far.
+
+    Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
+    """
+    way: list[BranchOrbit] = []
+    step, share, failures = PROBE * length, CAUTIOUS, 0
+    for _ in range(STEPS):
+        if sum(point.length for point in way) > length or failures > FAILURES:
+            break
+        known = [*before[-2:], *way]
+        found = smooth_step(known, step)
+        if found is None:
+            failures += 1
+            share *= SHORTER
+            step *= SHORTER
+            if step < REACHED:
+                break
+            continue
+        ahead = corner_ahead(known[-1], found)
+        way.append(found)
+        if found.joined is not None:
+            break
+        if ahead < REACHED:
+            return [*way[:-1], replace(found, remaining=ahead)]
+        share = min(LONGER * share, CAUTIOUS)
+        step = min(share * ahead, length)
+    return way
+
+
+def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
+    """Return an orbit on the other side of the grazing that a branch has come to; None if the branch ends there."""
+    orbit = point.orbit
+    if drops(orbit.model):
+        return None
+    blocks = orbit.model.blocks
+    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2]).max()), 1e-3)
+    for beyond in BEYOND:
+        vector = orbit.reference.vector() + beyond * change
+        state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
+        try:
+            model = model_at(orbit.model, max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
+            tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry))
+        except OrbitError:
+            continue
+        for length in FIRST_STEPS:
+            for side in (1.0, -1.0):
+                try:
+                    found = step_along(point, length, side * tangent)
+                except OrbitError:
+                    continue
+                # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0. Several turns of
+                # a simpler orbit, somewhere beside the corner, do not go on from it; nor does the way that has come
+                # here, in a mirror: the corner is where orbits that break a symmetry begin.
+                signature = found.orbit.stop_counts
+                if (
+                    signature not in (orbit.stop_counts, orbit.stop_counts[::-1])
+                    and any(signature)
+                    and simpler_orbit(found.orbit) is None
+                ):
+                    return found
+    return None

@@ -1,0 +1,134 @@
+"""A segment of stable periodic orbits, followed in a both ways to the bifurcations at which it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
+from burridge_knopoff.periodic_orbits.following import FOLLOWING, Following, follow
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+
+# Difference of ⟨J⟩, for v = 0.1, at which orbits between two neighbours on a branch may be the same.
+SAME_MEAN = 1e-3
+
+# Orbits closer than this along a branch are not kept apart.
+CLOSE = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class Half:
+    """Orbits of one branch from a stable one on, with a growing at first, or falling.
+
+    orbits : in the order in which they were followed
+    """
+
+    orbits: Sequence[BranchOrbit]
+
+    @cached_property
+    def bifurcations(self) -> list[Bifurcation]:
+        """Bifurcations that the stable orbits pass, and the one at which they end, if it is met."""
+        found = []
+        for bifurcation in locate_bifurcations(self.orbits):
+            found.append(bifurcation)
+            if bifurcation.loses_stability:
+                break
+        return found
+
+    @cached_property
+    def end(self) -> Bifurcation | None:
+        """The bifurcation at which the stable orbits end; None if none is met."""
+        return self.bifurcations[-1] if self.bifurcations and self.bifurcations[-1].loses_stability else None
+
+    @property
+    def shown(self) -> list[BranchOrbit]:
+        """All orbits but those on the way to a corner."""
+        return [point for point in self.orbits if point.corner or not 0.0 < point.length < CLOSE]
+
+
+@dataclass(frozen=True, eq=False)
+class BranchSegment:
+    """Orbits of one branch around a stable one.
+
+    downward, upward : orbits followed from it with a falling, and growing, at first
+    """
+
+    downward: Half
+    upward: Half
+
+    @cached_property
+    def stable(self) -> list[BranchOrbit]:
+        """The stable orbits, a ascending."""
+        low = self.downward.end.a if self.downward.end else -np.inf
+        high = self.upward.end.a if self.upward.end else np.inf
+        both = (*self.downward.orbits[:0:-1], *self.upward.orbits)
+        found = [point for point in both if point.multipliers.unstable == 0 and low <= point.orbit.a <= high]
+        return sorted(found, key=lambda point: point.orbit.a)
+
+    @property
+    def shown(self) -> list[BranchOrbit]:
+        """All orbits from one end to the other, but for those on the way to a corner."""
+        return [*self.downward.shown[:0:-1], *self.upward.shown]
+
+    def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
+        """Tell whether an orbit is one of the stable ones: by its a, its stops and symmetry, its period and ⟨J⟩.
+
+        tolerance : share of the period within which it has to be that of the orbits beside it
+        """
+        a, period = self._known
+        if not len(a):
+            return False
+        low = self.downward.end.a if self.downward.end else a[0]
+        high = self.upward.end.a if self.upward.end else a[-1]
+        if not low <= orbit.a <= high:
+            return False
+        above = int(np.clip(np.searchsorted(a, orbit.a), 1, len(a) - 1)) if len(a) > 1 else 0
+        near = [self.stable[k].orbit for k in {max(above - 1, 0), above}]
+        if not any(other.stop_counts in (orbit.stop_counts, orbit.stop_counts[::-1]) for other in near):
+            return False
+        if orbit.symmetry not in {other.symmetry for other in near}:
+            return False
+        expected = float(np.interp(orbit.a, a, period))
+        if abs(orbit.period - expected) > tolerance * expected:
+            return False
+        # Next to a grazing ⟨J⟩ changes like a root.
+        means = [other.mean_distance for other in near]
+        margin = max(means) - min(means) + SAME_MEAN * orbit.model.scale
+        return min(means) - margin <= orbit.mean_distance <= max(means) + margin
+
+    @cached_property
+    def _known(self) -> tuple[np.ndarray, np.ndarray]:
+        """The friction parameters and periods of the stable orbits."""
+        orbits = [point.orbit for point in self.stable]
+        return np.array([orbit.a for orbit in orbits]), np.array([orbit.period for orbit in orbits])
+
+
+def half(
+    orbit: PeriodicOrbit,
+    upward: bool,
+    a_range: tuple[float, float],
+    beyond: int,
+    settings: Following = FOLLOWING,
+) -> Half:
+    """Follow a stable orbit one way until so many orbits beyond a bifurcation are unstable, or a leaves a range.
+
+    Raises OrbitError if it cannot be followed at all.
+    """
+    return Half(follow(orbit, a_range, settings, upward=upward, enough=_enough(beyond)))
+
+
+def _enough(beyond: int) -> Callable[[list[BranchOrbit]], bool]:
+    """Return what tells that so many orbits have passed since the first unstable one."""
+    first = 0
+
+    def enough(points: list[BranchOrbit]) -> bool:
+        nonlocal first
+        if first == 0 and points[-1].multipliers.unstable > 0:
+            first = len(points)
+        return first > 0 and len(points) - first >= beyond
+
+    return enough

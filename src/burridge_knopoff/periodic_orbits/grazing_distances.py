@@ -1,0 +1,179 @@
+"""How far a periodic orbit is from gaining or losing a stick or a slip: what is 0 where it grazes.
+
+A slip splits where its least speed falls to 0: a stick is born, whose length grows like a square root, so that the
+square of it is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and a slip is
+born. In the other direction the shortest stick, or slip, shrinks to nothing. Where friction drops at the start of a
+slip no stick does: it goes with a jump, where the slip before it comes to rest without deceleration.
+
+Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
+2008), Chapter 8 (sliding bifurcations).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.periodic_orbits.flow import after
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.runner import Runner, new_observer
+
+# Longest time between the states among which least speeds and greatest forces are looked for, and longest phase of the
+# fastest mode; the Hermite cubic through two of them finds the instant to 1e-5, a step along the acceleration there all
+# the rest.
+SPACING = 0.1
+LARGEST_PHASE = 0.245
+
+# Instants of least speed of a block that are looked at more closely, the slowest ones.
+SLOWEST = 2
+
+# Samples of which derivatives are taken at a time: few enough for a fast cache.
+CHUNK = 4096
+
+# Rounding of accelerations and forces.
+ROUNDING = 1e-12
+
+# Directions in which a block slips, by the contact.
+SIDES = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Of each block, shape (blocks,), infinite where there is none.
+
+    stick, slip : length of its shortest stick and slip
+    speed : least speed within a slip; force : least distance of the spring force from the threshold within a stick
+    deceleration : the least at the end of a slip, where friction drops at the start of one
+    """
+
+    stick: np.ndarray
+    slip: np.ndarray
+    speed: np.ndarray
+    force: np.ndarray
+    deceleration: np.ndarray
+
+    def values(self) -> np.ndarray:
+        """Return all that falls to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
+        return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force, self.deceleration**2])
+
+
+def drops(model: Model) -> bool:
+    """Tell whether friction drops at the start of a slip."""
+    return float(model.law(0.0)) < 1.0 - ROUNDING
+
+
+def longest_spacing(chain: Chain) -> float:
+    """Return the longest time between two samples that show the motion of a chain."""
+    return min(SPACING, LARGEST_PHASE / chain.highest_frequency)
+
+
+def contacts(orbit: PeriodicOrbit) -> Contacts:
+    """Return how far an orbit is from its grazings; raises OrbitError if it cannot be run along."""
+    model = orbit.model
+    lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
+    longest = longest_spacing(model.chain)
+    # On an orbit that is its own mirror image the second half shows of a block what the first does of its mirror one.
+    until = orbit.return_time
+    time, spacing = np.linspace(0.0, until, math.ceil(until / longest) + 1, retstep=True)
+    observer = new_observer(model, 2 * [until + longest], trajectory_time=time, section_only=True)
+    runner = Runner(model, observer=observer)
+    runner.begin(orbit.reference)
+    runner.run(until + longest)
+    results = observer.results()
+    position, velocity = results["position"], results["velocity"]
+    stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))
+    whole = event[:-1] == event[1:]
+    again = Runner(model)
+    speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
+    chunks = [slice(first, first + CHUNK) for first in range(0, len(time), CHUNK)]
+    parts = [_derivatives(model, position[chunk], velocity[chunk]) for chunk in chunks]
+    derivatives = [np.concatenate(values) for values in zip(*parts, strict=True)]
+    # What slips backward, and what is pulled back, is seen in a mirror: forward.
+    for side in SIDES[model.contact]:
+        force, force_rate, acceleration, jerk = (side * values for values in derivatives)
+        moving = side * velocity
+        for block in range(model.blocks):
+            slips = whole[:, block] & ~stuck[:-1, block] & (moving[:-1, block] > 0.0) & (moving[1:, block] > 0.0)
+            turns = slips & (acceleration[:-1, block] < -ROUNDING) & (acceleration[1:, block] > ROUNDING)
+            for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:SLOWEST]:
+                share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
+                at = after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
+                here = _derivatives(model, at.position[None], at.velocity[None])
+                change, second = float(here[2][0, block]), float(here[3][0, block])
+                speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
+            sticks = whole[:, block] & stuck[:-1, block]
+            peaks = sticks & (force_rate[:-1, block] > ROUNDING) & (force_rate[1:, block] < -ROUNDING)
+            for k in np.flatnonzero(peaks):
+                share = force_rate[k, block] / (force_rate[k, block] - force_rate[k + 1, block])
+                highest = force[k, block] + 0.5 * share * spacing * force_rate[k, block]
+                gap[block] = min(gap[block], model.chain.thresholds[block] - highest)
+    if orbit.symmetry == Symmetry.SYMMETRIC:
+        speed, gap = (np.minimum(least, least[::-1]) for least in (speed, gap))
+    blocks = model.blocks
+    return Contacts(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
+
+
+def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
+    """Return the least deceleration at the stops of each block; infinite where friction does not drop."""
+    model = orbit.model
+    least = np.full(model.blocks, np.inf)
+    if drops(model):
+        runner = Runner(model, keep_events=True)
+        after(runner, orbit.reference, orbit.period)
+        events = runner.log.events.values()
+        for number, threshold in enumerate(model.chain.thresholds):
+            own = events[events[:, 0] == number + 1]
+            position = own[:, 2 : 2 + model.blocks]
+            force = _derivatives(model, position, np.zeros_like(position))[0][:, number]
+            # A slip goes where the spring force points at its start, the event before its stop.
+            along = np.sign(np.roll(force, 1)) * force
+            decelerations = threshold * float(model.law(0.0)) - along
+            least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
+    return least
+
+
+def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
+    """Return the shortest time from an event of a kind to the next one of the block; infinite if there is none."""
+    time, event = orbit.events_of(block)
+    length = np.diff(time, append=time[:1] + orbit.period)[event == kind]
+    # A block that turns round stops and starts at one instant: no stick shrinks there.
+    turns = (length == 0.0) & (orbit.model.contact == "symmetric")
+    return float(length[~turns].min(initial=np.inf))
+
+
+def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield for each block whether it sticks at each time, and how many of its events are over."""
+    for block in range(orbit.model.blocks):
+        at, kind = orbit.events_of(block)
+        over = np.searchsorted(at, time)
+        first = 1 - kind[0] if len(kind) else 1 - int(orbit.reference.stuck[block])
+        yield np.concatenate([[first], kind])[over] == 0, over
+
+
+def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return spring force, its rate, and acceleration and its rate of blocks that slip, each of shape (n, blocks)."""
+    chain = model.chain
+    force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
+    force_rate = -(velocity - model.v) @ chain.stiffness.T
+    speed = np.abs(velocity)
+    acceleration = force - np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.law(speed)
+    return force, force_rate, acceleration, force_rate - chain.thresholds * model.law.slope(speed) * acceleration
+
+
+def _root(value: np.ndarray, slope: np.ndarray) -> float:
+    """Return where, from 0 to 1, the Hermite cubic through values of opposite sign, with these slopes, is 0."""
+    cubic = [
+        2.0 * (value[0] - value[1]) + slope[0] + slope[1],
+        3.0 * (value[1] - value[0]) - 2.0 * slope[0] - slope[1],
+        slope[0],
+        value[0],
+    ]
+    roots = np.roots(cubic)
+    inside = roots[(np.abs(roots.imag) < 1e-9) & (roots.real >= 0.0) & (roots.real <= 1.0)].real
+    return float(inside[0]) if len(inside) else float(value[0] / (value[0] - value[1]))

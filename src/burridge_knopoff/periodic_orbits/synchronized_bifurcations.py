@@ -1,0 +1,185 @@
+"""Bifurcations of the synchronized orbit: its loss at a_c, the grazing at which a block begins to stick, its doubling.
+
+The bifurcations along the followed branch tell which there are. The root in a of the function that vanishes there, on
+orbits solved down to rounding, then gives a to the last digits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from scipy.optimize import brentq
+
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
+from burridge_knopoff.periodic_orbits.floquet import critical_values, multipliers
+from burridge_knopoff.periodic_orbits.flow import OrbitError, after
+from burridge_knopoff.periodic_orbits.following import Following, follow
+from burridge_knopoff.periodic_orbits.grazing_distances import contacts
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, beside
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.return_map import parting
+from burridge_knopoff.running.runner import Runner
+
+#: Friction parameters, in those of `unit`, between which changes are looked for, and steps in a: the grid of a study
+#: has no part in them. Where a branch ends it is looked for again this far on.
+RANGE = (0.0125, 0.3)
+FIRST_STEP = 1e-3
+LARGEST_STEP = 5e-3
+AGAIN = 0.0125
+
+# A root is held from both sides at these distances, in turn, and found to the rounding of the function. With steps that
+# small brentq only bisects, and its usual hundred iterations may not be enough.
+SIDES = (1e-9, 1e-8, 1e-7, 1e-6)
+TOLERANCE = 1e-15
+ITERATIONS = 1000
+
+# How near to −1, or to the unit circle, the multiplier is that a bifurcation is about.
+CRITICAL = 1e-5
+
+# Difference d of mirror blocks for finite differences, in units of v: rounding of the quotient and the d⁴ that
+# extrapolation leaves are about 1e-12 both.
+DIFFERENCE = 1e-3
+
+# Step in a, in units of `unit`, for the slope of the multiplier.
+SLOPE_STEP = 1e-4
+
+
+def unit(chain: Chain) -> float:
+    """Return the a by which friction changes a slip in a chain as much as a = 1 does in the paper's; 1 in that.
+
+    Springs that are stronger by a factor make all motion faster by its root; a mode grows with a times the threshold.
+    """
+    return math.sqrt(float(chain.driving[chain.driving > 0.0].min())) / float(chain.thresholds.max())
+
+
+def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:
+    """Return the bifurcations of the synchronized orbits, a ascending."""
+    return sorted(_each_bifurcation(orbits), key=lambda bifurcation: bifurcation.a)
+
+
+def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
+    """Follow the orbits upward, and where a branch ends go on with what there is beyond, both ways."""
+    size = unit(orbits.model.chain)
+    (first, high), gap = (size * end for end in RANGE), size * AGAIN
+    settings = Following(first_step=size * FIRST_STEP, largest_step=size * LARGEST_STEP)
+    low, a = first, first
+    while a < high:
+        try:
+            start = orbits.at(a)
+            if a > low:
+                yield from locate_bifurcations(follow(start, (low, high), settings, upward=False))
+            points = follow(start, (a, high), settings)
+        except OrbitError:
+            a += gap
+            continue
+        yield from locate_bifurcations(points)
+        low = max(point.orbit.a for point in points)
+        a = low + gap
+
+
+def critical_a(bifurcations: list[Bifurcation]) -> float:
+    """Return a_c, where the leading transverse multiplier reaches the unit circle; NaN if it does not."""
+
+    def distance(orbit: PeriodicOrbit) -> float:
+        return abs(multipliers(orbit).transverse) - 1.0
+
+    kinds = BifurcationKind.PITCHFORK, BifurcationKind.PERIOD_DOUBLING, BifurcationKind.NEIMARK_SACKER
+    return _least(
+        bifurcations,
+        lambda bifurcation: bifurcation.kind in kinds and abs(distance(bifurcation.at.orbit)) < CRITICAL,
+        distance,
+    )
+
+
+def symmetric_period_doubling_a(bifurcations: list[Bifurcation]) -> float:
+    """Return the a at which a multiplier of mirror-symmetric perturbations reaches −1; NaN if none does."""
+
+    def is_period_doubling(bifurcation: Bifurcation) -> bool:
+        return (
+            bifurcation.kind == BifurcationKind.PERIOD_DOUBLING
+            and float(np.abs(bifurcation.at.multipliers.keeping + 1.0).min()) < CRITICAL
+        )
+
+    return _least(
+        bifurcations,
+        is_period_doubling,
+        lambda orbit: critical_values(orbit)[BifurcationKind.PERIOD_DOUBLING, "keeping"],
+    )
+
+
+def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
+    """Return the a at which a block, from 0, begins to stick; NaN if it does not.
+
+    On one side of it the least speed of the block is positive. On the other one the stick lasts about the square root
+    of the distance from it, so that minus the square of its length continues the least speed through 0. Where friction
+    drops at the start of a slip no stick begins so: the branch ends.
+    """
+
+    def begins(bifurcation: Bifurcation) -> bool:
+        if bifurcation.kind != BifurcationKind.GRAZING or bifurcation.after is None:
+            return False
+        return (bifurcation.before.orbit.stop_counts[block] == 0) != (bifurcation.after.orbit.stop_counts[block] == 0)
+
+    def least(orbit: PeriodicOrbit) -> float:
+        found = contacts(orbit)
+        return -float(found.stick[block] ** 2) if orbit.stop_counts[block] else float(found.speed[block])
+
+    return _least(bifurcations, begins, least)
+
+
+def _least(
+    bifurcations: list[Bifurcation], is_one: Callable[[Bifurcation], bool], value: Callable[[PeriodicOrbit], float]
+) -> float:
+    """Return the least a of the bifurcations of a kind, as a root of what is 0 there; NaN if there is none."""
+    bifurcation = next((bifurcation for bifurcation in bifurcations if is_one(bifurcation)), None)
+    return math.nan if bifurcation is None else _root(bifurcation, value)
+
+
+def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> float:
+    """Return the root in a of a function of the orbit next to a bifurcation; the bifurcation's a if there is none."""
+    orbit = bifurcation.at.orbit
+    for side in SIDES:
+        ends = bifurcation.a - side, bifurcation.a + side
+        try:
+            if (value(beside(orbit, ends[0])) > 0.0) != (value(beside(orbit, ends[1])) > 0.0):
+                precise = {"xtol": TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
+                return float(brentq(lambda a: value(beside(orbit, a)), *ends, **precise))
+        except OrbitError:
+            continue
+    return bifurcation.a
+
+
+def differenced_multiplier(orbit: PeriodicOrbit) -> complex:
+    """Return the leading transverse multiplier of a synchronized orbit without the tangent map.
+
+    Mirror blocks are moved apart by d and followed for a period. By mirror symmetry what is left of d is an odd
+    function of d, so that one step of Richardson's extrapolation leaves an error of order d⁴.
+    """
+    runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
+    basis = parting(start.stuck)
+
+    def returned(direction: np.ndarray, d: float) -> np.ndarray:
+        state = start.vector() + d * direction
+        end = after(runner, ChainState(state[:blocks], state[blocks:], start.stuck), orbit.return_time)
+        return basis.T @ end.vector() / d
+
+    d = DIFFERENCE * orbit.model.v
+    columns = [(4.0 * returned(direction, 0.5 * d) - returned(direction, d)) / 3.0 for direction in basis.T]
+    values = np.linalg.eigvals(np.stack(columns, axis=1))
+    return complex(values[np.abs(values).argmax()])
+
+
+def critical_a_error(orbits: KnownOrbits, a: float) -> float:
+    """Return by how much a_c changes if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
+    orbit, step = orbits.at(a), SLOPE_STEP * unit(orbits.model.chain)
+    try:
+        low, high = (abs(multipliers(orbits.at(a + side * step)).transverse) for side in (-1, 1))
+    except OrbitError:
+        return math.nan
+    slope = (high - low) / (2.0 * step)
+    return abs((abs(differenced_multiplier(orbit)) - abs(multipliers(orbit).transverse)) / slope)

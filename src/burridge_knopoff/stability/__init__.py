@@ -1,1 +1,0 @@
-"""What a chain comes to: attractors, how states are labelled by them, basins, longer chains."""

@@ -1,0 +1,47 @@
+"""The attractors of one model in one call, in the form of `attractors.nc`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import xarray
+
+from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
+from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors, returns_of_law
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from burridge_knopoff.summaries.all_laws import branch_numbers, merge
+from burridge_knopoff.summaries.attractors import one_law
+from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
+
+
+def coexisting_attractors(
+    model: Model,
+    settings: SearchSettings = SEARCH,
+    motion: MotionSettings = MOTION,
+    *,
+    starts: Sequence[InitialState] = (),
+    start: str = "moving",
+) -> tuple[xarray.Dataset, KnownAttractors]:
+    """Return the attractors of a model, as `attractors.nc` has them and as `label_states` takes them.
+
+    settings, motion, starts, start : see `find_attractors`
+
+    Raises ValueError if an initial state does not fit the model, and where no attractor is found.
+    """
+    found = continue_attractors([model], settings, motion, starts=starts, start=start)
+    if not found.attractors[0]:
+        if sliding_attracts(model):
+            raise ValueError(f"a: got {model.a!r}, at which no attractor was found; {SLIDING}")
+        raise ValueError(
+            f"transient: got {settings.transient:g}, and no attractor was found at a = {model.a!r}; expected longer, "
+            f"or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples {settings.samples} "
+            "(at a = 0 there is none)"
+        )
+    parts = [one_law(found, starts, settings, motion, start)]
+    dataset = merge(parts, branch_numbers(parts, [model], settings))
+    dataset.attrs["history"] = "burridge_knopoff, from sampled initial states"
+    returns = returns_of_law([model], [found.rows(0)], {})
+    return dataset, known_attractors(dataset, returns, model)

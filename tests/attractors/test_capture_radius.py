@@ -1,0 +1,206 @@
+"""Radii and captures: hand-made sets, pushes whose fate is scripted, and what a label asks for."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, ChainState, Model, MotionKind, SearchSettings, law_of
+from burridge_knopoff.attractors import attractor
+from burridge_knopoff.attractors import capture_radius as radius
+from burridge_knopoff.attractors.attractor import close_returns, perturbed, spread
+from burridge_knopoff.attractors.capture_radius import bounded, captured, midst, recovered
+from burridge_knopoff.attractors.labels import label
+from tests.motion.stand_in import ASYMMETRIC, at, shown, stand_in
+
+MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
+SETTINGS = SearchSettings(transient=100.0, window=70.0, time_limit=900.0, seed=3, perturbations=10)
+CHAOS = {"kind": MotionKind.CHAOTIC, "spacing": 0.1}
+
+
+def test_how_close_a_push_has_to_come_back():
+    assert recovered(at(0.0).motion, 0.5) == 0.05
+    assert recovered(at(0.0, spacing=0.02).motion, 0.5) == 0.06
+
+
+@pytest.mark.parametrize(
+    ("wide", "place", "expected"),
+    [
+        (CHAOS, 0.3, [1]),  # within three spacings
+        (CHAOS, 0.31, []),
+        ({"slow": True, "spacing": 0.1}, 0.3, [1]),
+        ({"spacing": 0.1}, 0.0, []),
+    ],
+)
+def test_closed_orbits_in_the_midst_of_a_set(wide, place, expected):
+    found = [at(0.0, **wide), at(place, spacing=1e-6), at(place, spacing=1.1e-6)]
+    assert midst(found, 0, 1e-6) == expected
+    assert midst(found, 1, 1e-6) == []
+
+
+def test_radii_are_bounded_by_the_way_to_others():
+    """The scale is that of v = 0.2: twice that of the paper."""
+    others = [at(place, radius=1.0) for place in (0.0, 0.05, 9.0)]
+    near = bounded(MODEL, [*others, at(-9.0, radius=0.01)], 1e-6)
+    assert [item.radius for item in near] == pytest.approx([0.4 * 0.05, 0.4 * 0.05, 0.04, 0.01])
+    assert {item.patience for item in near} == {0.0}
+    # Chaos with an orbit in its midst keeps its radius, and asks for patience; the orbit keeps its radius too.
+    chaos, orbit = at(0.0, radius=1.0, **CHAOS), at(0.05, radius=1.0, spacing=1e-7, close_returns=20)
+    for found in ([chaos, orbit], [orbit, chaos]):
+        told = {(item.radius, item.close_returns, item.patience) for item in bounded(MODEL, found, 1e-6)}
+        # The returns of chaos are so far apart that its radius is that.
+        assert told == {(0.1, 8, 10_000.0), (0.04, 20, 0.0)}
+
+
+@pytest.fixture
+def capture(monkeypatch):
+    """Return how a radius is captured where the pushes of each group reach what is told, with what each is asked."""
+
+    def captures(found, index, reached, least=1e-5):
+        asked, left = [], iter(reached)
+
+        def told(_, attractors, starts, time_limit, *__):
+            assert time_limit == 900.0
+            asked.append((len(starts), [item.radius for item in attractors], attractors[index].patience))
+            return np.array((next(left) * 4)[: len(starts)]), None
+
+        monkeypatch.setattr(radius, "label", told)
+        monkeypatch.setattr(radius, "pushed", lambda start, size, generator: (start, size))
+        monkeypatch.setattr(radius, "moved", lambda model, starts, time: [*starts, time])
+        size = captured(MODEL, found, index, least, 1e-6, SETTINGS)
+        assert len(asked) == len(reached)
+        return size, asked
+
+    return captures
+
+
+def test_a_radius_is_captured_where_all_pushes_come_back(capture):
+    found = [at(0.0, radius=0.04), at(9.0, radius=0.001)]
+    size, asked = capture(found, 0, [[0], [0], [0]])
+    assert size == 0.04
+    # Ten pushes in groups of four, each to come back to a tenth of the way.
+    assert asked == [(count, [pytest.approx(0.004), 0.001], 0.0) for count in (4, 4, 2)]
+    assert capture(found, 0, [[0], [0, 0, 0, -1], [0], [0], [0]])[0] == 0.02
+    assert capture(found, 0, [[1], [1]], least=0.01)[0] == 0.0
+    # The least is that of the scale, 2.
+    assert capture(found, 0, [[1], [0], [0], [0]], least=0.01)[0] == 0.02
+    assert capture(found, 0, [[1]], least=0.0101)[0] == 0.0
+
+
+def test_what_comes_to_an_orbit_in_the_midst_has_come_back(capture):
+    found = [at(0.0, radius=0.04, patience=2000.0, **CHAOS), at(0.05, radius=0.04)]
+    size, asked = capture(found, 0, [[0, 1], [1], [0]])
+    assert size == 0.04
+    # Its returns are too far apart to show that it comes closer: it is looked at later.
+    assert asked[0] == (5, [0.04, 0.04], 0.0)
+    assert capture(found, 1, [[0]], least=0.015)[0] == 0.0
+
+
+def test_a_push_changes_positions_and_velocities_of_slipping_blocks():
+    start = ChainState(np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.5, 0.01]), np.array([True, False, False]))
+    change = np.random.default_rng(7).uniform(-0.1, 0.1, 6)
+    found = perturbed(start, 0.1, np.random.default_rng(7))
+    assert found.position.tolist() == (start.position + change[:3]).tolist()
+    assert found.velocity.tolist() == [0.0, 0.5 + change[4], max(0.01 + change[5], 0.0)]
+    assert found.stuck.tolist() == [True, False, False]
+    backward = [perturbed(start, 0.1, np.random.default_rng(seed)).velocity[2] for seed in range(20)]
+    assert min(backward) == 0.0 < max(backward)
+
+
+def test_a_push_turns_no_block_round():
+    """Under a symmetric contact blocks slip backward as well."""
+    start = ChainState(np.zeros(2), np.array([-0.05, 0.05]), np.zeros(2, dtype=bool))
+    found = np.array([perturbed(start, 0.1, np.random.default_rng(seed)).velocity for seed in range(40)])
+    assert found[:, 0].max() == 0.0 > found[:, 0].min() > -0.15
+    assert found[:, 1].min() == 0.0 < found[:, 1].max() < 0.15
+    assert len(np.unique(found[:, 0])) > 20
+
+
+@pytest.mark.parametrize(
+    ("length", "spacing", "expected"), [(3, 0.0, 8), (4, 0.0, 8), (5, 0.0, 10), (5, 0.1, 8), (150, 0.0, 200)]
+)
+def test_a_closed_orbit_is_gone_round_twice(length, spacing, expected):
+    orbit = np.tile(np.random.default_rng(1).uniform(size=(length, 6)), (-(-600 // length), 1))
+    # Within ten tolerances.
+    orbit[::2] += 9e-6
+    assert close_returns(shown(orbit, orbit, spacing, 0.0), 1e-6) == expected
+
+
+def test_a_slow_set_is_shown_by_pushed_states(tell):
+    seen = [shown(np.full((1, 6), float(n)), np.full((1, 6), float(-n)), 0.0, 0.0) for n in range(1, 13)]
+    seen[4] = None
+    # Some have left for another motion: the middle block stops less often there, or it is seen at another block.
+    seen[6] = replace(seen[6], stop_count=np.array([10, 18, 10]))
+    seen[8], seen[10] = replace(seen[8], block=2), replace(seen[10], mirror_block=3)
+    asked = tell(attractor, "visit", seen)
+    found = spread(MODEL, at(1.0).motion, SETTINGS)
+    numbers = [n for n in range(1, 13) if n not in (5, 7, 9, 11)]
+    assert found.returns[:, 0].tolist() == [*numbers, 1.0]
+    assert found.mirror_returns[:, 0].tolist() == [*(-n for n in numbers), 1.0]
+    assert {(transient, window) for _, _, transient, window, *_ in asked} == {(30.0, 70.0)}
+    # By five resolutions at the scale 2, and that in all directions.
+    sizes = np.abs([start.position - 1.0 for _, start, *_ in asked])
+    assert 0.009 < sizes.max() <= 0.01
+
+
+def test_pushed_states_begin_all_over_a_slow_set_and_by_the_seed(tell):
+    begun = []
+    for seed in (3, 3, 4):
+        asked = tell(attractor, "visit", [None] * 12)
+        spread(MODEL, at(*range(50)).motion, replace(SETTINGS, seed=seed))
+        begun.append([start.position[0] for _, start, *_ in asked])
+    assert len({round(place) for place in begun[0]}) > 6
+    assert begun[0] == begun[1] != begun[2]
+
+
+def test_without_attractors_nothing_is_reached():
+    reached, times = label(MODEL, [], [None, None], 10.0)
+    assert (reached.tolist(), times.tolist()) == ([-1, -1], [0.0, 0.0])
+    assert label(MODEL, [stand_in(ASYMMETRIC)], [], 10.0)[0].shape == (0,)
+
+
+def test_pushes_begin_all_over_a_motion_and_are_as_long_as_its_radius(monkeypatch):
+    """Where its returns are too far apart for a push to show, pushed states are followed for 0.3 transients."""
+    sizes, states, times = [], [], []
+
+    def push(start, size, generator):
+        sizes.append(size)
+        states.append(float(start.position[0]))
+        return start
+
+    def move(model, starts, time):
+        times.append(time)
+        return starts
+
+    monkeypatch.setattr(radius, "pushed", push)
+    monkeypatch.setattr(radius, "moved", move)
+    monkeypatch.setattr(radius, "label", lambda model, found, starts, limit: (np.zeros(len(starts), dtype=int), None))
+    for spacing, followed in ((0.0, []), (0.02, [30.0] * 3), (0.01, [])):
+        times.clear()
+        chosen = []
+        for seed in (3, 3, 4):
+            sizes.clear()
+            states.clear()
+            found = [at(*range(50), radius=0.06, spacing=spacing)]
+            settings = replace(SETTINGS, seed=seed)
+            assert captured(MODEL, found, 0, 1e-5, 1e-6, settings) == 0.06
+            assert sizes == [0.06] * 10
+            chosen.append([*states])
+        assert times == followed * 3
+        assert len({*chosen[0]}) > 5
+        assert chosen[0] == chosen[1] != chosen[2]
+
+
+@pytest.mark.parametrize(("patience", "inner"), [(2000.0, True), (0.0, True), (0.0, False)])
+def test_pushes_off_chaos_are_labelled_without_its_patience(monkeypatch, patience, inner):
+    asked = []
+
+    def told(model, attractors, starts, limit):
+        asked.append([item.patience for item in attractors])
+        return np.zeros(len(starts), dtype=int), None
+
+    monkeypatch.setattr(radius, "label", told)
+    monkeypatch.setattr(radius, "moved", lambda model, starts, time: starts)
+    found = [at(0.0, radius=0.04, patience=patience, **CHAOS), at(0.05 if inner else 9.0, radius=0.04, patience=70.0)]
+    captured(MODEL, found, 0, 1e-5, 1e-6, SETTINGS)
+    assert asked == [[0.0, 70.0]] * 3

@@ -1,0 +1,128 @@
+"""Basins: the same labels with any threads and tiles, and those of whole runs."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff.attractors.stored_returns import known_attractors, returns_of_law
+from burridge_knopoff.basins.plane import pixel_centres, plane
+from burridge_knopoff.basins.settings import BasinSettings
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.model import CONTACTS, STARTS
+from burridge_knopoff.motion.settings import MOTION
+from burridge_knopoff.summaries import all_laws, attractors, basins
+from tests.attractors.test_attractors import SETTINGS
+
+SEARCH = replace(SETTINGS, samples=25, fraction_width=0.18)
+PLANE = BasinSettings(pixels=16, pairs=300, tiles=1)
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
+
+
+@pytest.fixture(scope="module")
+def searched():
+    states = list(PAPER_STATES.values())
+    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, Refine(1.0), starts=states)
+    parts = [attractors.one_law(found, states, SEARCH, MOTION, "moving")]
+    rows = [found.rows(place) for place in found.grid]
+    whole = all_laws.merge(parts, all_laws.branch_numbers(parts, [MODEL], SEARCH))
+    return whole, returns_of_law([found.models[k] for k in found.grid], rows, parts[0].attrs), rows
+
+
+@pytest.fixture(scope="module")
+def table(searched):
+    return searched[0]
+
+
+def whole(table, known, tiles, threads):
+    basin_settings = replace(PLANE, tiles=tiles, threads=threads)
+    told = basin_settings, SEARCH.label_limit
+    parts = [basins.tile(known, number, *told, "moving") for number in range(tiles)]
+    near = basins.pairs(known, *told, SEARCH.seed, "moving")
+    maps = [(known.model, parts, near)]
+    return basins.merge(maps, table, ["linearized", "other"], basin_settings, SEARCH.label_limit, "moving")
+
+
+@pytest.fixture(scope="module")
+def known(searched):
+    return known_attractors(*searched[:2], MODEL)
+
+
+@pytest.fixture(scope="module")
+def found(table, known):
+    return whole(table, known, 1, 1)
+
+
+def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, known, found):
+    for tiles, threads in ((3, 1), (1, 3), (5, 2)):
+        assert found.identical(whole(table, known, tiles, threads)), (tiles, threads)
+    assert found["undetermined_count"].item() == 0
+    assert len(np.unique(found["branch"])) >= 2
+
+
+def check_run(table, state, branch, **conventions):
+    """Hold the branch that a state is said to reach against the mean distance of a whole run."""
+    options = {"transient": 6000.0, "window": 1000.0, "events": "none", "lyapunov_exponents": 0}
+    run = simulate("linearized", 0.08, state, **options, **conventions)
+    there = table.sel(law="linearized", a=0.08)
+    mean = there["mean_distance"].values[there["branch"].values == branch.item()][0]
+    assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
+
+
+def test_pixels_are_what_whole_runs_end_in(table, found):
+    """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
+    for k in range(0, 16, 3):
+        for m in (k, (5 * k + 2) % 16):
+            one = found.isel(map=0, first_position=m, last_position=k)
+            position = (one["first_position"].item(), -0.993, one["last_position"].item())
+            check_run(table, InitialState("pixel", position, (0.099, 0.1012, 0.1023)), one["branch"])
+
+
+def test_runs_of_the_paper_end_on_the_branch_that_is_told(table):
+    for contact, start, initial in product(CONTACTS, STARTS, PAPER_STATES):
+        branch = table["initial_branch"].sel(law="linearized", a=0.08, contact=contact, start=start, initial=initial)
+        check_run(table, initial, branch, contact=contact, start=start)
+
+
+def test_a_plane_of_states():
+    first = pixel_centres((-1.0, 1.0), 4)
+    assert first.tolist() == [-0.75, -0.25, 0.25, 0.75]
+    position, velocity = plane((5.0, 6.0, 7.0), first, np.array([8.0, 9.0]), (0.1, 0.2, 0.3))
+    assert position.tolist() == [[one, 6.0, last] for last in (8.0, 9.0) for one in first]
+    assert velocity.tolist() == [[0.1, 0.2, 0.3]] * 8
+
+
+@pytest.mark.parametrize(("place", "pairs"), [(0, 0), (1, 1)])
+def test_attractors_are_read_as_they_were_found(searched, place, pairs):
+    """Returns, mirror images, and all that decides a label."""
+    table, returns, rows = searched
+    model = MODEL.at((0.08, 0.1)[place])
+    found, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]
+    assert found.side.tolist() == [row.side for row in rows[place]]
+    assert np.count_nonzero(found.side) == 2 * pairs
+    order = [row.index for row in rows[place]]
+    for one, other in zip(found.attractors, expected, strict=True):
+        assert order[one.partner] == other.partner
+        for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
+            assert getattr(one, name) == getattr(other, name)
+        for name in ("kind", "block", "mirror_block", "spacing", "mean_distance", "section_period"):
+            assert getattr(one.motion, name) == getattr(other.motion, name)
+        # Positions are stored relative to the driver.
+        assert one.motion.returns == pytest.approx(other.motion.returns, abs=1e-15)
+        assert one.motion.mirror_returns == pytest.approx(other.motion.mirror_returns, abs=1e-15)
+
+
+def test_without_attractors_nothing_is_determined(searched):
+    table, returns, _ = searched
+    none = table.sel(a=[0.08]).assign_coords(a=[0.0])
+    none["branch"].values[...] = -1
+    merged = whole(none, known_attractors(none, returns, MODEL.at(0.0)), 1, 1)
+    assert (merged["branch"] == -1).all()
+    assert merged["undetermined_count"].item() == 16 * 16
+    assert (merged["pair_count"] == 0).all()
+    assert np.isnan(merged["decision_time"]).all()
+    assert np.isnan(merged["uncertainty_exponent"].item())

@@ -1,0 +1,122 @@
+"""Attractors along a: what is found at one value is looked for at the others, and no process more changes a number."""
+
+import logging
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, SearchSettings, law_of
+from burridge_knopoff.attractors.search import Search
+from burridge_knopoff.basins import fractions
+from burridge_knopoff.continuation import along_a as continuation
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.motion.settings import MOTION
+from tests.motion.stand_in import at
+
+STILL, OTHER = 0.0, 5.0
+A_VALUES = (0.1, 0.2, 0.3, 0.4)
+
+
+def models(a_values=A_VALUES):
+    return [Model(Chain(3), law_of("linearized", a)) for a in a_values]
+
+
+@pytest.fixture
+def scripted(monkeypatch):
+    """States lead to one attractor, and at a = 0.2 to another one as well, which exists up to a = 0.3."""
+    followed = []
+
+    class Scripted(Search):
+        def labels(self, starts, check=True):
+            if check:
+                self.attractors = [at(STILL)]
+                self.vain = (b"a state",)
+            else:
+                assert not self.vain
+                followed.append((self.model.a, [round(start.position[1]) for start in starts]))
+            if self.model.a == 0.2 or (not check and self.model.a <= 0.3):
+                self.attractors = [at(STILL), at(OTHER, partner=1)]
+
+        def known_labels(self, starts):
+            known = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}
+            return np.array([known.get(round(start.position[1]), -1) for start in starts])
+
+    def labels(searches, start, each):
+        return searches, [np.full(7, len(search.attractors)) for search in searches]
+
+    monkeypatch.setattr(continuation, "Search", Scripted)
+    monkeypatch.setattr(continuation, "fraction_labels", labels)
+    return followed
+
+
+def test_what_one_value_has_is_looked_for_at_the_others(scripted):
+    """Downward and upward, as far as it goes; what both have is not followed again."""
+    found = continue_attractors(models(), refine=Refine(1.0))
+    assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
+    assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
+    assert [branch.tolist() for branch in found.branch] == [[1, 2], [1, 2], [1, 2], [1]]
+    assert [index.tolist() for index in found.upward] == [[0, 1], [0, 1], [0, -1], [-1]]
+    assert [index.tolist() for index in found.downward] == [[-1, -1], [0, 1], [0, 1], [0]]
+    assert [labels.tolist() for labels in found.samples] == [[2] * 7] * 3 + [[1] * 7]
+    assert found.grid == [0, 1, 2, 3]
+
+
+def test_a_number_is_remembered_for_two_of_the_widest_steps(scripted, tell):
+    """So that no branch ends where the grid is coarser."""
+    asked = tell(continuation, "branches", [([], [])])
+    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=Refine(1.0))
+    ((_, _, _, reach, *_),) = asked
+    assert reach == pytest.approx(0.6)
+
+
+def same(one, other):
+    """Require everything that two results hold to be equal to the bit."""
+    assert type(one) is type(other)
+    if isinstance(one, np.ndarray):
+        np.testing.assert_array_equal(one, other)
+    elif isinstance(one, list | tuple):
+        assert len(one) == len(other)
+        for first, second in zip(one, other, strict=True):
+            same(first, second)
+    elif hasattr(one, "motion") or hasattr(one, "returns"):
+        for item in fields(one):
+            same(getattr(one, item.name), getattr(other, item.name))
+    elif not isinstance(one, Model):
+        assert one == other or (one != one and other != other)
+
+
+def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
+    """Synchrony loses its stability between these two; the antiphase orbit is there at both."""
+    settings = SearchSettings(samples=6, fraction_width=0.2)
+    found = continue_attractors(models((0.0862, 0.09)), settings, refine=Refine(1.0))
+    means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
+    assert means == [[0.0, 0.14, 0.19], [0.02, 0.02, 0.14, 0.19]]
+    assert 2 not in found.samples[0]
+
+
+def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
+    """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
+    monkeypatch.setattr(fractions, "PART", 30)
+    settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, perturbations=4)
+
+    def found(a_values, **share):
+        states = list(PAPER_STATES.values())
+        return continue_attractors(models(a_values), settings, MOTION, Refine(0.01), starts=states, **share)
+
+    found((0.06, 0.1), processes=2, folder=tmp_path)
+    caplog.set_level(logging.INFO)
+    one, *others = (
+        found((0.06, 0.09, 0.1), **share)
+        for share in ({}, {"processes": 2}, {"folder": tmp_path}, {"processes": 2, "folder": tmp_path})
+    )
+    assert len(one.models) > 3
+    for two in others:
+        for item in fields(one):
+            same(getattr(one, item.name), getattr(two, item.name))
+    told = [line for line in caplog.messages if line.startswith("searched")]
+    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} kept from a run before" for n in (2, 3))]
+    # By its name the display knows how far a search has come: one for each gap of the grid.
+    assert len(list((tmp_path / "compared with the next").iterdir())) == 2

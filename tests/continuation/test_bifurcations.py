@@ -1,0 +1,50 @@
+"""The entries of bifurcations, told of orbits and branches made by hand."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import BifurcationKind
+from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, entries
+from burridge_knopoff.continuation.branch_changes import BranchChange, Change
+from burridge_knopoff.continuation.followed_orbits import FollowedOrbits
+
+A = [0.1, 0.11]
+
+
+def ends(a):
+    """Return an orbit that is followed to a bifurcation at a, and no further, both ways."""
+    way = SimpleNamespace(
+        end=SimpleNamespace(a=a, kind=BifurcationKind.FOLD) if a is not None else None, bifurcations=[]
+    )
+    return SimpleNamespace(upward=way, downward=way)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        (0.104, 0.106, [0.104, 0.106]),
+        (0.104, 0.104 + 0.5 * LEAST_ERROR, [0.104]),
+        (0.104, 0.104 + 2.0 * LEAST_ERROR, [0.104, 0.104 + 2.0 * LEAST_ERROR]),
+        # Beyond a step of the grid the change is not that of this orbit.
+        (0.104, 0.1201, [0.104]),
+        (0.0899, 0.106, [0.106]),
+        (0.0901, 0.1199, [0.0901, 0.1199]),
+        (None, 0.106, [0.106]),
+        # Not located: in the middle.
+        (None, None, [0.105]),
+    ],
+)
+def test_a_change_has_an_entry_for_each_of_its_two_ends(first, second, expected):
+    slots = {"branch": [[0], [1]], "kind": [[1], [1]], "lifetime_low": [[np.nan]] * 2, "lifetime_high": [[np.nan]] * 2}
+    one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
+    one = one.assign(a=("value", A), in_grid=("value", [1, 1]), side=one["branch"] * 0)
+    change = BranchChange(0, 1, 0, 0, 0, 1, Change.CHANGE)
+    followed = FollowedOrbits([ends(first), ends(second)], [(0, 0), (1, 0)], {(0, 0): 0, (1, 0): 1})
+    found = entries(one, [change], followed)
+    assert [entry.a for entry in found] == pytest.approx(expected, rel=1e-15)
+    assert {(entry.low, entry.high, entry.from_branch, entry.to_branch) for entry in found} == {(*A, 0, 1)}
+    located = first is not None or second is not None
+    assert {entry.kind for entry in found} == {BifurcationKind.FOLD if located else BifurcationKind.UNDETERMINED}

@@ -1,0 +1,82 @@
+"""Which closed orbits are followed, told of made-up ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import Chain, Model, MotionKind, OrbitError, law_of
+from burridge_knopoff.continuation import followed_orbits
+from burridge_knopoff.continuation.branch_changes import BranchChange, Change
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
+from burridge_knopoff.periodic_orbits.branch_segment import Half
+from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
+
+
+@pytest.mark.parametrize("processes", [1, 4, 8])
+@pytest.mark.parametrize(
+    ("failing", "expected", "numbers"),
+    [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.01, 1.0001, 0.99], {1: 1, 2: 0, 3: 2})],
+)
+def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
+    """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
+    orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)))
+    periods = [1.0, 1.0001, 1.01, 0.99]
+
+    def limit_cycle(model, at):
+        slot = round(float(at.position[0] + model.sliding_offset[0]))
+        return replace(orbit, return_time=periods[slot] * orbit.return_time)
+
+    def alone(one, *_):
+        if one.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
+            raise OrbitError("cannot be followed")
+        return Half([begin_branch(one, True)])
+
+    monkeypatch.setattr(followed_orbits, "limit_cycle", limit_cycle)
+    monkeypatch.setattr(followed_orbits, "half", alone)
+    slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4, "period": [6.0] * 4}
+    one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
+    one.attrs["refine_longest_period"] = 500.0
+    names, position = ("value", "attractor", "block"), np.zeros((1, 4, 3))
+    position[0, :, 0] = range(4)
+    one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
+    one["velocity"] = names, np.zeros((1, 4, 3))
+    found = followed_orbits.followed(orbit.model, one, [], processes)
+    assert found.of_place == {(0, slot): number for slot, number in numbers.items()}
+    assert [found.of_place[place] for place in found.places] == list(range(len(expected)))
+    followed = [item.upward.orbits[0].orbit.period / orbit.period for item in found.segments]
+    assert followed == pytest.approx(expected)
+
+
+def test_the_longest_orbits_are_followed_first_and_neighbours_late():
+    periods = [6.0] * 8 + [100.0, 6.3, 90.0]
+    placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
+    # Their places within an octave are those of the van der Corput sequence.
+    assert [k for (k, _), _ in followed_orbits._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ([], [(0, 0), (4, 0)]),
+        ([(1, 2, 0, 0)], [(0, 0), (1, 0), (2, 0), (4, 0)]),
+        # Where a branch begins there is nothing before.
+        ([(1, 2, -1, 0)], [(0, 0), (2, 0), (4, 0)]),
+        # Chaos is no closed orbit, and of a mirror pair one is followed.
+        ([(2, 3, 0, 0), (2, 3, 1, -1)], [(0, 0), (2, 0), (4, 0)]),
+    ],
+)
+def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, expected):
+    kind = np.full((5, 2), MotionKind.PERIODIC)
+    kind[3] = MotionKind.CHAOTIC
+    slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}
+    slots["period"] = np.full((5, 2), 6.0)
+    one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
+    one.attrs["refine_longest_period"] = 500.0
+    one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
+    told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
+    assert followed_orbits._places(one, told) == expected
+    # What is longer is not followed.
+    one["period"][0] = 501.0
+    assert followed_orbits._places(one, told) == [place for place in expected if place[0] != 0]

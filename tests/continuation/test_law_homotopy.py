@@ -1,0 +1,134 @@
+"""Branches of two laws that are one: attractors of the paper's chain, followed from one law to the other."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+from burridge_knopoff.continuation import law_homotopy as joining
+from burridge_knopoff.continuation.law_homotopy import follow_law, joined
+from burridge_knopoff.motion.set_distance import least_distance
+from burridge_knopoff.motion.tuning import TUNING
+from tests.motion.stand_in import shown
+
+SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, perturbations=4)
+A = 0.06
+
+
+@pytest.fixture(scope="module")
+def models():
+    return [Model(Chain(3), law_of(law, A)) for law in ("linearized", "nonlinear")]
+
+
+@pytest.fixture(scope="module")
+def found(models):
+    """The attractors of each: synchrony, one on which block 2 never sticks, and one on which it does."""
+    result = []
+    for model in models:
+        attractors, _ = find_attractors(model, SETTINGS)
+        result.append(sorted(attractors, key=lambda item: item.motion.mean_distance))
+        assert len(attractors) == 3
+    return result
+
+
+def test_an_attractor_is_followed_to_the_one_of_the_other_law(models, found):
+    for one, other in zip(*found, strict=True):
+        end = follow_law(*models, one.motion.state(), SETTINGS)
+        assert end is not None
+        assert least_distance(end.returns, other.motion.returns) < 1e-3
+
+
+def test_branches_are_joined_whatever_their_numbers(models, found):
+    first, second = ([item.motion.state() for item in part] for part in found)
+    states = {0: {0: first[0]}, 1: {0: first[1]}, 2: {0: first[2]}}
+    others = {0: {0: second[0]}, 1: {0: second[2]}, 4: {0: second[1]}}
+    for there, expected in (
+        (others, {0: 0, 1: 2, 4: 1}),
+        # What is not there at that a, or somewhere else, is not joined.
+        ({0: others[0], 4: others[4]}, {0: 0, 4: 1}),
+        ({0: others[0], 1: others[1]}, {0: 0, 1: 2}),
+        ({0: others[0]}, {0: 0}),
+    ):
+        assert joined([models[0]], [models[1]], states, there, SETTINGS) == expected
+
+
+def test_mirror_images_are_one_branch():
+    """Each of them, as it stands in a file: at a stop of block 1."""
+    model = Model(Chain(3), law_of("linearized", 0.1))
+    attractors, _ = find_attractors(model, SETTINGS)
+    one, other = (item.motion.state() for index, item in enumerate(attractors) if item.partner != index)
+    assert np.abs(one.vector() - other.vector()).max() > 0.01
+    for there in (one, other):
+        assert joined([model], [model], {1: {0: one}}, {4: {0: there}}, SETTINGS) == {0: 0, 4: 1}
+
+
+@pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
+def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monkeypatch):
+    models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
+    one, other = (part[1].motion.state() for part in found)
+    near = other.vector()[None] + 1.5 * TUNING.same_set
+    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
+    assert joined([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
+
+
+@pytest.fixture
+def follow(tell):
+    """Return what `follow_law` finds where the set at each step is told by its place; None where nothing settles."""
+
+    def found(places):
+        sets = [None if place is None else np.full((10, 6), place) for place in places]
+        asked = tell(joining, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
+        pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
+        start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).state()
+        return follow_law(*pair, start, SETTINGS), asked
+
+    return found
+
+
+def test_a_law_is_changed_in_even_steps(follow):
+    places = [0.01 * step for step in range(TUNING.law_steps + 1)]
+    end, asked = follow(places)
+    assert end.returns[0, 0] == pytest.approx(places[-1])
+    models, starts, transients, *_ = zip(*asked, strict=True)
+    assert [float(model.law(1.0)) for model in models] == pytest.approx(np.linspace(0.5, 1 / 1.5, len(places)).tolist())
+    assert models[-1].law.name == "nonlinear"
+    # Each goes on from where the last one was.
+    assert [float(start.position[0]) for start in starts] == pytest.approx([7.0, *places[:-1]])
+    assert set(transients) == {1500.0}
+    # Nothing else of the model is.
+    assert {(model.v, model.contact) for model in models} == {(0.2, "symmetric")}
+
+
+def test_a_torus_may_be_locked_on_the_way(follow):
+    """The orbit lies on it, before and after, although most of it is far from the orbit."""
+    torus = np.linspace(0.0, 0.9, 10)[:, None]
+    assert follow([torus, 0.3, *[torus] * 15])[0] is not None
+
+
+def test_of_two_branches_that_come_to_one_the_longer_one_is_it(monkeypatch):
+    """Each is followed from three values of a of those at which it exists; the longer one arrives from two of them."""
+    models = [[Model(Chain(3), law_of(law, 0.1 * k)) for k in range(6)] for law in ("linearized", "nonlinear")]
+    here, there = (shown(np.full((1, 6), place), np.zeros((0, 6)), 0.0, 0.0) for place in (0.0, 9.0))
+    asked = []
+
+    def follow(first, second, start, **_):
+        assert first.a == second.a
+        asked.append((start is there_on_it, first.a))
+        return None if asked[-1] == (True, 0.0) else here
+
+    on_it, there_on_it = here.state(), there.state()
+    monkeypatch.setattr(joining, "follow_law", follow)
+    states = {1: dict.fromkeys(range(3), on_it), 2: dict.fromkeys(range(6), there_on_it)}
+    assert joined(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
+    expected = [(False, a) for a in (0.0, 0.1, 0.2)] + [(True, a) for a in (0.0, 0.2, 0.5)]
+    assert [long for long, _ in asked] == [long for long, _ in expected]
+    assert [a for _, a in asked] == pytest.approx([a for _, a in expected])
+
+
+def test_what_does_not_go_on_smoothly_is_given_up(follow):
+    """A set may move by the distance of one branch, twice the paper's for twice the velocity, and not by more."""
+    limit = 2.0 * TUNING.same_set
+    assert follow([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None
+    for places in ([0.0, 1.01 * limit], [0.0, 0.0, None]):
+        end, asked = follow(places)
+        assert end is None
+        assert len(asked) == len(places)

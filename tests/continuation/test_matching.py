@@ -1,0 +1,140 @@
+"""Branches of attractors along a, by the distance of sets."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.continuation.matching import Outline, branches, matched, outlines
+from burridge_knopoff.motion.tuning import TUNING
+from tests.motion.stand_in import ASYMMETRIC, SYNCHRONIZED, at
+
+
+def pair(place, ahead, mean=0.1):
+    """Return a mirror pair; of the first one block 1 is ahead by that."""
+    first = at(place, symmetry=ASYMMETRIC, mean_distance=mean, partner=1, ahead=ahead)
+    return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
+
+
+def followed(found, memory):
+    """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
+    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, 1.0)
+    return tuple([row.tolist() for row in values] for values in numbers)
+
+
+def test_a_set_is_as_near_as_two_directions_tell():
+    """An orbit on a torus is near it, although most of the torus is not near the orbit."""
+    torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
+    one, other = (Outline(item, 1000) for item in (torus, orbit))
+    assert one.distances(other, 1.0) == pytest.approx(np.array([[0.0, 0.5]] * 2))
+    assert other.distances(one, 1.0) == pytest.approx(np.array([[0.0, 0.5]] * 2))
+    far = Outline(at(0.5, 0.8), 1000)
+    assert far.distances(other, 1.0)[0] == pytest.approx([0.0, 0.3])
+    # By the share of the returns that lie near: the last one of two does not.
+    assert Outline(at(0.9, 0.8), 1000).distances(other, 0.0)[0] == pytest.approx([0.3, 0.3])
+    # Block 1 of one and block 3 of the other are ahead: mirror images.
+    left, right = (Outline(item, 1000) for item in pair(0.0, 0.2))
+    assert left.distances(right, 1.0) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
+
+
+def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
+    """From each chaotic set to the next it is farther than from an orbit to any of them."""
+    here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
+    before = outlines([at(*here, partner=0), at(0.041, partner=1)])
+    after = outlines([at(0.042, partner=0), at(*there, partner=1)])
+    assert matched(before, after, 1.0) == {0: 1, 1: 0}
+    # Alone each may follow the other.
+    assert matched({0: before[0]}, {0: after[0]}, 1.0) == {0: 0}
+    assert matched({1: before[1]}, {1: after[1]}, 1.0) == {1: 1}
+
+
+def test_returns_are_thinned_out_evenly():
+    outline = Outline(at(*np.linspace(0.0, 1.0, 101)), 5)
+    assert outline.own[:, 0].tolist() == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert len(Outline(at(0.0, 1.0), 5).own) == 2
+
+
+def test_pairs_are_chosen_together():
+    """Of two that are near one set the nearer one has it, if the other finds another; none reaches beyond the limit."""
+    before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
+    after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
+    assert matched(before, after, 1.0) == {0: 0, 1: 1}
+    assert matched(before, outlines([at(0.015, partner=0)]), 1.0) == {0: 1}
+    limit = TUNING.same_set
+    for place, found in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
+        one = {0: Outline(at(0.0), 10)}
+        assert matched(one, {0: Outline(at(place), 10)}, 1.0) == found
+    assert matched(one, {0: Outline(at(1.01 * limit), 10)}, 1.1) == {0: 0}
+    assert matched({}, after, 1.0) == {}
+
+
+def test_synchrony_is_followed_by_synchrony_alone():
+    """However far it has moved."""
+    still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
+    for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
+        assert matched(outlines([before]), outlines([after]), 1.0) == found
+
+
+def test_several_synchronized_attractors_are_several_branches():
+    one, other = (at(place, symmetry=SYNCHRONIZED, mean_distance=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
+    swapped = [replace(other, partner=0), replace(one, partner=1)]
+    branch, side = branches([0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], range(3), 0.1, 1.0)
+    assert [row.tolist() for row in branch] == [[0, 1], [1, 0], [1]]
+    assert not np.concatenate(side).any()
+
+
+def test_branches_at_a_pitchfork():
+    """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
+    before = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0), at(1.0, partner=1, mean_distance=0.14)]
+    after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean_distance=0.15)]
+    later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean_distance=0.15)]
+    branch, side = followed([before, after, later], 0.2)
+    assert branch == [[0, 1], [2, 2, 1], [2, 2, 1]]
+    # The one of the pair that is nearer to the first one of the pair before has its side.
+    assert side == [[0, 0], [-1, 1, 0], [1, -1, 0]]
+
+
+def test_the_side_is_that_of_the_end_block_ahead_in_position():
+    first = pair(0.0, 0.1)[0]
+    faster = np.array([0.0, 0.0, 0.0, 0.3, 0.0, 0.0])
+    own, mirrored = first.motion.returns + faster, first.motion.mirror_returns + faster[[2, 1, 0, 5, 4, 3]]
+    first = replace(first, motion=replace(first.motion, returns=own, mirror_returns=mirrored))
+    assert followed([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
+
+
+def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
+    there, else_where = at(0.0), at(1.0)
+    found = [[there], [else_where], [there], [else_where], [else_where]]
+    assert followed(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
+    assert followed(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
+    # What was there just before comes first.
+    assert followed([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
+    # Where nothing is nothing is remembered wrongly.
+    assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
+
+
+def test_what_does_not_change_keeps_its_number_though_it_is_not_looked_at_in_between():
+    """At 0.2 lies a value put in between: only what changes is followed there, and it lies near what does not."""
+    still, again = (at(place, partner=0, section_period=4) for place in (0.0, 0.002))
+    new = at(0.004, partner=1, section_period=7)
+    alone = replace(new, partner=0)
+    for between, expected in (
+        ([alone], [[1], [2], [1, 2]]),
+        # What a trajectory has left for is known by its features.
+        ([again], [[1], [1], [1, 2]]),
+        ([again, new], [[1], [1, 2], [1, 2]]),
+    ):
+        numbers, _ = branches([0.1, 0.2, 0.3], [[still], between, [again, new]], [0, 2], 0.3, 1.0)
+        assert [row.tolist() for row in numbers] == expected
+
+
+def test_branches_are_numbered_by_their_mean_distance():
+    """Of one a in that order; what comes from synchrony is not synchrony."""
+    first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
+    assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
+    # Where it differs by rounding they keep the order in which they were found.
+    for apart, numbers in ((1e-9, [1, 2, 3]), (2e-6, [2, 1, 3])):
+        alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + apart, 0.1, 0.2))]
+        assert followed([alike], 1.0)[0] == [numbers]
+    still = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0)]
+    assert followed([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]

@@ -1,0 +1,104 @@
+"""Values of a put in between: where they are put, against changes at known places."""
+
+from dataclasses import replace
+
+import pytest
+
+from burridge_knopoff import Chain, Model, MotionKind, law_of
+from burridge_knopoff.attractors.search import Search
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.continuation import refinement
+from burridge_knopoff.continuation.refinement import refined
+from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.running.processes import shared_out
+from tests.motion.stand_in import ASYMMETRIC, at
+
+STILL, OTHER = 0.0, 5.0
+BISECTED = [0.25, 0.3125, 0.375, 0.5]
+
+
+@pytest.fixture
+def values(monkeypatch):
+    """Return the values of a put in between two, where the attractors at each a are told by a function."""
+
+    def put_in(attractors, low=0.0, high=1.0, resolution=0.1):
+        asked = []
+
+        class Scripted(Search):
+            def labels(self, starts, check=True):
+                asked.append((self.model.a, sorted(start.position[1] for start in starts), self.tuning.trials, check))
+                self.attractors = attractors(self.model.a)
+
+        monkeypatch.setattr(refinement, "Search", Scripted)
+        ends = [Search(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
+        with shared_out(1) as each:
+            (inner,) = refined(ends, Refine(resolution), each)
+        return [search.model.a for search in inner], asked
+
+    return put_in
+
+
+def after(change, before, later):
+    """Return attractors that change at one a."""
+    return lambda a: list(before if a < change else later)
+
+
+def test_bisection_ends_at_the_resolution(values):
+    change = after(0.3, [at(STILL)], [at(STILL, section_period=2)])
+    found, asked = values(change)
+    assert found == BISECTED
+    assert {told[2:] for told in asked} == {(1, False)}
+    # A step of the grid that is near enough is left alone, to rounding.
+    assert values(change, resolution=1.0)[0] == []
+    assert values(change, low=0.2, high=0.2 + 0.1 * (1 + 1e-12))[0] == []
+    assert values(change, low=0.29, high=0.2901, resolution=0.2)[0] == []
+
+
+def test_nothing_is_put_in_where_nothing_changes(values):
+    """Nor where nothing attracts, as at a = 0."""
+    for before, later in (([at(STILL)], [at(STILL)]), ([], [at(STILL)]), ([at(STILL)], [])):
+        assert values(after(0.5, before, later)) == ([], [])
+
+
+def test_windows_between_are_found_on_both_sides(values):
+    """Values at which a third motion is found differ from both neighbours."""
+
+    def window(a):
+        kind = MotionKind.PERIODIC if a < 0.4 else MotionKind.CHAOTIC if a < 0.6 else MotionKind.QUASIPERIODIC
+        return [at(STILL, kind=kind)]
+
+    assert values(window)[0] == [0.25, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.75]
+
+
+def test_only_what_changes_is_followed(values):
+    """What does not change is not looked for, and no reason to go on where a seed has come to it."""
+    found, asked = values(after(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
+    assert found == BISECTED
+    for _, seeds, *_ in asked:
+        assert seeds == pytest.approx([OTHER], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("later", "found"),
+    [
+        (at(STILL, kind=MotionKind.QUASIPERIODIC), BISECTED),
+        (at(STILL, section_period=2), BISECTED),
+        (at(STILL, symmetry=ASYMMETRIC), BISECTED),
+        (at(OTHER), BISECTED),
+        # ⟨J⟩ may differ, and where the set lies as well, as far as it is the same branch.
+        (at(STILL + 0.01, mean_distance_error=0.5), []),
+    ],
+)
+def test_every_way_to_differ_counts(values, later, found):
+    assert values(after(0.3, [at(STILL)], [later]))[0] == found
+
+
+def test_little_work_tells_what_known_attractors_have_become():
+    """A quarter of the patience, one trial, and radii from a sixteenth of the usual one down in steps of sixteen."""
+    model = Model(Chain(3), law_of("linearized", 0.1))
+    gap = refinement._gap(Search(model, replace(SEARCH, samples=7, perturbations=16)), Search(model.at(0.2)), [], [])
+    tuning = gap.search.tuning
+    assert (gap.search.settings.perturbations, gap.search.settings.samples) == (4, 7)
+    assert (tuning.patience, tuning.trials, tuning.shrinking) == (4, 1, 16.0)
+    assert (tuning.largest_radius, tuning.far) == (0.00125, 160.0)
+    assert (gap.first.a, gap.last.a) == (0.1, 0.2)

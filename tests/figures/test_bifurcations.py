@@ -1,0 +1,48 @@
+"""Bifurcations: one that is not located is drawn as the range of a in which it lies."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_hex
+
+from burridge_knopoff.continuation.branch_changes import Change
+from burridge_knopoff.figures.bifurcations import draw
+from burridge_knopoff.figures.branches import branch_colors
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+
+EDGE = ("law", "a", "a_error", "mean_distance", "kind", "change", "from_branch", "to_branch")
+
+
+def test_an_bifurcation_that_is_not_located_is_as_wide_as_its_error():
+    names = ("law", "a", "attractor")
+    attractors = xr.Dataset(
+        {name: (names, np.ones((1, 2, 1), dtype=int)) for name in ("branch", "basin_count", "mean_distance")},
+        {"law": ["linearized"], "a": [0.1, 0.2]},
+    ).assign(branch_number=("number", [1]), branch_name=("number", ["alternating (1)"]))
+    none = {f"orbit_{name}": ("orbit", []) for name in ("law", "a", "mean_distance", "stable", "segment", "branch")}
+    bifurcation = {"law": 0, "a": 0.14, "a_error": 0.01, "mean_distance": np.nan, "kind": int(BifurcationKind.CRISIS)}
+    bifurcation |= {"change": int(Change.END), "from_branch": 1, "to_branch": -1}
+    bifurcations = xr.Dataset({**none, **{name: ("bifurcation", [value]) for name, value in bifurcation.items()}})
+    panel, rows = draw(attractors, bifurcations).axes
+    (bar,) = rows.patches
+    assert (bar.get_x(), bar.get_width()) == pytest.approx((0.13, 0.02))
+    assert to_hex(bar.get_facecolor()).upper() == branch_colors(attractors)[1]
+    assert rows.get_yticklabels()[round(bar.get_y() + 0.4)].get_text() == "crisis"
+    assert panel.get_xlim() == pytest.approx((0.098, 0.202))
+
+
+def test_the_legend_names_the_branches_whose_orbits_are_drawn():
+    names = ("law", "a", "attractor")
+    branch = np.arange(12).reshape(1, 1, 12)
+    attractors = xr.Dataset(
+        {"branch": (names, branch), "basin_count": (names, 100 - branch), "mean_distance": (names, 0.01 * branch)},
+        {"law": ["linearized"], "a": [0.1]},
+    ).assign(branch_number=("number", range(12)), branch_name=("number", [f"motion ({n})" for n in range(12)]))
+    drawn = [0, 2, 10, 11]
+    orbits = {"law": [0] * 4, "a": [0.1] * 4, "mean_distance": [0.1] * 4, "stable": [1] * 4, "segment": range(4)}
+    orbits = {f"orbit_{name}": ("orbit", list(values)) for name, values in {**orbits, "branch": drawn}.items()}
+    none = {name: ("bifurcation", np.zeros(0)) for name in EDGE}
+    (legend,) = draw(attractors, xr.Dataset({**orbits, **none})).legends
+    words = [text.get_text() for text in legend.get_texts()]
+    # Two of them have the colour that branches of small basins share.
+    assert words == ["stable orbits", "motion (0)", "motion (2)", "other branches"]

@@ -1,0 +1,356 @@
+"""Mirror synchrony of chains: closed form and 40 digits for two blocks, symmetries, whole runs."""
+
+import math
+from dataclasses import astuple, fields, replace
+from itertools import product
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    ChainState,
+    FormulaLaw,
+    InitialState,
+    Model,
+    law_of,
+    multipliers,
+    simulate,
+    synchronized_orbit,
+    transverse_exponent,
+)
+from burridge_knopoff.motion import chain_synchronization as chains
+from burridge_knopoff.motion.chain_synchronization import INTERVAL, Fate, Outcome, Sample, Watch, watch_state
+from burridge_knopoff.motion.mirror import symmetrized
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from tests.periodic_orbits.exact import SHIFT
+from tests.reference import reference_events, reference_run
+
+APART = Outcome.NOT_SYNCHRONIZED
+V = 0.1
+SAMPLE = Sample(samples=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), symmetric_samples=2)
+
+
+def model(blocks, a, law="linearized"):
+    return Model(Chain(blocks), law_of(law, a), V)
+
+
+def fate(chain, state, watch):
+    return watch_state(Runner(chain), chain.begin(state), watch)
+
+
+def two_block_exponent(law, a):
+    """Return the transverse exponent of two synchronous blocks: in 40 digits, from a difference while both stick."""
+    options = {"velocity": [0.0, 0.0], "v": V, "start": "tested"}
+    events = reference_events(law, a, [-0.99, -0.99], end=12.0, **options)
+    start, stop, again = [time for time, block, _ in events if block == 1][:3]
+    period = float(again - start)
+    run = reference_run(law, a, [-0.99 + SHIFT, -0.99 - SHIFT], end=period, **options)
+    multiplier = float((run.position[0] - run.position[1]) / (2.0 * SHIFT))
+    if law == "linearized":
+        # docs/chains.md has the closed form.
+        time, omega = float(stop - start), math.sqrt(3.0 - a**2 / 4.0)
+        closed = math.exp(a * time / 2.0) * (math.cos(omega * time) - a / (2.0 * omega) * math.sin(omega * time))
+        assert multiplier == pytest.approx(closed, abs=1e-9)
+    return math.log(abs(multiplier)) / period
+
+
+@pytest.mark.parametrize(
+    ("law", "a"), [*(("linearized", a) for a in (0.01, 0.03, 0.1, 0.3)), *(("nonlinear", a) for a in (0.02, 0.1))]
+)
+def test_transverse_exponent_of_two_blocks(law, a):
+    """The error is that of the phases at which the window begins and ends."""
+    chain = model(2, a, law)
+    state = chain.begin(InitialState("state", (-1.0, -0.9), (0.1, 0.1)))
+    exponent, error = transverse_exponent(chain, state, 2000.0, 10_000.0)
+    assert exponent == pytest.approx(two_block_exponent(law, a), abs=2e-4)
+    assert error < 1e-3
+
+
+def test_two_blocks_synchronize_below_the_critical_a_only():
+    critical = 0.05012
+    assert two_block_exponent("linearized", critical - 1e-5) < 0.0 < two_block_exponent("linearized", critical + 1e-5)
+    state = InitialState("state", (-0.9, -0.85), (0.1, 0.1))
+    watch = Watch(time_limit=4000.0)
+    assert fate(model(2, critical - 0.01), state, watch).outcome == Outcome.SYNCHRONIZED
+    beyond = fate(model(2, critical + 0.005), state, watch)
+    assert beyond.outcome == Outcome.NOT_SYNCHRONIZED
+    assert 1e-3 < beyond.distance < 0.1
+    # So near that neither the distance nor its rate can tell within the time limit.
+    assert fate(model(2, critical - 1e-4), state, watch).outcome == Outcome.UNDETERMINED
+
+
+@pytest.mark.parametrize("blocks", [4, 7, 8, 10])
+def test_transverse_exponent_against_two_trajectories(blocks, law):
+    """A second trajectory is kept 1e-7 beside the symmetric one: the rate of growth of their distance is the same.
+
+    Antisymmetric parts only, so that errors of second order, which are symmetric, do not count.
+    """
+    chain = model(blocks, 0.2, law)
+    runner = Runner(chain)
+    state = chain.begin(SAMPLE.initial(blocks)[0])
+    exponent, _ = transverse_exponent(chain, state, 100.0, 200.0)
+
+    state = symmetrized(state)
+    apart = np.cos(1.0 + 2.3 * np.arange(2 * blocks)).reshape(2, -1)
+    logarithms = []
+    for _ in range(30):
+        apart = apart - apart[:, ::-1]
+        apart[1, state.stuck] = 0.0
+        apart *= 1e-7 / np.linalg.norm(apart)
+        other = runner.after(ChainState(state.position + apart[0], state.velocity + apart[1], state.stuck), 10.0)
+        state = symmetrized(runner.after(state, 10.0))
+        apart = (other.vector() - state.vector()).reshape(2, -1)
+        logarithms.append(math.log(np.linalg.norm(0.5 * (apart - apart[:, ::-1])) / 1e-7))
+    assert sum(logarithms[10:]) / 200.0 == pytest.approx(exponent, abs=1e-5)
+
+
+@pytest.mark.parametrize(("blocks", "a"), [(2, 0.04), (3, 0.06), (4, 0.05), (7, 0.06)])
+def test_the_mirrored_sample_has_the_mirrored_fate(blocks, a):
+    chain = model(blocks, a)
+    watch = Watch(time_limit=2000.0)
+    for state in SAMPLE.initial(blocks)[:3]:
+        mirror = InitialState("mirror", state.position[::-1], state.velocity[::-1])
+        one, two = fate(chain, state, watch), fate(chain, mirror, watch)
+        assert one.outcome == two.outcome
+        assert one.pairs == two.pairs
+        if one.outcome == Outcome.SYNCHRONIZED:
+            assert abs(one.time - two.time) <= INTERVAL
+        else:
+            assert one.distance == pytest.approx(two.distance, rel=1e-6)
+
+
+def test_three_blocks_against_whole_runs(law):
+    """For three blocks the mirror distance is J: outcome, largest and mean distance are those of a run."""
+    watch = Watch(time_limit=3000.0)
+    outcomes = set()
+    for a in (0.06, 0.2):
+        for state in SAMPLE.initial(3)[:4]:
+            mine = fate(model(3, a, law), state, watch)
+            run = simulate(law, a, state, transient=2250.0, window=750.0, sampling=INTERVAL, events="none")
+            outcomes.add(mine.outcome)
+            if mine.outcome == Outcome.SYNCHRONIZED:
+                assert run.mean_distance < 1e-9
+                assert run.distance[np.searchsorted(run.time, mine.time)] <= watch.synchronization_distance
+                assert mine.transverse_exponent < 0.0
+                continue
+            last = run.distance[run.time > 2250.0 + 0.5 * INTERVAL]
+            if run.lyapunov_exponent[0] < 1e-3:
+                assert mine.distance == pytest.approx(last.max(), rel=1e-6)
+                assert mine.mean_distance == pytest.approx(last.mean(), rel=1e-6)
+    assert outcomes == {Outcome.SYNCHRONIZED, Outcome.NOT_SYNCHRONIZED}
+
+
+def test_a_run_cut_off_while_it_synchronizes_is_undetermined():
+    state = InitialState("state", (-0.9, -0.85), (0.1, 0.1))
+    for limit, outcome in ((600.0, Outcome.UNDETERMINED), (6000.0, Outcome.SYNCHRONIZED)):
+        assert fate(model(2, 0.04), state, Watch(time_limit=limit)).outcome == outcome
+
+
+def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
+    """The distance is 0 from the first instant, but the motion repels: no verdict."""
+    state = InitialState("state", (-1.0, -1.0), (0.1, 0.1))
+    result = fate(model(2, 0.1), state, Watch(time_limit=2000.0))
+    assert result.distance == 0.0
+    assert result.transverse_exponent > 0.03
+    assert result.outcome == Outcome.UNDETERMINED
+
+
+class Scripted:
+    """A runner whose four blocks are the given distances apart, (outer pair, inner pair), at each look."""
+
+    model = model(4, 0.1)
+
+    def __init__(self, distances):
+        self.distances = distances
+
+    def begin(self, start):
+        self.clock = 0.0
+
+    def run(self, end):
+        assert end == self.clock + INTERVAL
+        self.clock = end
+        return Status.COMPLETED if end / INTERVAL <= len(self.distances) else Status.DIVERGED
+
+    def state(self):
+        outer, inner = self.distances[round(self.clock / INTERVAL) - 1]
+        # The outer pair differs in positions, the inner one in velocities.
+        return ChainState(np.array([outer, 0.0, 0.0, 0.0]), np.array([0.0, inner, 0.0, 0.0]), np.zeros(4, bool))
+
+
+FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
+
+
+@pytest.mark.parametrize(
+    ("distances", "exponent", "expected"),
+    [
+        (FAR, None, Fate(APART, distance=0.5, mean_distance=0.5)),
+        # The last quarter of ten looks is the last two, before it the two before these.
+        ([*FAR[:8], (0.4, 0.0), (0.2, 0.1)], None, Fate(APART, distance=0.4, mean_distance=0.3)),
+        ([*FAR[:8], (0.3, 0.0), (0.2, 9e-7)], None, Fate(APART, distance=0.3, mean_distance=0.25, pairs=1)),
+        ([*FAR[:8], (0.26, 0.3), (0.2, 0.1)], None, Fate(APART, distance=0.3, mean_distance=0.25)),
+        # Still falling: the largest is below half of that of the quarter before.
+        ([*FAR[:8], (0.2, 0.24), (0.2, 0.1)], None, Fate(Outcome.UNDETERMINED, distance=0.24, mean_distance=0.22)),
+        ([*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2], None, Fate(APART, distance=0.2, mean_distance=0.2)),
+        # Near symmetric motion it is undetermined but for an exponent beyond three errors.
+        (NEAR, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
+        (NEAR, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
+        (NEAR, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),
+        ([(0.0, 0.011)] * 10, None, Fate(APART, distance=0.011, mean_distance=0.011, pairs=1)),
+        # Synchronized, if the exponent says so.
+        ([*FAR[:2], (1e-12, 1e-13)], (-0.01, 1.0), Fate(Outcome.SYNCHRONIZED, 60.0, 1e-12, 1e-12, 2, -0.01)),
+        ([*FAR[:2], (1e-12, 1e-13)], (0.0, 1.0), Fate(Outcome.UNDETERMINED, 60.0, 1e-12, 1e-12, 2, 0.0)),
+        (FAR[:9], None, Fate(Outcome.UNDETERMINED)),
+    ],
+)
+def test_the_fate_that_distances_tell(tell, distances, exponent, expected):
+    asked = tell(chains, "transverse_exponent", [exponent])
+    found = watch_state(Scripted(distances), ChainState(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0))
+    assert astuple(found) == pytest.approx(astuple(expected), nan_ok=True)
+    assert [told[2:] for told in asked] == ([(200.0, 50.0)] if exponent else [])
+
+
+@pytest.mark.parametrize(("v", "pair", "near"), [(0.05, 0.5e-6, 0.005), (0.2, 1e-6, 0.02)])
+def test_distances_are_judged_by_the_speed(tell, v, pair, near):
+    """Those of pairs below the speed of the paper alone, those from symmetric motion at any."""
+    runner = Scripted([])
+    runner.model = Model(Chain(4), law_of("linearized", 0.1), v)
+    for share, inside in ((0.99, True), (1.01, False)):
+        asked = tell(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
+        runner.distances = [(0.5, share * pair)] * 10
+        assert watch_state(runner, None, Watch(200.0)).pairs == inside
+        assert not asked
+        runner.distances = [(share * near, 0.0)] * 10
+        watch_state(runner, None, Watch(200.0))
+        assert len(asked) == inside
+
+
+@pytest.mark.parametrize("start", ["moving", "tested"])
+def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
+    """Tested, blocks with a spring force −(K U) of at most the threshold stick."""
+    watched = tell(chains, "watch_state", [Fate(APART)] * SAMPLE.samples)
+    perturbed = tell(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
+    runs = tell(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
+    chains.watch_chain([model(3, 0.0)], [0.05], replace(SAMPLE, start=start))
+    position = np.array([state.position for state in SAMPLE.initial(3, 0.05)])
+    stuck = position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
+    assert stuck.any(axis=1).all()
+    expected = (stuck & (start == "tested")).tolist()
+    assert [at.stuck.tolist() for _, at, *_ in watched] == expected
+    assert [at.stuck.tolist() for _, at, *_ in perturbed] == expected[: SAMPLE.symmetric_samples]
+    assert [(settings.start, section_only) for _, _, settings, section_only in runs] == [(start, True)]
+
+
+def test_a_window_of_several_parts_is_their_mean():
+    """Whole windows of any length, each begun where the one before ends."""
+    chain = model(5, 0.2)
+    state = chain.begin(SAMPLE.initial(5)[0])
+    whole, _ = transverse_exponent(chain, state, 100.0, 173.0)
+    windows = [(100.0, 50.0), (150.0, 61.5), (211.5, 61.5)]
+    parts = [transverse_exponent(chain, state, *times)[0] for times in windows]
+    assert whole == pytest.approx(np.average(parts, weights=[window for _, window in windows]), abs=1e-9)
+    assert transverse_exponent(chain, state) == transverse_exponent(chain, state, 200.0, 2500.0)
+
+
+@pytest.mark.parametrize("window", [0.0, 1.0, 10.0, 49.9])
+def test_a_window_that_is_too_short_for_an_error_is_refused(window):
+    chain = model(3, 0.05)
+    with pytest.raises(ValueError, match=rf"^window: got {window}, expected"):
+        transverse_exponent(chain, chain.begin(SAMPLE.initial(3)[0]), 200.0, window)
+
+
+@pytest.mark.parametrize("window", [500.0, 2500.0])
+def test_deviations_from_the_multiplier_are_within_the_error(law, window):
+    """A batch of 500 is close to 88 periods of synchrony: the scatter of batches alone may be 1e-17 there."""
+    deviations = []
+    for a in np.linspace(0.08, 0.09, 25).tolist():
+        chain = model(3, a, law)
+        orbit = synchronized_orbit(chain)
+        exact = math.log(abs(multipliers(orbit).transverse)) / orbit.period
+        start = chain.begin(InitialState("state", (-1.0, -1.0, -1.0), (0.1, 0.1, 0.1)))
+        exponent, error = transverse_exponent(chain, start, 2500.0, window)
+        deviations.append(abs(exponent - exact) / error)
+        # Two instants of a period differ by less than a factor of 20.
+        assert error < 3.0 / window
+    assert np.mean(np.array(deviations) < 1.0) > 0.68
+    assert max(deviations) < 3.0
+
+
+def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
+    """Windows one after another scatter by what each of them says of itself."""
+    chain = model(6, 0.25)
+    state = chain.begin(SAMPLE.initial(6)[0])
+    found = np.array([transverse_exponent(chain, state, 200.0 + 500.0 * k, 500.0) for k in range(40)])
+    ratio = math.sqrt((found[:, 1] ** 2).mean()) / found[:, 0].std(ddof=1)
+    assert 0.75 < ratio < 1.5
+
+
+def test_a_state_is_watched_up_to_the_time_limit_at_most(monkeypatch):
+    """There are checks every 20 until then."""
+    asked, run = [], Runner.run
+    monkeypatch.setattr(Runner, "run", lambda runner, time: asked.append(time) or run(runner, time))
+    chain = model(3, 0.2)
+    assert fate(chain, SAMPLE.initial(3)[0], Watch(time_limit=219.0)).outcome != Outcome.SYNCHRONIZED
+    assert asked == [20.0 * check for check in range(1, 11)]
+
+
+def test_a_watched_chain_is_its_states_one_by_one():
+    watch = Watch(time_limit=600.0)
+    results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
+    for (i, law), (j, a) in product(enumerate(("linearized", "nonlinear")), enumerate((0.05, 0.2))):
+        chain = model(3, a, law)
+        fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial(3, a)]
+        for name, values in zip((item.name for item in fields(Fate)), zip(*fates, strict=True), strict=True):
+            np.testing.assert_array_equal(results[name][i, j], values, name)
+        starts = [chain.begin(state) for state in SAMPLE.initial(3, a)[:2]]
+        exponents = [transverse_exponent(chain, start, 150.0, 150.0) for start in starts]
+        told = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
+        assert told.tolist() == [list(item) for item in exponents]
+        run = simulate(law, a, SAMPLE.initial(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1)
+        assert results["lyapunov_exponent"][i, j] == pytest.approx(run.lyapunov_exponent[0], rel=1e-9)
+        assert results["lyapunov_error"][i, j] == pytest.approx(run.lyapunov_error[0], rel=1e-9)
+    assert (results["symmetric_exponent"][0, 0] < 0.0).all()
+    assert (results["symmetric_exponent"][0, 1] > 0.0).all()
+
+
+def test_each_a_has_states_of_its_own():
+    """A larger sample begins with the smaller one, other numbers of blocks and other seeds have others."""
+    samples = [SAMPLE.initial(3, 0.05), SAMPLE.initial(3, 0.06), SAMPLE.initial(3), SAMPLE.initial(2, 0.05)]
+    samples.append(replace(SAMPLE, seed=2).initial(3, 0.05))
+    first = [number for states in samples for state in states for number in state.position]
+    assert len(set(first)) == len(first)
+    assert replace(SAMPLE, samples=9).initial(3, 0.05)[:6] == samples[0]
+
+
+def test_a_chain_without_mirror_blocks_is_refused():
+    chain = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.05))
+    state = chain.begin(InitialState("state", (-1.0, -0.9, -1.0), (0.1, 0.1, 0.1)))
+    for call in (
+        lambda: transverse_exponent(chain, state, 10.0, 10.0),
+        lambda: watch_state(Runner(chain), state),
+        lambda: chains.watch_chain([chain], [0.05]),
+    ):
+        with pytest.raises(ValueError, match=r"^chain: .*mirror"):
+            call()
+
+
+def test_a_ring_synchronizes_by_its_transverse_exponent():
+    """Four blocks in a ring with a formula for friction: what synchronizes does as a symmetric motion attracts."""
+    ring = Model(Chain(4, ends="ring"), FormulaLaw(0.02, "1/(1 + a*u)**2"))
+    start = symmetrized(ring.begin(InitialState("state", (-1.0, -0.9, -0.9, -1.0), (0.1, 0.1, 0.1, 0.1))))
+    exponent, error = transverse_exponent(ring, start, 500.0, 1000.0)
+    assert exponent < -10.0 * error
+    fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial(4)[:4]]
+    found = [one.transverse_exponent for one in fates if one.outcome == Outcome.SYNCHRONIZED]
+    assert found == pytest.approx([exponent] * 2, abs=3.0 * error)
+
+
+def test_a_perturbation_is_renewed_after_ten_time_units_at_most(monkeypatch):
+    """And so that all batches have as many pieces of one length: 173 time units have five times four."""
+    times, after = [], Runner.after
+    monkeypatch.setattr(Runner, "after", lambda runner, at, time: times.append(time) or after(runner, at, time))
+    chain = model(4, 0.05)
+    transverse_exponent(chain, chain.begin(SAMPLE.initial(4)[0]), 95.0, 173.0)
+    assert times == [9.5] * 10 + [173.0 / 20] * 20

@@ -1,0 +1,256 @@
+"""Periods of section points and kinds of motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, MotionKind, law_of, simulate
+from burridge_knopoff.motion.kind import Motion, motion_of, motion_of_run, words_of
+from burridge_knopoff.motion.period import period_of, repetition, section_period
+from burridge_knopoff.motion.settings import MOTION
+
+QUASIPERIODIC = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2000))
+
+
+@pytest.mark.parametrize("period", [1, 2, 3, 7, 40])
+def test_period_of_a_repeating_sequence(period):
+    random = np.random.default_rng(period)
+    section = np.tile(random.normal(size=period), 400 // period)
+    assert repetition(section, 1e-6, 60) == period
+    assert repetition(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
+    assert repetition(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
+    # As long as it may be, and seen just often enough.
+    assert repetition(section[: 3 * period], 1e-6, period) == period
+
+
+def test_quasiperiodic_and_short_sequences_have_no_period():
+    drift = 1.0 + 1e-7 * np.arange(400)
+    for section in (QUASIPERIODIC, np.array([]), np.array([1.0, 1.0]), np.tile(np.arange(70.0), 20), drift):
+        assert repetition(section, 1e-6, 60) == 0
+
+
+def run_of(velocity, states, first_event=0.0, falling=False):
+    """Return a run with section points at τ = 0, 1, … and an event with a state a little later than each of them."""
+    time = np.arange(float(len(velocity)))
+    events = time[time >= first_event] + 0.25
+    states = np.asarray(states, dtype=float)[time >= first_event]
+    return {
+        "crossing_velocity": np.asarray(velocity, dtype=float),
+        "crossing_time": time,
+        "crossing_direction": np.full(len(velocity), -1 if falling else 1),
+        "event_time": events,
+        "event_position": states,
+        "event_velocity": 0.5 * states,
+        "event_block": np.ones(len(events), dtype=int),
+        "event_kind": np.zeros(len(events), dtype=int),
+    }
+
+
+def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
+    """W' repeats after three points, the state of all blocks after six: every other turn it is the mirror image."""
+    velocity = np.tile([1.0, 2.0, 3.0], 60)
+    turn = np.array([[0.1, 0.0, 0.4], [0.2, 0.0, 0.5], [0.3, 0.0, 0.6]])
+    states = np.tile(np.concatenate([turn, turn[:, ::-1]]), (30, 1))
+    assert section_period(run_of(velocity, states), MOTION) == 6
+    assert section_period(run_of(velocity, np.tile(turn, (60, 1))), MOTION) == 3
+    # Positions alone tell it, velocities alone too.
+    run = run_of(velocity, np.tile(turn, (60, 1)))
+    for name in ("event_position", "event_velocity"):
+        assert section_period({**run, name: states}, MOTION) == 6
+    # Downward crossings are no section points.
+    assert section_period(run_of(velocity, states, falling=True), MOTION) == 0
+    # States that drift although W' repeats; states known from late on only; none at all.
+    drifting = states + 1e-4 * np.arange(180.0)[:, None]
+    assert section_period(run_of(velocity, drifting), MOTION) == 0
+    assert section_period(run_of(velocity, states, first_event=150.0), MOTION) == 6
+    assert section_period(run_of(velocity, states, first_event=1e9), MOTION) == 3
+    # Too few states to show three turns say nothing; enough of them that do not repeat in three say that it is none.
+    assert section_period(run_of(velocity, states, first_event=172.0), MOTION) == 3
+    assert section_period(run_of(velocity, states, first_event=165.0), MOTION) == 0
+    # Nor is one that is longer than what is looked for.
+    assert section_period(run_of(velocity, states), replace(MOTION, longest_period=5)) == 0
+
+
+def test_a_slow_approach_does_not_hide_a_period():
+    assert section_period(run_of(1.0 + 0.5 ** np.arange(1000), np.ones((1000, 3))), MOTION) == 1
+
+
+def test_the_words_of_a_kind():
+    assert MotionKind.TRANSIENT_CHAOS.words == "transient chaos"
+
+
+@pytest.mark.parametrize(
+    ("mean_distance", "period", "exponents", "error", "kind"),
+    [
+        (1e-9, 1, (0.0, -0.01), 1e-5, MotionKind.SYNCHRONIZED),
+        (0.1, 3, (1e-4, -1e-4), 1e-5, MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 1e-5, MotionKind.QUASIPERIODIC),
+        (1e-9, 0, (1e-4, -0.01), 1e-5, MotionKind.SYNCHRONIZED),
+        (0.1, 0, (1e-4, -1e-4), 1e-5, MotionKind.QUASIPERIODIC),
+        # With errors larger than the exponents of chaos only a repetition tells something.
+        (0.1, 0, (1e-4, -0.01), 1e-2, MotionKind.UNDETERMINED),
+        (0.1, 3, (1e-4, -0.01), 1e-2, MotionKind.PERIODIC),
+        (0.1, 0, (1e-4, -0.01), 0.9e-3, MotionKind.QUASIPERIODIC),
+        (0.1, 0, (1e-4, -0.01), 1.1e-3, MotionKind.UNDETERMINED),
+        (0.1, 0, (2.3e-2, -3e-3), 1e-2, MotionKind.UNDETERMINED),
+        (0.1, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
+        (1e-9, 0, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED_CHAOS),
+        # Motion that repeats is periodic, also on an orbit that repels all others.
+        (1e-9, 1, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED),
+        (0.1, 2, (0.02, 0.0), 1e-3, MotionKind.PERIODIC),
+        # Uniform sliding: its section points are rounding.
+        (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
+        (0.1, 2, (-0.01, -0.02), 1e-2, MotionKind.PERIODIC),
+        # Above the threshold but not above its error, or the other way round: no chaos.
+        (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.QUASIPERIODIC),
+        (0.1, 0, (9e-4, -0.01), 1e-5, MotionKind.UNDETERMINED),
+        # Weak chaos or a torus: the error leaves both.
+        (0.1, 0, (2e-3, 0.0), 1e-3, MotionKind.UNDETERMINED),
+        (0.1, 0, (9e-4, 0.0), 1e-3, MotionKind.QUASIPERIODIC),
+        # End blocks that move as one are on a torus only if the second exponent is as good as 0.
+        (1e-9, 0, (0.0, -9e-4), 1e-3, MotionKind.QUASIPERIODIC),
+        (1e-9, 0, (0.0, -1.1e-3), 1e-3, MotionKind.UNDETERMINED),
+        (0.1, 0, (0.0, -1.1e-3), 1e-3, MotionKind.QUASIPERIODIC),
+        (0.1, 0, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
+        # Without exponents only a repetition of the section points says something.
+        (0.1, 5, (), 1e-5, MotionKind.PERIODIC),
+        (0.1, 0, (), 1e-5, MotionKind.UNDETERMINED),
+        (0.1, 0, (np.nan, np.nan), np.nan, MotionKind.UNDETERMINED),
+        (1e-9, 1, (np.nan, np.nan), np.nan, MotionKind.SYNCHRONIZED),
+        (0.1, 0, (0.0,), 1e-5, MotionKind.UNDETERMINED),
+        # An error that is not known decides nothing, neither chaos nor rest.
+        (0.1, 0, (0.0079, -0.0009), np.nan, MotionKind.UNDETERMINED),
+        (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
+        (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
+        # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.QUASIPERIODIC),
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
+        (0.1, 0, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
+        # Each is judged by its own one.
+        (1e-9, 0, (0.0, -9e-4), (1e-4, 1e-3), MotionKind.QUASIPERIODIC),
+        (1e-9, 0, (0.0, -9e-4), (1e-3, 5e-4), MotionKind.UNDETERMINED),
+        (0.1, 0, (2e-3, 0.0), (1e-4, 1e-3), MotionKind.CHAOTIC),
+        (0.1, 0, (2e-3, 0.0), (1e-3, 1e-4), MotionKind.UNDETERMINED),
+    ],
+)
+def test_kinds(mean_distance, period, exponents, error, kind):
+    """By one error of all exponents, or one each; a period is one of section points."""
+    assert told(mean_distance, period, exponents, error).kind == kind
+
+
+def told(mean_distance, period, exponents, error, settings=MOTION, points=2000):
+    """Return the motion of a run with section points at τ = 0, 1, … and without events."""
+    random = np.random.default_rng(3).random(period or points)
+    run = run_of(np.resize(random, points), np.zeros((points, 3)), first_event=np.inf)
+    exponents = np.array(exponents, dtype=float)
+    run |= {"lyapunov_exponent": exponents, "lyapunov_error": np.broadcast_to(error, len(exponents))}
+    return motion_of(run, mean_distance, settings)
+
+
+REGULAR = (0.1, (0.0, -1e-5), 1e-5)
+
+
+@pytest.mark.parametrize(("period", "kind"), [(5, "PERIODIC"), (6, "QUASIPERIODIC"), (0, "QUASIPERIODIC")])
+@pytest.mark.parametrize("points", [40, 400, 4000])
+def test_the_longest_period_decides_and_no_window(period, kind, points):
+    mean, *exponents = REGULAR
+    found = told(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
+    assert found.kind.name == kind
+    assert found.section_period == (5 if kind == "PERIODIC" else 0)
+
+
+def test_a_longer_period_is_known_from_the_stops():
+    """The motion is locked: it has not left its closed orbit, but shows no period that a run would show."""
+    states = np.tile(np.random.default_rng(5).random((50, 3)), (12, 1))
+    run = run_of(states[:, 0], states) | {"lyapunov_exponent": np.zeros(2), "lyapunov_error": np.full(2, 1e-5)}
+    found = motion_of(run, 0.1, replace(MOTION, longest_period=40.0))
+    assert found == Motion(MotionKind.QUASIPERIODIC, 0, 50.0)
+    assert not found.is_open
+    assert motion_of(run, 0.1, MOTION) == Motion(MotionKind.PERIODIC, 50, 50.0)
+    # The states of the last events alone do not show it for long enough.
+    late = run_of(states[:, 0], states, first_event=400.0)
+    assert np.isnan(period_of(late, replace(MOTION, longest_period=40.0))[1])
+
+
+def test_an_approach_that_turns_round_the_limit_has_no_period():
+    """A multiplier next to a root of 1 brings it back to where it was, but nearer: that is no period."""
+    k = np.arange(600.0)
+    approach = 1.0 + 1e-6 * np.exp(-1e-3 * k) * np.cos(2.0 * np.pi * k / 88.0)
+    assert repetition(approach, 1e-6, 200) == 0
+    assert repetition(1.0 + 0.1 * (approach - 1.0), 1e-6, 200) == 1
+
+
+@pytest.mark.parametrize(
+    ("motion", "words"),
+    [
+        (Motion(MotionKind.PERIODIC, 48, 157.2), "periodic, section points repeat after 48"),
+        (
+            Motion(MotionKind.SYNCHRONIZED, 1, 5.7, unstable=True),
+            "unstable synchronized, section points repeat after 1",
+        ),
+        (Motion(MotionKind.QUASIPERIODIC), "quasiperiodic within 2000 time units"),
+        (
+            Motion(MotionKind.QUASIPERIODIC, 0, 28991.98),
+            "quasiperiodic within 2000 time units; locked with a period of 28992",
+        ),
+        (Motion(MotionKind.SYNCHRONIZED_CHAOS), "synchronized chaos"),
+    ],
+)
+def test_a_motion_in_words(motion, words):
+    assert words_of(motion, MOTION) == words
+
+
+@pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.PERIODIC)])
+def test_stops_tell_a_period_that_section_points_do_not(points, kind):
+    run = run_of(np.arange(points), np.ones((points, 3)))
+    told = {
+        "status": "completed",
+        "mean_distance": 0.1,
+        "lyapunov_exponent": np.zeros(0),
+        "lyapunov_error": np.zeros(0),
+    }
+    states = np.tile([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]], (20, 1))
+    stops = {"event_position": states, "event_velocity": states, "event_time": np.arange(40.0)}
+    stops |= {"event_block": np.tile([2, 3], 20), "event_kind": np.zeros(40, dtype=int)}
+    assert motion_of_run({**run, **told, **stops}, True, MOTION).kind == kind
+
+
+@pytest.mark.parametrize("name", ["period_tolerance", "zero_exponent", "chaotic_exponent"])
+def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
+    default = getattr(MOTION, name)
+    assert [getattr(MOTION.at_speed(v), name) / default for v in (0.1, 10.0, 0.01)] == [1.0, 1.0, pytest.approx(0.1)]
+    assert MOTION.at_speed(0.01).longest_period == pytest.approx(10.0 * MOTION.longest_period)
+    assert MOTION.at_speed(0.01).synchronization_threshold == MOTION.synchronization_threshold
+
+
+@pytest.mark.parametrize(
+    ("period", "exponents", "error", "unstable"),
+    [
+        (1, (0.02, 0.0), 1e-3, True),
+        (0, (0.02, 0.0), 1e-3, False),
+        (1, (0.02, 0.0), 1e-2, False),
+        (3, (9e-4, 0.0), 1e-6, False),
+        (3, (), 1.0, False),
+        (3, (np.nan,), np.nan, False),
+    ],
+)
+def test_an_orbit_that_repels(period, exponents, error, unstable):
+    assert told(0.1, period, exponents, error).unstable is unstable
+
+
+def test_uniform_sliding_that_attracts_is_no_periodic_motion():
+    """Friction grows with speed there; what crosses W = 0 is rounding."""
+    model = Model(Chain(3), law_of("stribeck", 0.3), 0.5)
+    run = simulate(model, "plus", transient=2000.0, window=2000.0)
+    assert run.lyapunov_exponent[0] < -0.01
+    found = motion_of_run(vars(run), True, MOTION)
+    assert (found.kind, found.section_period) == (MotionKind.UNDETERMINED, 0)
+
+
+def test_what_repeats_without_a_section_point_is_periodic():
+    """Two blocks: W stays above 0, and the orbit is one of a family, so that the second exponent is 0."""
+    start = {"position": [0.5, -1.0], "velocity": [0.05, 0.05]}
+    run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), start, transient=2000.0, window=2000.0)
+    assert not len(run.crossing_time)
+    assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.PERIODIC

@@ -1,0 +1,64 @@
+"""What attractors are: of one kind whatever window shows them, and none that still drifts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of, simulate
+from burridge_knopoff.attractors.search import Search
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.motion.kind import motion_of_run
+from burridge_knopoff.motion.settings import MOTION
+from burridge_knopoff.motion.tuning import TUNING
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+
+
+@pytest.mark.parametrize(
+    ("law", "a", "kind", "points", "period"),
+    [
+        ("nonlinear", 0.08, "QUASIPERIODIC", 0, 28_991.98),
+        ("linearized", 0.0275, "QUASIPERIODIC", 0, 3935.21),
+        ("linearized", 0.0575, "QUASIPERIODIC", 0, 2447.61),
+        ("linearized", 0.0775, "QUASIPERIODIC", 0, 2424.83),
+        ("linearized", 0.08, "PERIODIC", 48, 157.245),
+        ("nonlinear", 0.17, "PERIODIC", 134, 794.862),
+    ],
+)
+def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(law, a, kind, points, period):
+    search = Search(Model(Chain(3), law_of(law, a)), tuning=replace(TUNING, growth_window=0.0))
+    index = search.reach(search.model.begin(PAPER_STATES["plus"]))
+    found = search.attractors[index].motion
+    assert (found.kind.name, found.section_period) == (kind, points)
+    assert found.period == pytest.approx(period, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("law", "a", "coupling", "blocks", "mean"),
+    [
+        ("nonlinear", 0.3, 1e-5, 2, 0.284064),
+        ("nonlinear", 0.3, 1e-4, 2, 0.284029),
+        ("linearized", 0.2, 1e-6, 2, None),
+        ("nonlinear", 0.3, 1e-5, 3, None),
+    ],
+)
+def test_what_drifts_more_slowly_than_it_is_followed_is_no_attractor(law, a, coupling, blocks, mean):
+    """Blocks on weak springs come to antiphase in a time of about 1/coupling, or the search does not say to what."""
+    weak = Model(Chain(blocks, coupling=coupling, pulling=1.0), law_of(law, a))
+    found, labels = find_attractors(weak, SearchSettings(samples=6))
+    listed = [item.motion.mean_distance for item in found]
+    assert listed == ([] if mean is None else [pytest.approx(mean, abs=3e-6)])
+    assert set(labels.tolist()) <= {-1, 0}
+
+
+def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():
+    strong = Model(Chain(3, coupling=8.0, pulling=(1.0, 4.0, 1.0)), law_of("nonlinear", 1.0), 0.5)
+    run = simulate(strong, "minus", transient=3000.0, window=3000.0)
+    assert (run.mean_distance, run.lyapunov_exponent[0] > 0.1) == (0.0, True)
+    assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.SYNCHRONIZED_CHAOS
+    (attractor,), labels = find_attractors(strong, SearchSettings(samples=4))
+    assert (attractor.motion.kind, attractor.symmetry) == (MotionKind.SYNCHRONIZED_CHAOS, Symmetry.SYNCHRONIZED)
+    assert (labels == 0).all()
+    assert np.isfinite(attractor.radius)
+    assert SEARCH.resolution > attractor.motion.mean_distance

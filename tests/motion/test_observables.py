@@ -1,0 +1,162 @@
+"""What is measured of a steady motion: of whole runs, and of hand-made motions."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    Model,
+    MotionKind,
+    SearchSettings,
+    Settings,
+    find_attractors,
+    law_of,
+    simulate,
+)
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.sampling import sampled_states
+from burridge_knopoff.motion import observables as steady
+from burridge_knopoff.motion.kind import Motion
+from burridge_knopoff.motion.observables import lies_on, measure
+from burridge_knopoff.motion.section_returns import visit
+from burridge_knopoff.motion.settings import MOTION
+from burridge_knopoff.motion.tuning import TUNING
+from tests.motion.stand_in import ROWS, nearest, shown, stand_in
+
+#: Some of them again and again.
+ROUND = np.tile(ROWS[:5], (8, 1))
+
+
+def model(threshold=1.0):
+    return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08))
+
+
+@pytest.mark.parametrize("threshold", [1.0, (1.0, 1.0, 0.9)])
+def test_returns_are_the_stops_of_the_first_block(threshold):
+    chain = model(threshold)
+    start = chain.begin(PAPER_STATES["plus"])
+    run = simulate(chain, PAPER_STATES["plus"], Settings(transient=500.0, window=300.0, batches=6, events="all"))
+    found = visit(chain, start, 500.0, 300.0)
+    stops = [(run.event_time >= 500.0) & (run.event_block == block) & (run.event_kind == 0) for block in (1, 2, 3)]
+    state = run.event_position - chain.sliding_offset, run.event_velocity
+    assert found.returns == pytest.approx(np.hstack([part[stops[0]] for part in state]), abs=1e-9)
+    mirrored = np.hstack([part[stops[2], ::-1] for part in state])[: None if threshold == 1.0 else 0]
+    assert found.mirror_returns == pytest.approx(mirrored, abs=1e-9)
+    first, second = np.array_split(found.returns, 2)
+    assert found.spacing == pytest.approx(np.quantile(nearest(second, second, 1), 0.95))
+    ways = [np.quantile(nearest(one, other, 0), 0.95) for one, other in ((first, second), (second, first))]
+    assert found.drift == pytest.approx(max(ways))
+    assert found.state().vector().tolist() == found.returns[-1].tolist()
+
+    motion = measure(chain, start, 500.0, 300.0, MOTION)
+    assert motion.returns == pytest.approx(found.returns, abs=1e-9)
+    assert motion.spacing == pytest.approx(found.spacing, abs=1e-9)
+    assert motion.stop_rate.tolist() == [np.sum(chosen) / 300.0 for chosen in stops]
+    assert motion.mean_distance == pytest.approx(run.mean_distance, abs=1e-9)
+    assert motion.mean_distance_error == pytest.approx(run.mean_distance_error, abs=1e-9)
+    assert motion.exponent.shape == (3,)
+    assert motion.state().vector().tolist() == motion.returns[-1].tolist()
+    # Too few returns say nothing.
+    assert visit(chain, start, 500.0, 20.0) is None
+    assert measure(chain, start, 500.0, 20.0, MOTION) is None
+
+
+def test_attractors_whose_ends_never_stop_are_known():
+    """In four blocks at a = 0.02 some states come to motion in which only the middle blocks stop."""
+    settings = SearchSettings(samples=40)
+    chain = Model(Chain(4), law_of("linearized", 0.02))
+    attractors, labels = find_attractors(chain, settings)
+    assert (labels >= 0).all()
+    assert {item.motion.block for item in attractors} == {1, 2}
+    box = settings.position, settings.velocity
+    drawn = sampled_states(4, settings.samples, *box, settings.seed)
+    for index in set(labels.tolist()):
+        motion, state = attractors[index].motion, drawn[labels.tolist().index(index)]
+        run = simulate(chain, state, transient=60_000, window=6000, lyapunov_exponents=0)
+        assert run.mean_distance == pytest.approx(motion.mean_distance, abs=2e-4)
+        stops = np.bincount(run.event_block[run.event_kind == 0], minlength=5)[1:]
+        assert (stops > 0).tolist() == (motion.stop_rate > 0.0).tolist()
+        assert np.flatnonzero(stops)[0] == motion.block - 1
+
+
+def test_mirror_images_of_a_motion():
+    motion = stand_in(stop_rate=np.array([0.1, 0.2, 0.3])).motion
+    mirrored = motion.mirrored()
+    assert mirrored.returns is motion.mirror_returns
+    assert mirrored.mirror_returns is motion.returns
+    assert mirrored.stop_rate.tolist() == [0.3, 0.2, 0.1]
+    whole, both = motion.symmetrized(), [*motion.returns.tolist(), *(-motion.returns).tolist()]
+    assert whole.returns.tolist() == whole.mirror_returns.tolist() == both
+    assert whole.spacing == pytest.approx(np.quantile(nearest(whole.returns, whole.returns, 1), 0.95))
+    alone = replace(motion, mirror_returns=np.zeros((0, 6)))
+    assert alone.symmetrized().mirror_returns.shape == (0, 6)
+
+
+@pytest.mark.parametrize(
+    ("found", "kind", "spacing", "own_spacing", "expected"),
+    [
+        (ROWS + 0.9e-3, MotionKind.PERIODIC, 0.0, 0.0, True),
+        (ROWS + 1.1e-3, MotionKind.PERIODIC, 0.0, 0.0, False),
+        (ROWS + 0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
+        (ROWS + 0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
+        (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
+        (ROUND, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
+        (ROWS, MotionKind.CHAOTIC, 0.01, 0.0, True),  # chaos seen for so long that it looks like one
+        (ROUND, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
+    ],
+)
+def test_what_lies_on_an_attractor(found, kind, spacing, own_spacing, expected):
+    attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
+    assert lies_on(shown(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
+
+
+def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
+    motion = replace(stand_in().motion, block=1, mirror_block=3)
+    assert (motion.mirrored().block, motion.mirrored().mirror_block) == (3, 1)
+
+
+def test_motions_seen_at_other_blocks_are_others():
+    attractor = stand_in(returns=ROWS).motion
+    found = shown(ROWS, ROWS, 0.0, 0.0)
+    assert lies_on(found, attractor, 1e-3, 1e-6)
+    assert not lies_on(replace(found, block=2), attractor, 1e-3, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("mean", "threshold", "judged"), [(0.1, 1.0, 0.1), (1e-9, 1.0, 1e-9), (1e-9, (1.0, 1.0, 0.9), np.inf)]
+)
+def test_what_is_measured_in_one_window(tell, mean, threshold, judged):
+    states = np.zeros((3, 3))
+    run = SimpleNamespace(
+        status="completed",
+        event_position=states,
+        event_velocity=states,
+        event_block=np.array([1, 3, 3]),
+        event_time=np.array([0.5, 2.0, 3.0]),
+        lyapunov_exponent=np.zeros(3),
+        lyapunov_error=np.zeros(3),
+        mean_distance=mean,
+        mean_distance_error=0.5,
+    )
+    runs = tell(steady, "run", [run, SimpleNamespace(**{**vars(run), "status": "diverged"}), run])
+    tell(steady, "returns_of", [replace(shown(ROWS, -ROWS, 0.9e-6, 0.0), block=1, mirror_block=3), None])
+    told = Motion(MotionKind.PERIODIC, 7, 40.0)
+    asked, looked = tell(steady, "motion_of", [told]), tell(steady, "recurrence", [21.0])
+    found = steady.measure_once(model(threshold), None, 50.0, 30.0, MOTION, TUNING)
+    # Of all events only stops are kept.
+    assert runs[0][3:] == (False, True)
+    # Those of the block at which the motion is seen.
+    assert (looked[0][0].tolist(), found.recurrence) == ([0.5], 21.0)
+    assert looked[0][1] is found.returns
+    assert (found.kind, found.section_period, found.period) == (MotionKind.PERIODIC, 7, 40.0)
+    assert (found.mean_distance, found.mean_distance_error) == (mean, 0.5)
+    assert (found.block, found.mirror_block) == (1, 3)
+    assert found.stop_rate.tolist() == pytest.approx([1 / 30, 0.0, 2 / 30])
+    # The end blocks of a chain that is not its own mirror image do not synchronize.
+    assert asked[0][1] == judged
+    # A run that is cut short, and one of hardly any stops, tell nothing.
+    for _ in range(2):
+        assert steady.measure_once(model(), None, 50.0, 30.0, MOTION, TUNING) is None

@@ -1,0 +1,127 @@
+"""Which returns a motion is seen by, and what they tell: from hand-made events and sets."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.motion import period
+from burridge_knopoff.motion.period import orbit_length
+from burridge_knopoff.motion.section_returns import returns_of, state_of, stops_alike
+from burridge_knopoff.motion.tuning import TUNING
+from tests.motion.stand_in import ROWS, shown
+
+
+@pytest.mark.parametrize(
+    ("stopping", "block", "mirror_block"),
+    [((1, 2, 3, 4), 1, 1), ((2, 3), 2, 2), ((1, 3), 1, 4), ((2,), 2, 3), ((3, 4), 4, 1), ((), None, None)],
+)
+def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mirror_block):
+    """Of two equally far out the lower one; a motion and its mirror image are seen at stops of mirror blocks."""
+    number = np.tile(np.arange(1, 5), 20)
+    states = np.random.default_rng(3).uniform(size=(80, 8))
+    chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
+    number, states = number[stops], states[stops]
+    found = returns_of(chain, 40.0, number, states.__getitem__, TUNING)
+    mirrored = returns_of(chain, 40.0, 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__, TUNING)
+    if block is None:
+        assert found is None
+        return
+    assert (found.block, found.mirror_block) == (mirrored.mirror_block, mirrored.block) == (block, mirror_block)
+    assert found.window == 40.0
+    assert (found.returns == states[number == block]).all()
+    assert (found.returns == mirrored.mirror_returns).all()
+    assert (found.mirror_returns == mirrored.returns).all()
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "symmetric", "seen"),
+    [(8, 8, True, True), (7, 8, True, False), (8, 7, True, False), (8, 7, False, True), (7, 8, False, False)],
+)
+def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, seen):
+    """In a chain that is its own mirror image both of them; else the stops of the first block are all."""
+    chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
+    block = np.array([1] * first + [3] * last)
+    states = np.random.default_rng(3).uniform(size=(len(block), 6))
+    found = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__, TUNING)
+    assert (found is not None) == seen
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "alike"),
+    [
+        ((10, 20, 30), (300, 200, 100), True),  # seen from the other end, for ten times as long
+        ((10, 20, 10), (10, 20, 10.6), True),
+        ((10, 20, 10), (10, 22, 10), False),
+        ((1, 0, 0, 1), (0, 1, 1, 0), False),
+    ],
+)
+def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike):
+    assert stops_alike(np.array(first), np.array(second)) == stops_alike(np.array(second), np.array(first)) == alike
+
+
+@pytest.mark.parametrize(
+    ("stops", "expected"),
+    [
+        ((7, 843, 332, 362, 795, 5), (2, 2)),
+        ((28, 3372, 1328, 1448, 3180, 20), (2, 2)),
+        ((100, 900, 900, 100), (1, 1)),
+        ((300, 900, 900, 5), (1, 4)),
+        ((5, 900, 900, 300), (4, 1)),
+        ((0, 40, 0), (2, 2)),
+        ((0, 0, 0), (1, 1)),
+    ],
+)
+def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
+    """In a window four times as long as well; the mirror image is seen at the mirror block."""
+    assert period.sections(np.array(stops), TUNING) == expected
+    assert period.sections(np.array(stops[::-1]), TUNING) == expected[::-1]
+
+
+def test_a_block_without_velocity_sticks():
+    found = state_of(np.array([1.0, 2.0, 3.0, 1e-14, -1e-14, 2e-14]))
+    assert found.position.tolist() == [1.0, 2.0, 3.0]
+    assert found.velocity.tolist() == [0.0, 0.0, 2e-14]
+    assert found.stuck.tolist() == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("spacing", "drift", "closed", "settled"),
+    [
+        (1e-6, 1e-5, True, True),  # a hundredth of the resolution
+        (1e-6, 1.1e-5, True, False),
+        (1.1e-6, 1e-3, False, True),  # the resolution
+        (1.1e-6, 1.1e-3, False, False),
+        (0.01, 0.03, False, True),  # three spacings
+        (0.01, 0.031, False, False),
+    ],
+)
+def test_what_has_settled(spacing, drift, closed, settled):
+    found = shown(ROWS, ROWS, spacing, drift)
+    assert found.closed(1e-6) == closed
+    assert found.settled(1e-6, 1e-3) == settled
+
+
+@pytest.mark.parametrize(
+    ("rows", "spacing", "expected"),
+    [
+        (np.tile(ROWS[:5], (8, 1)), 1e-6, True),
+        (np.tile(ROWS[:5], (8, 1)), 1.1e-6, False),
+        (ROWS, 1e-6, False),
+        # Bands of chaos that are visited in turn and are wider than the tolerance.
+        (np.tile(ROWS[:5], (8, 1)) + 5e-6 * ROWS, 1e-6, False),
+        (np.tile(ROWS[:20], (2, 1)), 1e-6, False),  # not seen twice in two thirds of the window
+    ],
+)
+def test_a_closed_orbit_comes_round(rows, spacing, expected):
+    assert shown(rows, rows, spacing, 0.0).repeats(1e-6) == expected
+
+
+@pytest.mark.parametrize(
+    ("length", "longest", "expected"), [(1, 60, 1), (3, 60, 3), (7, 7, 7), (9, 8, 8), (13, 60, 60)]
+)
+def test_the_length_of_an_orbit(length, longest, expected):
+    """Of forty returns the first third is left out, and what is left, 27, shows twice what is at most 13 long."""
+    orbit = np.tile(ROWS[:length], (40, 1))[:40]
+    orbit[:13] += 0.5
+    assert orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected
+    assert orbit_length(orbit + 1e-5 * ROWS, 1e-6, longest) == longest

@@ -1,0 +1,267 @@
+"""Where bifurcations are and of which kind, on branches made by hand: their values, tangents and orbits are known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import OrbitError, Symmetry
+from burridge_knopoff.periodic_orbits import bifurcations
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
+from burridge_knopoff.periodic_orbits.following import BranchOrbit
+from tests.periodic_orbits.stand_in import stand_in
+
+
+@pytest.mark.parametrize(
+    ("values", "kind"),
+    [
+        # A pair on the unit circle.
+        ((0.6 + 0.8j, 0.6 - 0.8j, 0.2), BifurcationKind.NEIMARK_SACKER),
+        # A real saddle, of which the product is 1, beside a pair that lies nearer to the circle than either.
+        ((2.0, 0.5, 0.7 + 0.6j, 0.7 - 0.6j), None),
+        # A real one nearer to the circle than the pair.
+        ((1.000001, 0.8 + 0.61j, 0.8 - 0.61j, 0.1), BifurcationKind.NEIMARK_SACKER),
+        # Pairs that are complex, and that are real to rounding, next to where they meet on the axis.
+        ((1.0 + 2e-6j, 1.0 - 2e-6j, 0.1), BifurcationKind.NEIMARK_SACKER),
+        ((1.0 + 5e-7j, 1.0 - 5e-7j, 0.1), None),
+    ],
+)
+def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
+    saddle = np.array([2.0, 0.5])
+    point = SimpleNamespace(multipliers=SimpleNamespace(keeping=np.array(values), breaking=saddle))
+    assert bifurcations._kind(point, (BifurcationKind.NEIMARK_SACKER, "keeping")) == kind
+    # Among the perturbations that part mirror blocks as well as among those that keep them together.
+    point = SimpleNamespace(multipliers=SimpleNamespace(keeping=saddle, breaking=np.array(values)))
+    assert bifurcations._kind(point, (BifurcationKind.NEIMARK_SACKER, "breaking")) == kind
+
+
+@pytest.fixture
+def branch(monkeypatch):
+    """Return how a branch is made whose critical value and a are told at each length, which returns its points."""
+
+    def made(value, a=lambda length: length, kind=BifurcationKind.PERIOD_DOUBLING):
+        def point(length, slope=1.0):
+            orbit = SimpleNamespace(a=a(length), symmetry=Symmetry.ASYMMETRIC, period=1.0)
+            return stand_in(BranchOrbit, orbit=orbit, multipliers=value(length), length=length, tangent=[slope])
+
+        monkeypatch.setattr(bifurcations, "critical_values", lambda orbit, value: {(kind, "keeping"): value})
+        monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
+        return point
+
+    return made
+
+
+@pytest.mark.parametrize(
+    ("slopes", "kind"), [((1.0, -1.0), BifurcationKind.FOLD), ((1.0, 1.0), None), ((-1.0, -1.0), None)]
+)
+def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
+    """Where it does not, it is a symmetry other than the mirror's that breaks."""
+    point = branch(lambda length: length - 0.3, kind=BifurcationKind.FOLD)
+    monkeypatch.setattr(bifurcations, "simplest", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0))
+    found = bifurcations._root(point(0.0, slopes[0]), point(0.5, slopes[1]), (BifurcationKind.FOLD, "keeping"))
+    assert (None if found is None else found[1].kind) == kind
+    if found is not None:
+        assert found[0] == pytest.approx(0.3)
+        assert found[1].turns
+
+
+@pytest.mark.parametrize(
+    ("place", "dead", "error"),
+    [
+        # A noise that hides the sign within 3e-9, and one that hides it within 3e-8.
+        (lambda length: length, 3e-9, 1e-8),
+        (lambda length: length, 3e-8, 1e-7),
+        (lambda length: 3.0 * length, 0.0, 3e-11),
+        # The branch turns back there, so that a is the same on both sides.
+        (lambda length: -1e6 * (length - 0.3) ** 2, 3e-9, 1e-10),
+        (lambda length: 0.0, 0.0, 1e-12),
+    ],
+)
+def test_the_place_of_an_bifurcation_is_known_within_where_the_sign_changes(branch, place, dead, error):
+    """At least to the rounding of a."""
+    point = branch(lambda length: np.expm1(3.0 * (length - 0.3)) if abs(length - 0.3) > dead else 0.0, place)
+    (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
+    assert bifurcation.a == pytest.approx(place(0.3))
+    assert bifurcation.a_error == pytest.approx(error, rel=1e-3, abs=0.0)
+    assert (bifurcation.before.length, bifurcation.after.length) == (0.0, 0.5)
+
+
+def test_noise_of_one_sign_holds_no_bifurcation_from_both_sides(monkeypatch, branch):
+    """Where it hides within 3e-9 on which side an orbit is, the two that hold the bifurcation are 1e-8 from it."""
+    point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15)
+    monkeypatch.setattr(bifurcations, "brentq", lambda value, low, high, **_: 0.3)
+    (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
+    assert bifurcation.a_error == pytest.approx(1e-8, rel=1e-3, abs=0.0)
+
+
+def test_a_value_that_is_0_for_long_is_no_bifurcation(monkeypatch, branch):
+    """Beyond 1e-7 on both sides its sign is no sign of a change, nor is that of an orbit which is not found."""
+
+    def lost(first, length):
+        raise OrbitError("none")
+
+    point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 1.1e-7 else 0.0)
+    assert bifurcations._roots(point(0.0), point(0.5)) == []
+    monkeypatch.setattr(bifurcations, "step_along", lost)
+    assert bifurcations._roots(point(0.0), point(0.5)) == []
+
+
+def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeypatch):
+    """Only what changes its sign is one."""
+    roots = {"period_doubling": 0.4, "torus": 0.1, "pitchfork": 0.2, "fold": 0.7}
+    kinds = dict(
+        zip(
+            roots,
+            (
+                BifurcationKind.PERIOD_DOUBLING,
+                BifurcationKind.NEIMARK_SACKER,
+                BifurcationKind.PITCHFORK,
+                BifurcationKind.FOLD,
+            ),
+            strict=True,
+        )
+    )
+
+    def point(length):
+        values = np.array([0.6 + 0.8j, 0.6 - 0.8j])
+        orbit = SimpleNamespace(a=0.1 + length, symmetry=Symmetry.SYNCHRONIZED)
+        multipliers = SimpleNamespace(keeping=values, breaking=values, length=length)
+        return stand_in(BranchOrbit, orbit=orbit, multipliers=multipliers, length=length, tangent=[1.0])
+
+    def values(orbit, found):
+        sign = {"period_doubling": 1.0, "torus": -1.0, "pitchfork": -1.0, "fold": 1.0}
+        return {(kinds[name], "keeping"): sign[name] * (found.length - root) for name, root in roots.items()}
+
+    monkeypatch.setattr(bifurcations, "critical_values", values)
+    monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
+    found = bifurcations._roots(point(0.0), point(0.5))
+    assert [bifurcation.a for bifurcation in found] == pytest.approx([0.2, 0.3, 0.5])
+    assert [bifurcation.kind for bifurcation in found] == [
+        BifurcationKind.NEIMARK_SACKER,
+        BifurcationKind.PITCHFORK,
+        BifurcationKind.PERIOD_DOUBLING,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("kind", "sticks", "shortest"),
+    [
+        (BifurcationKind.GRAZING, [0.5, 0.9e-4, np.inf], 0.0),
+        (BifurcationKind.GRAZING, [0.5, 1.1e-4, np.inf], 1.1e-4),
+        (BifurcationKind.PERIOD_DOUBLING, [0.5, 0.9e-4, np.inf], 0.9e-4),
+    ],
+)
+def test_a_short_stick_is_none_at_a_grazing(kind, sticks, shortest):
+    """Within 1e-10 of it what shrinks like a root is shorter than 1e-4."""
+    here = SimpleNamespace(contacts=SimpleNamespace(stick=np.array(sticks)))
+    assert Bifurcation(0.1, 1e-9, kind, here, here, None, turns=False).stick_time == shortest
+
+
+@pytest.mark.parametrize(("before", "expected"), [(2.0004, 2.0), (3.9996, 4.0), (6.01, 6.0)])
+def test_the_period_at_an_bifurcation_is_that_of_the_orbits_before_it(before, expected):
+    """Of what joins an orbit of two or three times its own period: so many of its own."""
+    points = [SimpleNamespace(orbit=SimpleNamespace(period=period)) for period in (2.0, before)]
+    assert Bifurcation(0.1, 1e-9, BifurcationKind.PERIOD_DOUBLING, *points, None, turns=False).period == expected
+
+
+@pytest.mark.parametrize(
+    ("remaining", "slope", "beyond", "a", "error", "turns"),
+    [
+        (1e-3, 0.5, 0.2, 0.1005, 5e-4, False),
+        (1e-3, -0.5, -0.2, 0.0995, 5e-4, False),
+        (1e-3, -0.5, 0.2, 0.0995, 5e-4, True),
+        (1e-3, 0.5, -0.2, 0.1005, 5e-4, True),
+        (1e-3, 0.5, None, 0.1005, 5e-4, False),
+        (1e-11, 0.01, 0.2, 0.1, 1e-12, False),
+    ],
+)
+def test_an_orbit_grazes_at_the_length_that_is_left(remaining, slope, beyond, a, error, turns):
+    point = stand_in(BranchOrbit, orbit=SimpleNamespace(a=0.1), remaining=remaining, tangent=[9.0, slope], corner=True)
+    following = [] if beyond is None else [stand_in(BranchOrbit, tangent=[-9.0, beyond], corner=False)]
+    (bifurcation,) = locate_bifurcations([point, *following])
+    assert (bifurcation.kind, bifurcation.turns) == (BifurcationKind.GRAZING, turns)
+    assert (bifurcation.a, bifurcation.a_error) == (
+        pytest.approx(a, abs=1e-12),
+        pytest.approx(error, rel=1e-9, abs=0.0),
+    )
+    assert bifurcation.at is bifurcation.before is point
+    assert bifurcation.after is (following[0] if following else None)
+
+
+@pytest.mark.parametrize(
+    ("upward", "downward", "expected"),
+    [
+        ([(0.13, BifurcationKind.PERIOD_DOUBLING)], [(0.118, BifurcationKind.PERIOD_DOUBLING)], 0.118),
+        ([(0.121, BifurcationKind.PERIOD_DOUBLING)], [(0.118, BifurcationKind.PERIOD_DOUBLING)], 0.121),
+        ([(0.121, BifurcationKind.FOLD), (0.124, BifurcationKind.PERIOD_DOUBLING)], [], 0.124),
+        ([], [(0.1, BifurcationKind.PITCHFORK), (0.09, BifurcationKind.PERIOD_DOUBLING)], 0.09),
+        ([(0.121, BifurcationKind.FOLD)], [], None),
+    ],
+)
+def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeypatch, upward, downward, expected):
+    """It is looked for both ways, as far as the branch has come in its last steps and twice its last change of a."""
+    asked, own = [], locate_bifurcations
+
+    def followed(orbit, a_range, *, upward):
+        asked.append((orbit, *a_range))
+        return upward
+
+    def located(branch):
+        if branch not in (True, False):
+            return own(branch)
+        found = upward if branch else downward
+        return [Bifurcation(a, 1e-9, kind, "simple", None, None, turns=True) for a, kind in found]
+
+    monkeypatch.setattr(bifurcations, "follow", followed)
+    monkeypatch.setattr(bifurcations, "locate_bifurcations", located)
+    simple = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
+    orbits = [SimpleNamespace(a=a, symmetry=Symmetry.ASYMMETRIC, period=2.0) for a in (0.11, 0.12)]
+    point = stand_in(BranchOrbit, orbit=orbits[0], length=0.02, corner=False)
+    found = list(own([point, stand_in(BranchOrbit, orbit=orbits[1], length=0.03, joined=simple, corner=False)]))
+    assert asked == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
+    if expected is None:
+        assert found == []
+        return
+    (bifurcation,) = found
+    assert (bifurcation.a, bifurcation.a_error, bifurcation.kind, bifurcation.at) == (
+        expected,
+        1e-9,
+        BifurcationKind.PERIOD_DOUBLING,
+        "simple",
+    )
+    assert bifurcation.before is point
+    assert bifurcation.after is None
+    assert not bifurcation.turns
+
+
+@pytest.mark.parametrize(
+    ("symmetry", "away", "kind"),
+    [
+        (Symmetry.ASYMMETRIC, 0.9e-4, BifurcationKind.PITCHFORK),
+        (Symmetry.ASYMMETRIC, 1.1e-4, BifurcationKind.FOLD),
+        (Symmetry.SYNCHRONIZED, 0.0, BifurcationKind.FOLD),
+    ],
+)
+def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(monkeypatch, symmetry, away, kind):
+    """Orbits that move as one have no simpler ones."""
+    orbit, simple = (SimpleNamespace(symmetry=one, period=2.0) for one in (symmetry, Symmetry.SYMMETRIC))
+    monkeypatch.setattr(bifurcations, "simplest", lambda orbit, tolerance: simple if away <= tolerance else orbit)
+    assert bifurcations._kind(SimpleNamespace(orbit=orbit), (BifurcationKind.FOLD, "keeping")) == kind
+    assert (
+        bifurcations._kind(SimpleNamespace(orbit=orbit), (BifurcationKind.PERIOD_DOUBLING, "keeping"))
+        == BifurcationKind.PERIOD_DOUBLING
+    )
+
+
+@pytest.mark.parametrize(
+    ("symmetry", "period", "kind"),
+    [
+        (Symmetry.SYMMETRIC, 2.0, BifurcationKind.PITCHFORK),
+        (Symmetry.ASYMMETRIC, 1.0, BifurcationKind.PERIOD_DOUBLING),
+        (Symmetry.ASYMMETRIC, 2.0, None),
+    ],
+)
+def test_what_a_branch_begins_as_tells_its_bifurcation(symmetry, period, kind):
+    orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
+    assert bifurcations._joint_kind(orbit, SimpleNamespace(symmetry=symmetry, period=period)) == kind

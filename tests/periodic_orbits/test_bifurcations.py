@@ -1,0 +1,248 @@
+"""Bifurcations along followed branches against those of the synchronized orbit, single orbits, and runs."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, law_of, limit_cycle
+from burridge_knopoff.periodic_orbits import bifurcations, following
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
+from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, half
+from burridge_knopoff.periodic_orbits.following import Following, follow
+from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
+from burridge_knopoff.running.runner import Runner
+
+MINUS = (-0.989, -0.993, -0.991)
+STEPS = Following(largest_step=2e-3)
+#: Where the synchronized orbit of the paper's chain changes; `test_synchrony.py` holds them to 40-digit arithmetic.
+CRITICAL = {"linearized": 0.086972904666, "nonlinear": 0.088717222971}
+GRAZING = {"linearized": 0.035539733583, "nonlinear": 0.035803901459}
+PERIOD_DOUBLING = 0.272317183794
+
+
+def settled(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
+    """Return the closed orbit that a long run of the paper's chain ends on."""
+    model = Model(Chain(3), law_of(law, a))
+    end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 10_000.0)
+    return limit_cycle(model, end)
+
+
+def at(orbit, a):
+    """Return the orbit that an orbit is at another a."""
+    return find_periodic_orbit(orbit.model.at(a), orbit.reference, orbit.return_time, orbit.symmetry)
+
+
+def segment(orbit, a_range, beyond, settings):
+    """Return both halves of the segment around a stable orbit."""
+    return BranchSegment(*(half(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
+
+
+@pytest.fixture(scope="module")
+def six():
+    """The segment of stable orbits on which the end blocks stop six and three times."""
+    orbit = settled(0.12)
+    assert orbit.stop_counts == (6, 6, 3)
+    return segment(orbit, (0.1, 0.15), 4, STEPS)
+
+
+def ends_on(orbit, a):
+    """Return the stops of the closed orbit that a run ends on which begins on an orbit, but at another a; else none."""
+    model = orbit.model.at(a)
+    try:
+        return limit_cycle(model, Runner(model).after(orbit.reference, 3000.0)).stop_counts
+    except OrbitError:
+        return ()
+
+
+def test_synchrony_is_lost_in_a_pitchfork(families, law):
+    (bifurcation,) = locate_bifurcations(follow(families[law].at(0.08), (0.01, 0.095), STEPS))
+    assert bifurcation.kind == BifurcationKind.PITCHFORK
+    assert bifurcation.a == pytest.approx(CRITICAL[law], abs=1e-10)
+    assert bifurcation.a_error <= 1e-10
+    assert bifurcation.loses_stability
+    assert not bifurcation.keeps_stability
+    assert not bifurcation.turns
+
+
+def test_an_orbit_is_followed_within_a_range_that_it_lies_in(families, law):
+    with pytest.raises(OrbitError, match=r"a = 0\.08: not within the range 0\.2 to 0\.3"):
+        follow(families[law].at(0.08), (0.2, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("unstable", "loses", "keeps"),
+    [((0, 0), False, True), ((0, 1), True, False), ((0, None), True, False), ((1, 0), False, False)],
+)
+def test_stability_on_both_sides_of_an_bifurcation(unstable, loses, keeps):
+    sides = [None if n is None else SimpleNamespace(multipliers=SimpleNamespace(unstable=n)) for n in unstable]
+    bifurcation = Bifurcation(0.1, 1e-9, BifurcationKind.GRAZING, sides[0], *sides, turns=False)
+    assert (bifurcation.loses_stability, bifurcation.keeps_stability) == (loses, keeps)
+
+
+def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
+    """The return has no square root there: its derivative jumps, and the stick grows like a root of the way."""
+    for a, upward in ((0.03, True), (0.04, False)):
+        points = follow(families[law].at(a), (0.02, 0.05), STEPS, upward=upward)
+        (bifurcation,) = locate_bifurcations(points)
+        assert bifurcation.kind == BifurcationKind.GRAZING
+        assert bifurcation.a == pytest.approx(GRAZING[law], abs=1e-9)
+        assert {bifurcation.before.orbit.stop_counts, bifurcation.after.orbit.stop_counts} == {(1, 0, 1), (1, 1, 1)}
+        assert bifurcation.keeps_stability
+        assert not bifurcation.loses_stability
+    near = [point for point in points if 1e-7 < point.orbit.a - bifurcation.a < 1e-4]
+    near = [point for point in near if point.orbit.stop_counts == (1, 1, 1)]
+    slope = [float(point.contacts.stick[1]) ** 2 / (point.orbit.a - bifurcation.a) for point in near]
+    assert len(slope) > 2
+    assert slope == pytest.approx([slope[-1]] * len(slope), rel=0.1)
+
+
+def test_symmetric_motion_doubles_its_period(families):
+    bifurcations = locate_bifurcations(follow(families["linearized"].at(0.26), (0.25, 0.28), STEPS))
+    bifurcation = next(item for item in bifurcations if item.kind == BifurcationKind.PERIOD_DOUBLING)
+    assert bifurcation.a == pytest.approx(PERIOD_DOUBLING, abs=1e-9)
+
+
+def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
+    found = segment(settled(0.1), (0.01, 0.13), 4, STEPS)
+    assert found.downward.end.kind == BifurcationKind.PITCHFORK
+    assert found.downward.end.a == pytest.approx(CRITICAL["linearized"], abs=1e-10)
+    assert found.upward.end.kind == BifurcationKind.GRAZING
+    # The stick of one end block vanishes, and with it the stability: a multiplier jumps over the unit circle.
+    assert found.upward.end.after.orbit.stop_counts in ((1, 1, 0), (0, 1, 1))
+    assert np.abs(found.upward.end.before.multipliers.whole[0]) < 0.5
+    assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
+
+
+def test_what_branches_off_joins_only_where_it_is_near():
+    """At the root of a multiplier's function an orbit far from any simpler one is at a fold."""
+    (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
+    assert bifurcations._kind(point, (BifurcationKind.FOLD, "keeping")) == BifurcationKind.FOLD
+
+
+def test_stable_and_unstable_orbits_meet_where_they_graze(six):
+    for bifurcation in (six.downward.end, six.upward.end):
+        assert bifurcation.kind == BifurcationKind.GRAZING
+        assert bifurcation.turns
+        assert bifurcation.a_error < 1e-10
+        assert sorted(bifurcation.after.orbit.stop_counts) == [2, 6, 6]
+        assert bifurcation.after.multipliers.unstable == 1
+    assert six.stable[0].orbit.a == pytest.approx(six.downward.end.a, abs=1e-9)
+
+
+def test_runs_leave_an_orbit_beyond_its_bifurcation(six):
+    for bifurcation, outward in ((six.downward.end, -1e-6), (six.upward.end, 1e-6)):
+        orbit = bifurcation.before.orbit
+        assert ends_on(orbit, bifurcation.a - outward) == orbit.stop_counts
+        assert ends_on(orbit, bifurcation.a + outward) != orbit.stop_counts
+
+
+@pytest.fixture(scope="module")
+def seven():
+    """The segment of stable orbits on which the end blocks stop seven and four times."""
+    for u in (-0.989, 0.3, -0.4, 0.7):
+        orbit = settled(0.15, (u, -0.993, -0.991))
+        if sorted(orbit.stop_counts) == [4, 7, 7]:
+            return segment(orbit, (0.13, 0.16), 4, STEPS)
+    raise AssertionError("no run reaches it")
+
+
+def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
+    bifurcation = seven.upward.end
+    assert bifurcation.kind == BifurcationKind.FOLD
+    assert bifurcation.turns
+    assert bifurcation.at.multipliers.whole[0] == pytest.approx(1.0, abs=1e-5)
+    here = bifurcation.before.orbit
+    gap = bifurcation.a - here.a
+    while gap > 1e-8:
+        gap *= 0.25
+        here = at(here, bifurcation.a - gap)
+    with pytest.raises(OrbitError):
+        at(here, bifurcation.a + 1e-8)
+
+
+def test_an_bifurcation_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
+    again = segment(seven.stable[-1].orbit, (0.13, 0.16), 4, Following(largest_step=3e-4))
+    for one, other in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
+        assert one.a == pytest.approx(other.a, abs=1e-10)
+        assert (one.kind, one.turns) == (other.kind, other.turns)
+
+
+def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
+    doubled = settled(0.135)
+    assert sorted(doubled.stop_counts) == [12, 26, 26]
+    found = segment(doubled, (0.13, 0.15), 4, Following(largest_step=1e-4))
+    assert found.upward.end.kind == BifurcationKind.PERIOD_DOUBLING
+    doubling = segment(found.upward.orbits[-1].joined, (0.13, 0.15), 4, STEPS).downward.end
+    assert doubling.a == pytest.approx(found.upward.end.a, abs=1e-10)
+    assert doubling.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
+    # The square of what the doubled orbit misses after half its period falls to 0 there.
+    near = [point.orbit for point in found.stable if 0.0 < doubling.a - point.orbit.a < 6e-4]
+    ends = [Runner(orbit.model).after(orbit.reference, 0.5 * orbit.period) for orbit in near]
+    missed = [np.abs(end.vector() - orbit.reference.vector()).max() for end, orbit in zip(ends, near, strict=True)]
+    slope, offset = np.polyfit([orbit.a for orbit in near], np.square(missed), 1)
+    assert len(near) > 2
+    assert -offset / slope == pytest.approx(doubling.a, abs=5e-5)
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_a_flip_may_break_the_mirror_symmetry(law):
+    """Two blocks that move as one part so that each does in a period what the other one does in the next."""
+    model = Model(Chain(2), law_of(law, 0.05))
+    one = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
+    (doubling,) = locate_bifurcations(follow(one, (0.045, 0.055)))
+    assert doubling.kind == BifurcationKind.PERIOD_DOUBLING
+    start = doubling.at.orbit.reference
+    start = ChainState(start.position + np.array([0.002, -0.002]), start.velocity, start.stuck)
+    doubled = find_periodic_orbit(model.at(doubling.a + 2e-4), start, doubling.at.orbit.period, Symmetry.SYMMETRIC)
+    branch = follow(doubled, (0.045, 0.055), upward=False)
+    assert branch[-1].joined.period == pytest.approx(0.5 * doubled.period, rel=1e-3)
+    (end,) = locate_bifurcations(branch)
+    assert end.kind == BifurcationKind.PERIOD_DOUBLING
+    assert end.a == pytest.approx(doubling.a, abs=1e-9)
+    # Found without its symmetry it is followed as what it is.
+    plain = find_periodic_orbit(doubled.model, doubled.reference, doubled.period, Symmetry.ASYMMETRIC)
+    again = follow(plain, (0.045, 0.055), upward=False)
+    assert [bifurcation.kind for bifurcation in locate_bifurcations(again)] == [BifurcationKind.PERIOD_DOUBLING]
+    assert again[0].orbit.symmetry == Symmetry.SYMMETRIC
+
+
+def test_a_torus_branches_off_where_perturbations_stop_decaying():
+    orbit = settled(0.12, (-0.787, -0.661, -0.869), velocity=(0.0, 0.101, 0.189))
+    assert (orbit.symmetry, orbit.stop_counts) == (Symmetry.SYMMETRIC, (1, 0, 1))
+    bifurcation = segment(orbit, (0.1, 0.16), 4, STEPS).upward.end
+    assert bifurcation.kind == BifurcationKind.NEIMARK_SACKER
+    assert abs(bifurcation.at.multipliers.whole[0]) == pytest.approx(1.0, abs=1e-9)
+    assert abs(bifurcation.at.multipliers.whole[0].imag) > 0.1
+    for offset, grows in ((-1e-3, False), (1e-3, True)):
+        beside = at(bifurcation.at.orbit, bifurcation.a + offset)
+        here = beside.reference
+        start = ChainState(here.position + np.array([1e-6, 0.0, 0.0]), here.velocity, here.stuck)
+        end = Runner(beside.model).after(start, 3000.0 * beside.period)
+        assert (np.abs(end.vector() - here.vector()).max() > 1e-6) == grows
+
+
+@pytest.mark.parametrize("succeeds", [True, False])
+def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds):
+    """Up to 5e-4, and after 200 orbits, or below 1e-9."""
+    lengths = []
+
+    def step(points, length):
+        lengths.append(length)
+        return points[-1] if succeeds else None
+
+    monkeypatch.setattr(following, "smooth_step", step)
+    monkeypatch.setattr(following, "come_to_corner", lambda here, length: [])
+    found = follow(families["linearized"].at(0.08), (0.01, 0.1))
+    assert len(found) == (200 if succeeds else 1)
+    expected = [1e-4, 2e-4, 4e-4, *[5e-4] * 196] if succeeds else [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
+    assert lengths == pytest.approx(expected)
+
+
+def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
+    """There a block that stops for however short a time starts with a jump: no orbit goes on from the grazing one."""
+    orbit = settled(0.05, law="carlson_langer")
+    points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
+    assert 0.02 < points[-1].orbit.a < 0.05
+    assert not list(locate_bifurcations(points))[:-1]

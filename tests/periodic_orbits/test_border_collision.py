@@ -1,0 +1,236 @@
+"""Steps along a branch that keep its stops, and corners: how one is come to, and what is beyond it."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import ChainState, OrbitError
+from burridge_knopoff.periodic_orbits import border_collision
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+
+
+@pytest.mark.parametrize(
+    ("values", "length", "expected"),
+    [
+        ((0.5, 0.25), 0.1, 0.1),
+        ((-0.3, -0.2), 0.1, 0.2),
+        ((0.2, 0.3), 0.1, np.inf),
+        ((0.2, 0.2), 0.1, np.inf),
+        ((0.2,), 0.1, np.inf),
+    ],
+)
+def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(monkeypatch, values, length, expected):
+    key = BifurcationKind.FOLD, "keeping"
+    monkeypatch.setattr(border_collision, "critical_values", lambda orbit, value: {key: value})
+    way = [SimpleNamespace(orbit=None, multipliers=value, length=length) for value in values]
+    assert border_collision._joint_ahead(way) == pytest.approx(expected)
+    # A longer way has the same end.
+    ahead = border_collision._joint_ahead([SimpleNamespace(orbit=None, multipliers=9.0, length=9.0), *way])
+    assert ahead == pytest.approx(expected) or len(way) == 1
+
+
+@pytest.mark.parametrize(
+    ("stop_counts", "simpler", "ahead", "made"),
+    [
+        ((1, 2), None, np.inf, True),
+        ((2, 1), None, np.inf, False),
+        (None, None, np.inf, False),  # none is found
+        # A simpler orbit ends a branch only where it joins it.
+        ((1, 2), "simpler", 0.19, True),
+        ((1, 2), "simpler", 0.21, False),
+        ((1, 2), "simpler", np.inf, False),
+    ],
+)
+def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
+    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4))
+
+    def step(point, length):
+        if stop_counts is None:
+            raise OrbitError("none")
+        return found
+
+    monkeypatch.setattr(border_collision, "step_along", step)
+    monkeypatch.setattr(border_collision, "simpler_orbit", lambda orbit: simpler)
+    monkeypatch.setattr(border_collision, "_joint_ahead", lambda way: ahead)
+    taken = border_collision.smooth_step([SimpleNamespace(orbit=SimpleNamespace(stop_counts=(1, 2)))], 0.1)
+    assert (taken is not None) == made
+    if made:
+        assert taken.orbit is found.orbit
+        assert taken.joined == simpler
+
+
+@pytest.mark.parametrize(
+    ("before", "here", "expected"),
+    [
+        ((0.5, 0.9), (0.4, 0.6), 0.2),
+        ((0.5, 0.9), (0.6, 0.6), 0.2),
+        # What grows, stays, or is not there is not ahead.
+        ((0.5, np.inf), (0.6, np.inf), np.inf),
+        ((0.5, 0.3), (0.5, 0.5), np.inf),
+        ((0.5, np.inf), (0.4, 0.2), 0.4),
+    ],
+)
+def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
+    points = [
+        SimpleNamespace(contacts=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
+        for told in (before, here)
+    ]
+    assert border_collision.corner_ahead(*points) == pytest.approx(expected)
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point of a straight branch, which has a corner at 8e-4; what is 0 there falls like a power of the way left."""
+
+    orbit: float
+    length: float = 1e-3
+    joined: str | None = None
+    remaining: float = np.nan
+    power: int = 1
+    corner: float = 8e-4
+
+    @property
+    def contacts(self):
+        return SimpleNamespace(values=lambda: np.array([(self.corner - self.orbit) ** self.power, np.inf]))
+
+
+@pytest.fixture
+def approach(monkeypatch):
+    """Return how a corner is come to from 0, with the steps that are tried; those beyond it find nothing."""
+
+    def come(length, fails=lambda tried: False, joint=np.inf, **told):
+        tried = []
+
+        def step(way, length):
+            tried.append(length)
+            assert len(way) >= 2
+            place = way[-1].orbit + length
+            if place > way[-1].corner or fails(len(tried)):
+                return None
+            return replace(way[-1], orbit=place, length=length, joined="simpler" if place > joint else None)
+
+        monkeypatch.setattr(border_collision, "smooth_step", step)
+        way = border_collision.come_to_corner([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
+        return way, tried
+
+    return come
+
+
+def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(approach):
+    """Up to 1e-10 from it, after a hundredth of the length within which it lies."""
+    way, tried = approach(1e-3)
+    left = 7.9e-4 * 0.03 ** np.arange(6)
+    assert tried == pytest.approx([1e-5, *(0.97 * left[:-1])], rel=1e-4, abs=0.0)
+    assert [point.orbit for point in way] == pytest.approx(8e-4 - left, rel=1e-9)
+    assert np.isnan([point.remaining for point in way[:-1]]).all()
+    assert way[-1].remaining == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
+
+
+def test_steps_that_fail_are_made_again_shorter(approach):
+    """And the next ones are more cautious for a while."""
+    _, tried = approach(1e-3, lambda tried: tried in (1, 2))
+    left = np.array([8e-4 - 1.6e-6])
+    for share in (0.3104, 0.6208, 0.97):
+        left = np.append(left, (1.0 - share) * left[-1])
+    assert tried[:6] == pytest.approx([1e-5, 4e-6, 1.6e-6, *(np.array([0.3104, 0.6208, 0.97]) * left[:3])], rel=1e-6)
+
+
+@pytest.mark.parametrize(("length", "count"), [(1e-3, 13), (1.0, 15)])
+def test_a_corner_to_which_no_step_leads_is_given_up(approach, length, count):
+    """Where steps would be shorter than 1e-10, or after fifteen in vain."""
+    way, tried = approach(length, lambda tried: True)
+    assert way == []
+    assert tried == pytest.approx([0.01 * length * 0.4**k for k in range(count)], rel=1e-9, abs=0.0)
+
+
+def test_a_corner_that_comes_no_nearer_is_given_up(approach):
+    """What falls like a fourth power foretells a quarter of the way."""
+    way, tried = approach(1e-3, power=4)
+    assert len(tried) == len(way) == 32
+    assert not [point for point in way if point.remaining > 0.0]
+
+
+def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach):
+    way, tried = approach(1e-3, corner=1.0)
+    assert tried == pytest.approx([1e-5, 1e-3])
+    assert [point.orbit for point in way] == pytest.approx([1e-5, 1.01e-3])
+
+
+def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
+    way, tried = approach(1e-3, joint=5e-4)
+    assert [point.joined for point in way] == [None, "simpler"]
+    assert len(tried) == 2
+
+
+@pytest.fixture
+def turn(monkeypatch):
+    """Return what is found beyond a corner, where steps along a tangent come to orbits of these stops in turn."""
+
+    def turned(signatures, drops=False, simple=(), lost=(), here=(1, 2)):
+        tried, tangents, left = [], [], iter(signatures)
+
+        def orbit_of(model, state, time, symmetry):
+            tangents.append((model, *state.position))
+            if len(tangents) in lost:
+                raise OrbitError("none")
+            return len(tangents)
+
+        def step(point, length, tangent):
+            tried.append((length, *tangent))
+            stop_counts = next(left)
+            if stop_counts is None:
+                raise OrbitError("none")
+            return SimpleNamespace(orbit=SimpleNamespace(stop_counts=stop_counts))
+
+        monkeypatch.setattr(border_collision, "drops", lambda model: drops)
+        monkeypatch.setattr(border_collision, "model_at", lambda model, a: a)
+        monkeypatch.setattr(border_collision, "orbit_of", orbit_of)
+        monkeypatch.setattr(border_collision, "tangent_of", lambda number: np.array([number, 0.0]))
+        monkeypatch.setattr(border_collision, "step_along", step)
+        monkeypatch.setattr(
+            border_collision, "simpler_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
+        )
+        reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
+        known = {"model": SimpleNamespace(blocks=2), "a": 2e-6, "return_time": 1.0, "symmetry": None}
+        orbit = SimpleNamespace(reference=reference, stop_counts=here, **known)
+        point = SimpleNamespace(orbit=orbit, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
+        found = border_collision.turn_corner(point)
+        return found and found.orbit.stop_counts, tried, tangents
+
+    return turned
+
+
+def test_beyond_a_corner_other_stops_follow(turn):
+    """On either side of it; not none at all, the same ones, or several turns of a simpler orbit."""
+    none, same, twice = (0, 0), (1, 2), (2, 2)
+    found, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
+    assert found == (1, 1)
+    assert tried == [(1e-5, 1, 0), (1e-5, -1, 0), (1e-4, 1, 0), (1e-4, -1, 0), (1e-6, 1, 0)]
+    # The tangent is that of an orbit a little farther, at an a that is not negative.
+    assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
+    assert turn([], drops=True) == (None, [], [])
+    assert turn([(1, 1)])[0] == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "goes_on"),
+    [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
+)
+def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(turn, beyond, goes_on):
+    """Nor with the stops that it came with, or with none: there orbits begin that break a symmetry."""
+    assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if goes_on else None)
+
+
+def test_a_branch_whose_other_side_is_not_found_ends(turn):
+    found, tried, tangents = turn([None] * 24)
+    assert found is None
+    assert tried == [
+        (length, sign * k, 0) for k in (1, 2, 3) for length in (1e-5, 1e-4, 1e-6, 1e-7) for sign in (1, -1)
+    ]
+    assert [position for _, position, _ in tangents] == pytest.approx([0.50001, 0.5001, 0.500001], abs=1e-12)
+    assert [a for a, *_ in tangents] == pytest.approx([0.0, 0.0, 1e-6], abs=1e-12)
+    found, tried, _ = turn([(1, 1)], lost=(1, 2))
+    assert (found, tried) == ((1, 1), [(1e-5, 3, 0)])

@@ -1,0 +1,79 @@
+"""Orbits over a: how they are continued where Newton's method needs a near orbit to begin with."""
+
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, law_of, limit_cycle, synchronized_orbit
+from burridge_knopoff.periodic_orbits import known_orbits as orbits_over_a
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, beside
+
+
+@pytest.fixture
+def known():
+    return KnownOrbits(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05))))
+
+
+def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
+    (here,) = known.known
+    tried = []
+
+    def near_only(orbit, a):
+        tried.append(a)
+        if a - max(known.known) > 0.003:
+            raise OrbitError("too far")
+        return beside(orbit, a)
+
+    monkeypatch.setattr(orbits_over_a, "beside", near_only)
+    found = known.at(here + 0.02)
+    assert found.model.a == here + 0.02
+    assert tried[:3] == pytest.approx([here + 0.02, here + 0.01, here + 0.005])
+    # The step that succeeds is kept.
+    assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
+
+
+def test_where_it_is_lost_the_error_is_told_after_the_least_step(known, monkeypatch):
+    (here,) = known.known
+    tried = []
+
+    def lost(orbit, a):
+        tried.append(a)
+        raise OrbitError("lost")
+
+    monkeypatch.setattr(orbits_over_a, "beside", lost)
+    with pytest.raises(OrbitError, match="lost"):
+        known.at(here + 0.02)
+    assert tried[-1] - here == pytest.approx(orbits_over_a.LEAST_STEP, rel=1.0)
+    assert len(tried) < 20
+
+
+def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
+    """It vanishes with a, and with it how far Newton's method comes."""
+    known.known = {1e-4: known.at(1e-4)}
+
+    def near_only(orbit, a):
+        if min(abs(a - other) for other in known.known) > 3e-7:
+            raise OrbitError("too far")
+        return beside(orbit, a)
+
+    monkeypatch.setattr(orbits_over_a, "beside", near_only)
+    assert known.at(0.99e-4).model.a == 0.99e-4
+
+
+def test_an_orbit_of_another_period_is_not_on_the_branch(known):
+    """Newton's method comes to the orbit gone round twice from a guess that is one."""
+    (orbit,) = known.known.values()
+    assert beside(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
+    with pytest.raises(OrbitError, match="no periodic orbit found near the guess"):
+        beside(orbit, 0.3)
+
+
+def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle():
+    """Asymmetric ones, whose end blocks stop six and three times: at either a a run of its own ends on the orbit."""
+    model = Model(Chain(3), law_of("linearized", 0.12))
+    start = model.begin(InitialState("one", (-0.989, -0.993, -0.991), (0.099, 0.1012, 0.1023)))
+    first = limit_cycle(model, start, settling=10_000.0)
+    orbit = KnownOrbits(first).at(0.121)
+    again = limit_cycle(orbit.model, first.reference, settling=10_000.0)
+    assert (orbit.stop_counts, orbit.symmetry) == (again.stop_counts, again.symmetry)
+    assert orbit.period == pytest.approx(again.period, abs=1e-9)
+    assert orbit.residual < 1e-13

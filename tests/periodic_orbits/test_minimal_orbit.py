@@ -1,0 +1,48 @@
+"""Which orbits are others of more symmetry, or of a shorter period."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import ChainState, Symmetry
+from burridge_knopoff.periodic_orbits import minimal_orbit
+from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+
+STILL = np.zeros(2, dtype=bool)
+
+
+@pytest.mark.parametrize(
+    ("away", "scale", "time", "stops", "told"),
+    [
+        (0.9e-4, 1.0, 1.0, (1, 2), True),
+        (1.1e-4, 1.0, 1.0, (1, 2), False),
+        # Distances grow with v.
+        (9e-4, 10.0, 1.0, (1, 2), True),
+        (0.9e-4, 0.1, 1.0, (1, 2), False),
+        # Newton's method has come to another orbit.
+        (0.0, 1.0, 1.04, (1, 2), True),
+        (0.0, 1.0, 1.06, (1, 2), False),
+        (0.0, 1.0, 0.94, (1, 2), False),
+        (0.0, 1.0, 1.0, (2, 1), False),
+        (0.0, 1.0, 1.0, (2, 4), False),
+    ],
+)
+def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch, away, scale, time, stops, told):
+    model = SimpleNamespace(scale=scale, chain=SimpleNamespace(is_mirror_symmetric=False))
+    reference, end = (ChainState(np.array([0.3, x]), np.full(2, 0.1), STILL) for x in (0.2, 0.2 + away))
+
+    def an_orbit(time, stops):
+        return SimpleNamespace(
+            model=model,
+            reference=reference,
+            symmetry=Symmetry.ASYMMETRIC,
+            period=time,
+            return_time=time,
+            stop_counts=stops,
+        )
+
+    orbit, single = an_orbit(2.0, (2, 4)), an_orbit(time, stops)
+    monkeypatch.setattr(minimal_orbit, "ReturnMap", lambda *_: SimpleNamespace(end=lambda start, after: end))
+    monkeypatch.setattr(minimal_orbit, "find_periodic_orbit", lambda *_: single)
+    assert simplest(orbit, 1e-4) is (single if told else orbit)

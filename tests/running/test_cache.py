@@ -1,0 +1,152 @@
+"""Results that are kept: taken again only where all that decides them is the same."""
+
+import dataclasses
+import math
+import os
+import pickle
+from functools import partial
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.running import cache as module
+from burridge_knopoff.running.cache import kept
+from burridge_knopoff.running.packing import pack, unpack
+from burridge_knopoff.running.processes import shared_out
+
+
+@dataclasses.dataclass
+class Item:
+    values: object
+
+
+def first(*items, more=0):
+    return items[0]
+
+
+def second(*items):
+    return items[0]
+
+
+MODEL = Model(Chain(3), law_of("nonlinear", 0.08))
+CALLS = [
+    (first, 1),
+    (second, 1),
+    (first, 1, 2),
+    (first, 1, 23),
+    (first, 12, 3),
+    (first, [1, 2]),
+    (first, (1, [2])),
+    (first, 1.0),
+    (first, np.array([1.0, 0.0])),
+    (first, np.array([1.0, -0.0])),
+    (first, np.array([[1.0, 0.0]])),
+    (first, np.array([1.0, 0.0], dtype="f4")),
+    (first, Item(np.zeros(2))),
+    (first, Item(np.zeros(3))),
+    (partial(first, more=1), 1),
+    (partial(first, more=2), 1),
+    (first, MODEL),
+    (first, MODEL.at(0.0800000000000001)),
+    (first, dataclasses.replace(MODEL, contact="symmetric")),
+]
+
+
+def test_each_call_is_made_once_and_has_a_file_of_its_own(tmp_path):
+    for call in CALLS:
+        result, path, was_read = kept(tmp_path, *call)
+        again, same, was_read_again = kept(tmp_path, *call)
+        assert (path, was_read, was_read_again) == (same, False, True)
+        assert repr(again) == repr(result)
+    assert len(list(tmp_path.iterdir())) == len(CALLS)
+
+
+def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
+    """What has been looked up before, or is one object with another, makes no other call."""
+    asked = MODEL.at(0.05)
+    path = kept(tmp_path, first, [asked, asked])[1]
+    assert asked.sliding_offset.shape == (3,)
+    assert kept(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "other"), [(module, "source_fingerprint", lambda name: "another"), (np, "__version__", "0.1")]
+)
+def test_other_code_is_another_call(tmp_path, monkeypatch, place, name, other):
+    kept(tmp_path, first, 1)
+    monkeypatch.setattr(place, name, other)
+    assert not kept(tmp_path, first, 1)[2]
+
+
+@pytest.mark.parametrize("damage", [b"", b"no line", b"0" * 64 + b"\nother"])
+def test_a_damaged_file_counts_as_none(tmp_path, damage):
+    path = kept(tmp_path, first, 7)[1]
+    path.write_bytes(damage)
+    assert kept(tmp_path, first, 7) == (7, path, False)
+    assert kept(tmp_path, first, 7) == (7, path, True)
+
+
+def test_a_file_of_another_call_counts_as_none(tmp_path):
+    one, other = (kept(tmp_path, first, number)[1] for number in (7, 8))
+    os.replace(one, other)
+    assert kept(tmp_path, first, 8) == (8, other, False)
+
+
+def test_what_is_read_is_what_was_written():
+    """Types, signs, bits and order in memory included: a later call is known by them."""
+    array = np.asfortranarray(np.arange(6.0).reshape(2, 3))
+    scalar = np.float64(0.1)
+    value = [None, True, -0.0, 0.1, np.nan, 3, "text", b"\0\xff", (1, [2, ()]), {1: "a", (2,): [array, array]}]
+    value += [scalar, np.int32(3), np.zeros((0, 4)), np.array(1.5), np.array([True, False]), MODEL, Answer.YES, [MODEL]]
+    again = unpack(pack(value))
+    assert repr(again) == repr(value)
+    assert pack(again) == pack(value)
+    pair = again[9][2,]
+    assert pair[0] is pair[1]
+    assert pair[0].flags.f_contiguous
+    assert pair[0].flags.writeable
+    assert again[-1][0] is again[-3] == MODEL
+    assert type(again[10]) is np.float64
+    assert math.copysign(1, again[2]) == -1
+
+
+@pytest.mark.parametrize("value", [np.array([None]), {1, 2}, print])
+def test_what_cannot_be_kept_is_refused(value):
+    with pytest.raises(TypeError):
+        pack(value)
+
+
+def test_nothing_is_a_pickle(tmp_path):
+    content = kept(tmp_path, first, MODEL)[1].read_bytes()
+    with pytest.raises(pickle.UnpicklingError):
+        pickle.loads(content)
+    # A class that nobody has imported is not looked for.
+    with pytest.raises(LookupError):
+        unpack(b'[["object",0],[["attributes","antigravity:x",{}]]]\n')
+
+
+def told(number):
+    return number, os.getpid()
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
+    """Also what other settings have left beside it; but nothing if a call has failed, and never anything else."""
+    before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
+    others = [tmp_path / "mine", now / "mine", now / "told" / "mine", tmp_path / "kept/told" / (32 * "a")]
+    for path in others:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("mine")
+    for folder, numbers in ((before, [1]), (now, [1, 2])):
+        with shared_out(processes, folder) as each:
+            each("told", told, numbers)
+    assert not any(path.is_file() for path in before.rglob("*"))
+    with pytest.raises(ZeroDivisionError), shared_out(processes, now) as each:
+        each("fails", divmod, [1], [0])
+    with shared_out(processes, now) as each:
+        assert [pid != os.getpid() for _, pid in each("told", told, [2])] == [processes == 2]
+    left = {path for path in tmp_path.rglob("*") if path.is_file()}
+    assert set(others) <= left
+    assert len(left) == len(others) + 1

@@ -1,0 +1,293 @@
+"""The list of bifurcations: every beginning, end and change of a branch has an entry, on any grid of a."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import (
+    BifurcationKind,
+    Chain,
+    ChainState,
+    Model,
+    MotionKind,
+    OrbitError,
+    law_of,
+    limit_cycle,
+    multipliers,
+    synchronized_orbit,
+)
+from burridge_knopoff.continuation.branch_changes import Change, branch_changes
+from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, _closed
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.summaries.bifurcations import VARIABLES, _branches_of_segments, _rounded, digest, merge, one_law
+
+# Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
+A = [0.05, 0.08, 0.0875, 0.1, 0.13]
+#: Of the attractor at each a.
+TOLD = {
+    "branch": [0, 0, 1, 1, 1],
+    "side": [0] * 5,
+    "kind": [MotionKind[kind] for kind in ("SYNCHRONIZED", "SYNCHRONIZED", "PERIODIC", "PERIODIC", "CHAOTIC")],
+    "symmetry": [0, 0, 2, 2, 2],
+    "section_period": [1, 1, 1, 1, 0],
+    "period": [5.7, 5.7, 5.7, 5.7, np.nan],
+    "upward_branch": [0, 1, 1, 1, -1],
+    "downward_branch": [-1, 0, 0, 1, 1],
+}
+MODEL = Model(Chain(3), law_of("linearized", 0.1))
+
+
+@pytest.fixture(scope="module")
+def grid():
+    """Attractors of one law: one at each a, whose state is that of a long run from the paper's `minus`."""
+    states = []
+    for model in map(MODEL.at, A):
+        runner = Runner(model)
+        runner.begin(model.begin(PAPER_STATES["minus"]))
+        runner.run(8000.0)
+        assert runner.run(9000.0, halting_block=0) == Status.HALTED
+        states.append((runner.state().position + model.sliding_offset, runner.state().velocity))
+    found = xr.Dataset({name: ("a", values) for name, values in TOLD.items()}, {"a": A, "block": [1, 2, 3]})
+    for name, values in zip(("position", "velocity"), zip(*states, strict=True), strict=True):
+        found[name] = ("a", "block"), np.array(values)
+    return found.expand_dims("attractor", 1).assign_coords(law="linearized")
+
+
+def at_all_values(found):
+    """Return attractors of the grid as those at all values of a, chaos with a lifetime, and one value missing."""
+    values = found.rename(a="value").drop_vars(["upward_branch", "downward_branch", "value"])
+    missing = xr.zeros_like(values.isel(value=[0]))
+    missing["branch"] -= 1
+    values = xr.concat([values, missing], "value")
+    values["a"] = "value", [*A, np.nan]
+    values["in_grid"] = "value", [1] * len(A) + [-1]
+    for name, low in (("lifetime_low", 1e5), ("lifetime_high", np.inf)):
+        values[name] = xr.where(values["kind"] == MotionKind.CHAOTIC, low, np.nan)
+    return values.assign_attrs(refine_longest_period=500.0)
+
+
+@pytest.fixture(scope="module")
+def found(grid):
+    return one_law(MODEL, grid, at_all_values(grid))
+
+
+def test_what_branches_do(grid):
+    expected = [(1, 2, 0, 1, Change.END), (1, 2, 0, 1, Change.BEGINNING), (3, 4, 1, 1, Change.CHANGE)]
+    assert told_of(branch_changes(grid, at_all_values(grid))) == expected
+
+
+def told_of(changes):
+    names = ("low", "high", "from_branch", "to_branch", "change")
+    return [tuple(getattr(change, name) for name in names) for change in changes]
+
+
+def told(rows, in_grid):
+    """Return the attractors at all values of a of one law, and at those of the grid: for each value {branch: kind}."""
+    filled = np.array([[*row.items(), (-1, -1), (-1, -1)][:2] for row in rows])
+    slots = {"branch": filled[..., 0], "kind": filled[..., 1]}
+    slots |= dict.fromkeys(("side", "symmetry", "section_period"), np.zeros((len(rows), 2), int))
+    slots["period"] = np.full((len(rows), 2), np.nan)
+    values = xr.Dataset({name: (("value", "attractor"), item) for name, item in slots.items()})
+    values.attrs["refine_longest_period"] = 500.0
+    values = values.assign(a=("value", np.arange(float(len(rows)))), in_grid=("value", in_grid))
+    reached = [[10 * k, 10 * k + 1] for k in range(1, sum(in_grid) + 1)]
+    there = xr.Dataset(dict.fromkeys(("upward_branch", "downward_branch"), (("a", "attractor"), reached)))
+    return there, values
+
+
+@pytest.mark.parametrize(
+    ("rows", "in_grid", "expected"),
+    [
+        # Between values of the grid what does not change is not looked for.
+        ([{1: 1}, {}, {1: 1}], [1, 0, 1], []),
+        ([{1: 1}, {}, {1: 1}], [1, 1, 1], [(0, 1, 1, 10, Change.END), (1, 2, 30, 1, Change.BEGINNING)]),
+        # A change between two that are near, however many values lie between.
+        ([{1: 1}, {1: 1}, {2: 3}, {1: 3}, {1: 3}], [1, 0, 0, 0, 1], [
+            (1, 2, -1, 2, Change.BEGINNING), (1, 3, 1, 1, Change.CHANGE), (2, 3, 2, -1, Change.END),
+        ]),
+        # What ends within a step is reached from the value of the grid below.
+        ([{2: 1, 1: 1}, {1: 1}, {2: 1}], [1, 0, 1], [(1, 2, 1, 11, Change.END)]),
+        ([{2: 1}, {1: 1}, {2: 1, 1: 1}], [1, 0, 1], [(0, 1, 21, 1, Change.BEGINNING)]),
+    ],
+)  # fmt: skip
+def test_what_branches_do_between_values_of_the_grid(rows, in_grid, expected):
+    assert told_of(branch_changes(*told(rows, in_grid))) == expected
+
+
+def test_every_change_has_an_entry(grid, found):
+    for change in branch_changes(grid, at_all_values(grid)):
+        same = (found["change"] == change.change) & (found["from_branch"] == change.from_branch)
+        same &= (found["grid_low"] == A[change.low]) & (found["grid_high"] == A[change.high])
+        assert (same & (found["to_branch"] == change.to_branch)).any()
+
+
+def test_the_lifetime_of_chaos_is_told_beside_its_bifurcations(found):
+    chaotic = (found["motion_before"] == MotionKind.CHAOTIC) | (found["motion_after"] == MotionKind.CHAOTIC)
+    assert 0 < int(chaotic.sum()) < found.sizes["bifurcation"]
+    assert (found["lifetime_low"].values[chaotic] == 1e5).all()
+    assert (found["lifetime_high"].values[chaotic] == np.inf).all()
+    assert np.isnan(found["lifetime_low"].values[~chaotic]).all()
+
+
+def test_bifurcations_are_those_of_the_orbits(found):
+    kind, a = found["kind"].values, found["a"].values
+    assert a[kind == BifurcationKind.PITCHFORK] == pytest.approx([0.0869729046661] * 2, abs=1e-10)
+    assert found["multiplier"].values[kind == BifurcationKind.PITCHFORK].tolist() == [[1.0, 0.0]] * 2
+    grazing = found.isel(
+        bifurcation=np.flatnonzero((kind == BifurcationKind.GRAZING) & (found["change"].values == Change.CHANGE))
+    )
+    assert grazing["a"].values == pytest.approx([0.1122215462], abs=1e-9)
+    assert grazing["stops"].values.tolist() == [[1, 1, 1]]
+    assert grazing["stick_time"].item() == 0.0
+    assert np.hypot(*grazing["multiplier"].values[0]) < 1.0 < np.hypot(*grazing["multiplier_beyond"].values[0])
+    assert (found["a_error"].values <= 1e-9).all()
+
+
+def test_an_bifurcation_lies_by_the_values_between_which_it_was_looked_for(found):
+    """Within a step of the grid; one that is passed between values at which the branch is known, if there are any."""
+    low, high, a = (found[name].values for name in ("grid_low", "grid_high", "a"))
+    passed = found["change"].values == Change.PASSED
+    step = max(np.diff(A))
+    assert ((low - step <= a) & (a <= high + step))[~passed].all()
+    assert not ((a < low) | (a > high))[passed].any()
+    # That of synchrony at which the middle block begins to stick lies below the grid.
+    (first,) = np.flatnonzero(passed & (a < A[0]))
+    assert a[first] == pytest.approx(0.0355, abs=1e-4)
+    assert np.isnan(low[first])
+    assert high[first] == A[0]
+    assert (found["motion_before"].values == found["motion_after"].values)[passed].all()
+    assert found["motion_before"].values[first] == MotionKind.SYNCHRONIZED
+
+
+def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
+    """Next to synchrony that has lost its stability no orbit is found soon; in the end the blocks part."""
+    model = MODEL.at(0.09)
+    start = synchronized_orbit(model).reference
+    position = start.position + np.array([1e-5, 0.0, -1e-5])
+    with pytest.raises(OrbitError, match="no periodic orbit found"):
+        limit_cycle(model, ChainState(position, start.velocity, start.stuck))
+    orbit = _closed(model, position + model.sliding_offset, start.velocity)
+    assert multipliers(orbit).unstable == 0
+    assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
+
+
+def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
+    """However long it is left to settle: exact synchrony stays where it is."""
+    model = MODEL.at(0.09)
+    start = synchronized_orbit(model).reference
+    error = _closed(model, start.position + model.sliding_offset, start.velocity)
+    assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
+
+
+def test_the_values_beside_an_bifurcation_are_those_of_the_attractors(found, grid):
+    """To the last bit, so that they can be looked up."""
+    for name in ("grid_low", "grid_high"):
+        beside = found[name].values
+        assert np.isin(beside[np.isfinite(beside)], A).all()
+    shifted = at_all_values(grid)
+    shifted["a"] = shifted["a"] * (1.0 + 1e-15)
+    assert np.isin(shifted["a"].values[2], one_law(MODEL, grid, shifted)["grid_high"].values)
+
+
+def test_numbers_are_rounded(found):
+    for name in ("a", "period", "orbit_a", "orbit_mean_distance"):
+        values = found[name].values
+        assert [float(f"{value:.9e}") for value in values] == values.tolist()
+        assert [float(f"{value:.8e}") for value in values] != values.tolist()
+
+
+@pytest.mark.parametrize(("name", "digits"), [("multiplier", 5), ("multiplier_beyond", 5), ("stick_time", 5)])
+def test_what_is_less_well_known_has_fewer_digits(found, name, digits):
+    values = found[name].values
+    values = values[np.abs(values) > 1e-5]
+    assert [float(f"{value:.{digits - 1}e}") for value in values] == values.tolist()
+    assert [float(f"{value:.{digits - 2}e}") for value in values] != values.tolist()
+
+
+def test_a_negative_rounding_of_0_is_0():
+    assert not np.signbit(_rounded(VARIABLES["a"], [-1e-13], 10)).any()
+
+
+def test_next_to_0_eleven_digits_behind_the_point_are_kept():
+    values = _rounded(VARIABLES["stick_time"], [1.23456789e-7, 1.23456789e-2, 4e-12], 5)
+    assert values.tolist() == [1.2346e-7, 1.2346e-2, 0.0]
+    assert _rounded(VARIABLES["a"], [1.23456789e-8], 10).tolist() == [1.235e-8]
+
+
+def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
+    stable = found["orbit_stable"].values == 1
+    assert stable.any()
+    assert (~stable).any()
+    assert (found["orbit_period"].values > 0.0).all()
+
+
+def test_an_bifurcation_without_an_orbit_has_no_numbers_of_one(grid):
+    """Chaos on both sides of every bifurcation: none is located, and each lies anywhere between two values of a."""
+    chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
+    found = one_law(MODEL, chaotic, at_all_values(chaotic))
+    assert found.sizes["orbit"] == 0
+    assert found["a"].values == pytest.approx([0.08375] * 2)
+    assert found["a_error"].values == pytest.approx([0.00375] * 2)
+    for name in ("stops", "stops_beyond", "turns"):
+        assert (found[name].values == -1).all()
+    for name in ("period", "mean_distance", "stick_time", "multiplier", "multiplier_beyond"):
+        assert np.isnan(found[name].values).all()
+
+
+def test_bifurcations_of_laws_come_one_after_the_other(found):
+    other = found.isel(bifurcation=[1], orbit=[0, 2]).assign_attrs(laws="mine")
+    both = merge([found, other])
+    assert both.attrs["laws"] == "linearized mine"
+    assert both["law"].values.tolist() == [0] * found.sizes["bifurcation"] + [1]
+    assert both["orbit_law"].values.tolist() == [0] * found.sizes["orbit"] + [1, 1]
+    assert both["law"].attrs["flag_meanings"] == both["orbit_law"].attrs["flag_meanings"] == "linearized mine"
+    np.testing.assert_array_equal(both["a"].values, [*found["a"].values, other["a"].item()])
+    np.testing.assert_array_equal(both["orbit_stops"].values[-2:], other["orbit_stops"].values)
+
+
+def test_bifurcations_in_words(found):
+    """A line each, of what is known there."""
+    shown = xr.concat([found.isel(bifurcation=[0], orbit=[])] * 5, "bifurcation", data_vars="minimal").load()
+    values = {
+        "law": [0, 0, 1, 1, 1],
+        "a": [0.0869729047, 0.1, 0.12345678912, 0.2, 0.20125],
+        "a_error": [1e-10, 1e-9, 1e-10, 5e-5, 0.00125],
+        "kind": [
+            BifurcationKind.PITCHFORK,
+            BifurcationKind.NEIMARK_SACKER,
+            BifurcationKind.GRAZING,
+            BifurcationKind.CRISIS,
+            BifurcationKind.UNDETERMINED,
+        ],
+        "change": [Change.END, Change.CHANGE, Change.PASSED, Change.BEGINNING, Change.CHANGE],
+        "from_branch": [0, 3, 3, -1, 4],
+        "to_branch": [3, 3, 3, 4, 4],
+        "motion_before": [MotionKind.SYNCHRONIZED, MotionKind.PERIODIC, MotionKind.PERIODIC, -1, MotionKind.PERIODIC],
+        "motion_after": [MotionKind.PERIODIC, MotionKind.QUASIPERIODIC, MotionKind.PERIODIC, 3, MotionKind.PERIODIC],
+        "turns": [0, 0, 1, -1, -1],
+        "period": [5.6912345678, 5.7, 34.4, np.nan, np.nan],
+        "stops": [[1, 1, 1], [1, 1, 1], [6, 6, 3], [-1] * 3, [-1] * 3],
+        "stops_beyond": [[1, 1, 1], [-1] * 3, [6, 6, 2], [-1] * 3, [-1] * 3],
+        "lifetime_low": [np.nan, np.nan, np.nan, 1240.0, np.nan],
+        "lifetime_high": [np.nan, np.nan, np.nan, np.inf, np.nan],
+    }
+    for name, value in values.items():
+        shown[name] = found[name].dims, np.array(value)
+    assert digest(shown.assign_attrs(laws="linearized mine")).splitlines() == [
+        "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; above, it leads to branch 3; "
+        "period 5.69123, stops 1 1 1, beyond 1 1 1",
+        "linearized, a = 0.1 +/- 1e-09: neimark_sacker; branch 3, periodic to quasiperiodic; period 5.7, stops 1 1 1",
+        "mine, a = 0.1234567891 +/- 1e-10: grazing, turns; branch 3 goes on, periodic; period 34.4, stops 6 6 3, "
+        "beyond 6 6 2",
+        "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; chaos lasts for 1240 to inf in the mean",
+        "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4, to another periodic motion",
+    ]
+
+
+def test_a_segment_has_the_branch_of_most_attractors_on_it():
+    """Not of the one that it was followed from, here the first."""
+    places = {(0, 0): 0, (1, 0): 0, (2, 1): 0, (3, 0): 1}
+    orbits = FollowedOrbits([None, None], [(0, 0), (3, 0)], places)
+    assert _branches_of_segments(orbits, np.array([[10, -1], [3, -1], [4, 3], [7, -1]])) == [3, 7]
