@@ -1,4 +1,4 @@
-"""The site, built by Sphinx of the README, the pages beside it and the docstrings of the library: `make site`."""
+"""The documentation site, built by Sphinx from the README, its pages and the docstrings: `make site`."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ html_title = f"{project} {release}"
 html_theme = "furo"
 html_copy_source = False
 html_show_copyright = False
-# The prime of a velocity is no quotation mark.
+# The prime of a velocity is not a quotation mark.
 smartquotes = False
 
-# The pages stay where a code host shows them: a relative link is right in both places.
+# The pages stay where a code host shows them, so that relative links work in both places.
 root_doc = "README"
 include_patterns = ["*.md", "config/*.md", "docs/*.md"]
 exclude_patterns = [".*", "build", "results"]
@@ -32,7 +32,7 @@ myst_heading_anchors = 4
 add_module_names = False
 autodoc_default_options = {"members": True}
 autodoc_member_order = "bysource"
-# The types of settings have ranges and descriptions in them; `lay_out` makes a list of these.
+# The types of settings contain ranges and descriptions; `lay_out` lists these.
 autodoc_typehints = "none"
 default_role = "py:obj"
 
@@ -50,13 +50,15 @@ def setup(app: Sphinx) -> None:
 
 
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
-    """Add the contents to the README, in the order of its links, and every public name to docs/api.md."""
+    """Add a table of contents to the README, from its list of pages, and every public name to docs/api.md."""
     text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
-    # A block that is a file has its path after the language, where no page shows it.
+    # A block that is a file has its path after the language, which no page shows.
     text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
     if page == root_doc:
-        pages = dict.fromkeys(re.findall(r"\]\(([\w/]+)\.md\)", text.split("## More")[1]))
-        text += "\n```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+        listed = text.split("## Documentation")[1].split("\n## ")[0]
+        for caption, links in re.findall(r"^- ([\w ]+): (.*(?:\n  .*)*)", listed, re.MULTILINE):
+            pages = re.findall(r"\]\(([\w/]+)\.md\)", links)
+            text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n" + "\n".join(pages) + "\n```\n"
     elif page == "docs/api":
         for name in library.__all__:
             kind = "class" if inspect.isclass(getattr(library, name)) else "function"
@@ -65,7 +67,7 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def table(chart: str) -> str:
-    """Return a Mermaid chart as a table: to draw it, a browser would need a program from elsewhere."""
+    """Return a Mermaid chart as a table, because a browser would need an external program to draw it."""
     for line in chart.splitlines()[1:]:
         if not (BOX.match(line) or ARROW.search(line)):
             raise ValueError(f"{line.strip()}: neither a box nor an arrow of a chart")
@@ -82,12 +84,12 @@ def table(chart: str) -> str:
 def shorten(
     app: Sphinx, what: str, name: str, value: object, options: object, arguments: str | None, returned: str | None
 ) -> tuple[str | None, str | None]:
-    """Return a signature without the fields of settings that are a default."""
+    """Return a signature without the fields of settings that are a default value."""
     return arguments and re.sub(r"=(\w+)\((?:[^()]|\([^()]*\))*\)", r"=\1()", arguments), returned
 
 
 def lay_out(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
-    """Turn a docstring into markup; its lines `name : what it is` become a list, which has all settings of a class."""
+    """Turn a docstring into markup: lines `name : description` become a list, with all settings of a class added."""
     laid: list[str] = []
     example = False
     for line in lines:
@@ -116,7 +118,7 @@ def entry(names: str, text: str) -> list[str]:
 
 
 def markup(text: str) -> str:
-    """Return markup that shows a text: in backquotes names, which become links, or code; all else as it stands."""
+    """Return the markup of a text: names in backquotes become links, other backquotes code, the rest stays as it is."""
     parts = re.split(r"`([^`]+)`", text)
     parts[::2] = [re.sub(r"([*|_`\\])", r"\\\1", part) for part in parts[::2]]
     parts[1::2] = [f"`{part}`" if re.fullmatch(r"[\w.]+", part) else f"``{part}``" for part in parts[1::2]]
@@ -124,6 +126,6 @@ def markup(text: str) -> str:
 
 
 def add_index(app: Sphinx, error: Exception | None) -> None:
-    """Give the first page the name that servers look for."""
+    """Copy the first page to index.html, the name that servers expect."""
     if error is None and app.builder.format == "html":
         shutil.copy(Path(app.outdir, f"{root_doc}.html"), Path(app.outdir, "index.html"))

@@ -1,6 +1,6 @@
 """Make the tables of keys in config/README.md from the fields of a config: python docs/keys.py.
 
-A row is made again from the key in its first cell; which keys stand in which table, and all text, is the page's own.
+Each row is regenerated from the key in its first cell. The order of the keys and all other text are written by hand.
 """
 
 import re
@@ -17,7 +17,7 @@ _SYMBOLS = {"|": "\\|", "<J>": "⟨J⟩", "tau": "τ"}
 
 
 def fields(keys: Keys = CONFIG, section: str = "") -> dict[str, Field]:
-    """Return the fields of a config by their whole keys, as `motion.zero_exponent`."""
+    """Return the fields of a config by their full keys, such as `motion.zero_exponent`."""
     found: dict[str, Field] = {}
     for name, field in keys.fields.items():
         inside = isinstance(field.range, Keys)
@@ -26,7 +26,7 @@ def fields(keys: Keys = CONFIG, section: str = "") -> dict[str, Field]:
 
 
 def refreshed(text: str) -> str:
-    """Return the page with the rows of all keys as they are now."""
+    """Return the page with the rows of all keys brought up to date."""
     known = fields()
     return re.sub(
         r"^\| `([a-z_.]+)` \|.*$",

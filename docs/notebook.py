@@ -1,6 +1,6 @@
-"""Make docs/tutorial.ipynb of docs/tutorial.md: python docs/notebook.py.
+"""Make docs/tutorial.ipynb from docs/tutorial.md: python docs/notebook.py.
 
-Nothing is run: a cell has the output and the picture that the page has, and tests hold the page to those.
+Nothing is run: each cell gets the output and the picture from the page, where tests check them.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def notebook() -> str:
         made.cells.append(picture(match) if match["picture"] else block(match))
         end = match.end()
     for number, cell in enumerate(made.cells, start=1):
-        # Those that nbformat gives are random.
+        # nbformat assigns random ids.
         cell.id = f"cell-{number}"
     for count, cell in enumerate((cell for cell in made.cells if cell.cell_type == "code"), start=1):
         for part in (cell, *cell.outputs):

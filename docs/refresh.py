@@ -1,6 +1,6 @@
-"""Bring the ledger of claims and the figures of the documentation up to date with finished studies: `make docs`.
+"""Update the ledger of claims and the figures of the documentation from finished studies: `make docs`.
 
-The first is the study that docs/ is printed from, the second the same at the depth of `make`.
+The first study is the one that docs/ is printed from. The second is the same study at the depth of `make`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ DEPTHS = DOCS / "depths.json"
 README = DOCS.parent / "README.md"
 BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
-# Enough for a page on a screen, and a third of the bytes of the figures for print.
+# Wide enough for a page on a screen, at a third of the bytes of the figures for print.
 WIDTH = 1400
 COLORS = 96
 
@@ -41,7 +41,7 @@ def verdicts(content: dict) -> dict:
 
 
 def compared(depths: dict[str, dict]) -> str:
-    """Return what the verdicts at the second depth are, beside those at the first."""
+    """Return a sentence that compares the verdicts at the second depth with those at the first."""
     (fine, here), (name, there) = depths.items()
     other = [
         f"{claim}: {verdict}, not {here['verdicts'][claim]}"
@@ -70,8 +70,8 @@ def headline(content: dict) -> str:
     }
     *parts, last = (f"{counts[verdict]} {said}" for verdict, said in words.items() if counts[verdict])
     sentence = (
-        f"**Of {number} independent statements {', '.join(parts)}, and {last}**; {every - number} more repeat these or "
-        "follow from them. [docs/claims.md](docs/claims.md) has each with its numbers."
+        f"**Of {number} independent statements, {', '.join(parts)}, and {last}**; {every - number} more repeat these "
+        "or follow from them. [docs/claims.md](docs/claims.md) lists all with their numbers."
     )
     return textwrap.fill(sentence, 120, break_on_hyphens=False) + "\n"
 
@@ -102,7 +102,7 @@ def main(results: Path, default: Path) -> None:
             picture = Image.open(source).convert("RGB")
             height = round(picture.height * WIDTH / picture.width)
             small = picture.resize((WIDTH, height), Image.Resampling.LANCZOS) if picture.width > WIDTH else picture
-            # Median cut, the usual method, would merge colours of curves: few pixels, far apart.
+            # Median cut, the usual method, would merge the colours of curves, which cover few pixels.
             few = small.quantize(COLORS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
             few.save(DOCS / f"figures/{name}.png", optimize=True)
 

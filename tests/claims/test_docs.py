@@ -78,7 +78,7 @@ def test_the_page_on_edges_counts_what_precedes_chaos(content: dict) -> None:
     counts = re.findall(r"\d+ of \d+ \(\w+\)", reason)
     assert len(counts) == 2
     text = " ".join((ROOT / "docs/bifurcations.md").read_text(encoding="utf-8").split())
-    assert f"a closed orbit comes before chaos at {' and '.join(counts)} places" in text
+    assert f"a periodic orbit precedes chaos at {' and '.join(counts)} places" in text
 
 
 def test_the_readme_counts_what_is_independent(content: dict) -> None:
