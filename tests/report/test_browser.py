@@ -155,7 +155,7 @@ def under_pointer(page, kind):
     chart = page.locator(f'.chart[data-chart="{kind}"]').first
     chart.scroll_into_view_if_needed()
     chart.locator(".nsewdrag").first.hover()
-    return chart.locator(".hoverlayer").inner_text()
+    return chart.locator(".hoverlayer").text_content()
 
 
 def tab_through(page):

@@ -150,8 +150,8 @@ def fractions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
                 error_y=_bars(np.nan_to_num(high - fraction), f"{color}73", np.nan_to_num(fraction - low)),
                 line={"color": color, "width": 1},
                 marker={"color": color, "size": 5, "symbol": branches.shape(name)},
-                hovertemplate=f"{name}<br>a = %{{x}}<br>fraction %{{y:.4g}} "
-                "(%{customdata[0]:.4g} to %{customdata[1]:.4g})<extra></extra>",
+                hovertemplate=f"{name}<br>a = %{{x}}<br>fraction %{{y:.4f}} "
+                "(%{customdata[0]:.4f} to %{customdata[1]:.4f})<extra></extra>",
             )
         )
     traces.append(
@@ -160,7 +160,7 @@ def fractions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
             x=a,
             y=undetermined_share(attractors),
             marker={"color": UNDETERMINED_COLOR, "size": 5, "symbol": "x-thin-open"},
-            hovertemplate="undetermined<br>a = %{x}<br>fraction %{y:.4g}<extra></extra>",
+            hovertemplate="undetermined<br>a = %{x}<br>fraction %{y:.4f}<extra></extra>",
         )
     )
     return chart(traces, xaxis=a_axis(a), yaxis=axis("fraction of initial states", range=[-0.03, 1.03]))
@@ -189,4 +189,4 @@ def conventions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
         **steps(list(branches.groups.values())),
     )
     rows = axis("", autorange="reversed", showgrid=False, ticks="", tickfont={"size": 11}, automargin=True)
-    return chart([trace], xaxis=a_axis(a, showgrid=False), yaxis=rows, margin={"l": 10})
+    return chart([trace], xaxis=a_axis(a, showgrid=False, nticks=4), yaxis=rows, margin={"l": 10})

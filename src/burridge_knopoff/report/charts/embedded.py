@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import xarray
 
 from burridge_knopoff.figures.lyapunov import frame
@@ -75,7 +76,8 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     if (summaries["orbits"]["status"].values == OrbitStatus.FOUND).any():
         legends["orbits"] = orbits.orbit_legend(list(laws))
         packed["multipliers"] = pack(orbits.multipliers(summaries["orbits"]))
-        packed["asymmetry"] = pack(orbits.asymmetry(summaries["orbits"]))
+        if np.isfinite(summaries["orbits"]["branch_offset"]).any():
+            packed["asymmetry"] = pack(orbits.asymmetry(summaries["orbits"]))
     if "basins" in summaries and found is not None:
         packed["map"], legends["map"] = _maps(pack, summaries["basins"], found, study)
     if "chains" in summaries:

@@ -74,7 +74,7 @@ def a_axis(a: np.ndarray, **more: Any) -> dict[str, Any]:
     """Return the axis of a, with room for what is drawn at the first and at the last value."""
     first, last = cells(a)[[0, -1]]
     margin = 0.02 * (last - first)
-    return axis("<i>a</i>", range=[first - margin, last + margin], nticks=8, **more)
+    return axis("<i>a</i>", range=[first - margin, last + margin], **{"nticks": 8, **more})
 
 
 def log_axis(title: str, ends: tuple[float, float], **more: Any) -> dict[str, Any]:

@@ -101,8 +101,8 @@ def chain_fractions(chains: xarray.Dataset) -> go.Figure:
             "outlinewidth": 0,
             "tickfont": {"size": 11},
         },
-        hovertemplate="N = %{y}, a = %{x}<br>fraction %{z:.4g}, %{customdata[0]:.4g} to %{customdata[1]:.4g}<br>"
-        "undetermined %{customdata[2]:.4g}<extra></extra>",
+        hovertemplate="N = %{y}, a = %{x}<br>fraction %{z:.4f}, %{customdata[0]:.4f} to %{customdata[1]:.4f}<br>"
+        "undetermined %{customdata[2]:.4f}<extra></extra>",
     )
     row, column = np.nonzero(undetermined > 0.0)
     marks = go.Scatter(
