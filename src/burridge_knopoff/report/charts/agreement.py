@@ -10,7 +10,7 @@ from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.figures.agreement import tolerances
 from burridge_knopoff.figures.style import cells, color
 from burridge_knopoff.report.charts.legend import Entry
-from burridge_knopoff.report.charts.look import a_axis, chart, log_axis, powers
+from burridge_knopoff.report.charts.look import a_axis, chart, log_axis, powers, scatter
 from burridge_knopoff.report.charts.theme import INK
 from burridge_knopoff.study.words import text
 
@@ -49,15 +49,16 @@ def agreement(compared: xarray.Dataset, initial: str, other: str) -> go.Figure:
         ("same order of events until τ", run["event_order_time"], 0, "solid", "y3"),
     ):
         traces.append(
-            go.Scatter(
+            scatter(
+                a,
+                values.where(values > 0.0),
+                color(number),
+                f"{name}<br>a = %{{x}}<br>%{{y:.4g}}<br>%{{text}}",
                 mode="lines+markers" if dash == "solid" else "lines",
-                x=a,
-                y=values.where(values > 0.0),
                 text=verdicts,
                 yaxis=axis,
-                line={"color": color(number), "dash": dash, "width": 1.3},
-                marker={"color": color(number), "size": 4},
-                hovertemplate=f"{name}<br>a = %{{x}}<br>%{{y:.4g}}<br>%{{text}}<extra></extra>",
+                line={"dash": dash, "width": 1.3},
+                marker_size=4,
             )
         )
     shade = {"type": "rect", "yref": "paper", "y0": 0, "y1": 1, "layer": "below", "line": {"width": 0}}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import plotly.graph_objects as go
 import xarray
@@ -20,7 +18,7 @@ from burridge_knopoff.figures.branches import (
 from burridge_knopoff.figures.mean_distance import MARKERS, branches_reached
 from burridge_knopoff.figures.style import cells
 from burridge_knopoff.report.charts.legend import Entry
-from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, chart, steps
+from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, bars, chart, scatter, steps
 from burridge_knopoff.report.charts.theme import INK
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.words import text, with_error
@@ -78,17 +76,17 @@ def distance(runs: xarray.Dataset, kind: xarray.DataArray, top: float, attractor
         words = [MotionKind(one).words for one in kind.sel(initial=name).values]
         shown = [with_error(*pair) for pair in zip(mean.tolist(), error.tolist(), strict=True)]
         traces.append(
-            go.Scatter(
+            scatter(
+                a,
+                mean,
+                INK["text"],
+                f"run from {name}: %{{customdata[1]}}<br>a = %{{x}}<br>⟨J⟩ = %{{customdata[2]}}",
                 mode="lines+markers",
                 meta="run",
-                x=a,
-                y=mean,
                 customdata=[[number, *pair] for pair in zip(words, shown, strict=True)],
-                error_y=_bars(3.0 * np.nan_to_num(error), INK["text"]),
-                line={"color": INK["text"], "width": 0.8},
-                marker={"color": INK["text"], "symbol": _run_shape(number), "size": 5},
-                hovertemplate=f"run from {name}: %{{customdata[1]}}<br>a = %{{x}}<br>"
-                "⟨J⟩ = %{customdata[2]}<extra></extra>",
+                error_y=bars(3.0 * error, INK["text"]),
+                line_width=0.8,
+                marker={"symbol": _run_shape(number), "size": 5},
             )
         )
     ring = {"symbol": "circle-open", "size": 15, "color": INK["focus"], "line": {"width": 2.5}}
@@ -107,11 +105,6 @@ def top_distance(runs: xarray.Dataset, attractors: xarray.Dataset | None) -> flo
     return float(largest) if largest > 1e-9 else 0.01
 
 
-def _bars(size: np.ndarray, color: str, below: np.ndarray | None = None) -> dict[str, Any]:
-    more = {} if below is None else {"symmetric": False, "arrayminus": below}
-    return {"type": "data", "array": size, "color": color, "thickness": 0.8, "width": 0, **more}
-
-
 def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.Scatter]:
     """Return ⟨J⟩ of the attractors of one law, a trace for each group of branches."""
     numbers, mean, kinds = (attractors[name].values for name in ("branch", "mean_distance", "kind"))
@@ -123,13 +116,14 @@ def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.S
             continue
         pairs = zip(numbers[there].tolist(), kinds[there].tolist(), strict=True)
         traces.append(
-            go.Scatter(
+            scatter(
+                a[there],
+                mean[there],
+                color,
+                "attractor: %{text}<br>a = %{x}<br>⟨J⟩ = %{y:.5g}",
                 mode="markers",
-                x=a[there],
-                y=mean[there],
                 text=[f"{branches.names[number]}, {MotionKind(kind).words}" for number, kind in pairs],
-                marker={"color": color, "symbol": branches.shape(group), "size": 8, "opacity": 0.6},
-                hovertemplate="attractor: %{text}<br>a = %{x}<br>⟨J⟩ = %{y:.5g}<extra></extra>",
+                marker={"symbol": branches.shape(group), "size": 8, "opacity": 0.6},
             )
         )
     return traces
@@ -142,27 +136,21 @@ def fractions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
     for name, color, interval in fraction_curves(attractors, branches.colors):
         fraction, low, high = interval.T
         traces.append(
-            go.Scatter(
+            scatter(
+                a,
+                fraction,
+                color,
+                f"{name}<br>a = %{{x}}<br>fraction %{{y:.4f}} (%{{customdata[0]:.4f}} to %{{customdata[1]:.4f}})",
                 mode="lines+markers",
-                x=a,
-                y=fraction,
                 customdata=interval[:, 1:],
-                error_y=_bars(np.nan_to_num(high - fraction), f"{color}73", np.nan_to_num(fraction - low)),
-                line={"color": color, "width": 1},
-                marker={"color": color, "size": 5, "symbol": branches.shape(name)},
-                hovertemplate=f"{name}<br>a = %{{x}}<br>fraction %{{y:.4f}} "
-                "(%{customdata[0]:.4f} to %{customdata[1]:.4f})<extra></extra>",
+                error_y=bars(high - fraction, f"{color}73", fraction - low),
+                line_width=1,
+                marker={"size": 5, "symbol": branches.shape(name)},
             )
         )
-    traces.append(
-        go.Scatter(
-            mode="markers",
-            x=a,
-            y=undetermined_share(attractors),
-            marker={"color": UNDETERMINED_COLOR, "size": 5, "symbol": "x-thin-open"},
-            hovertemplate="undetermined<br>a = %{x}<br>fraction %{y:.4f}<extra></extra>",
-        )
-    )
+    words = "undetermined<br>a = %{x}<br>fraction %{y:.4f}"
+    look = {"size": 5, "symbol": "x-thin-open"}
+    traces.append(scatter(a, undetermined_share(attractors), UNDETERMINED_COLOR, words, mode="markers", marker=look))
     return chart(traces, xaxis=a_axis(a), yaxis=axis("fraction of initial states", range=[-0.03, 1.03]))
 
 

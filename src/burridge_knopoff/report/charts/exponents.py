@@ -9,7 +9,7 @@ import xarray
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import cells
 from burridge_knopoff.report.charts.legend import Entry
-from burridge_knopoff.report.charts.look import a_axis, axis, chart, steps
+from burridge_knopoff.report.charts.look import a_axis, axis, bars, chart, scatter, steps
 from burridge_knopoff.report.charts.theme import GREYS, INK, fixed
 from burridge_knopoff.stability.motion import MotionKind
 from burridge_knopoff.study.words import text, with_error
@@ -35,17 +35,17 @@ def exponents(run: xarray.Dataset, kinds: np.ndarray, frame: tuple[float, float]
     for name, grey, value, error in zip(
         _NAMES, GREYS, run["lyapunov_exponent"].values.T, run["lyapunov_error"].values.T, strict=False
     ):
-        bars = {"array": 3.0 * np.nan_to_num(error), "color": grey, "thickness": 0.8, "width": 0}
         traces.append(
-            go.Scatter(
+            scatter(
+                a,
+                np.where(np.isfinite(value), value, np.nan),
+                grey,
+                f"a = %{{x}}<br>{name} = %{{text}}",
                 mode="lines+markers",
-                x=a,
-                y=np.where(np.isfinite(value), value, np.nan),
                 text=[with_error(*pair) for pair in zip(value.tolist(), error.tolist(), strict=True)],
-                error_y=bars,
-                line={"color": grey, "width": 0.8},
-                marker={"color": grey, "size": 4},
-                hovertemplate=f"a = %{{x}}<br>{name} = %{{text}}<extra></extra>",
+                error_y=bars(3.0 * error, grey),
+                line_width=0.8,
+                marker_size=4,
             )
         )
     words = [f"a = {text(value)}: {MotionKind(kind).words}" for value, kind in zip(a, kinds, strict=True)]

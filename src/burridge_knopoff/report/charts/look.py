@@ -65,6 +65,18 @@ def chart(traces: Sequence[Any], **layout: Any) -> go.Figure:
     return go.Figure(list(traces), {"template": _TEMPLATE, **layout})
 
 
+def scatter(x: Any, y: Any, color: str, hover: str, **more: Any) -> go.Scatter:
+    """Return a curve or marks of one colour; `hover` is what they say under the pointer, `more` is plotly's."""
+    look = {"line_color": color, "marker_color": color, "hovertemplate": f"{hover}<extra></extra>"}
+    return go.Scatter(x=x, y=y, **look, **more)
+
+
+def bars(above: np.ndarray, color: str, below: np.ndarray | None = None) -> dict[str, Any]:
+    """Return the error bars of a curve; those below are as long as those above, if not given."""
+    more = {} if below is None else {"symmetric": False, "arrayminus": np.nan_to_num(below)}
+    return {"array": np.nan_to_num(above), "color": color, "thickness": 0.8, "width": 0, **more}
+
+
 def axis(title: str, **more: Any) -> dict[str, Any]:
     """Return an axis with a title."""
     return {"title": {"text": title}, **more}

@@ -9,7 +9,7 @@ import xarray
 from burridge_knopoff.figures.orbits import critical_point, symmetric_curve, transverse_curve
 from burridge_knopoff.figures.style import color, marker
 from burridge_knopoff.report.charts.legend import Entry
-from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, chart, log_axis, powers
+from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, chart, log_axis, powers, scatter
 from burridge_knopoff.report.charts.theme import INK
 from burridge_knopoff.study.words import text
 
@@ -27,30 +27,17 @@ def multipliers(orbits: xarray.Dataset) -> go.Figure:
     """Return the multipliers of the synchronized orbit of each law against a, and where it loses its stability."""
     a, traces = orbits["a"].values, []
     for index, law in enumerate(orbits["law"].values):
-        one, (critical, side) = orbits.sel(law=law), critical_point(orbits.sel(law=law))
+        one, hue = orbits.sel(law=law), color(index)
         for name, curve, dash in (
             ("transverse μ", transverse_curve(one), "solid"),
             ("mirror-symmetric", (a, symmetric_curve(one)), "dash"),
         ):
-            traces.append(
-                go.Scatter(
-                    mode="lines",
-                    x=curve[0],
-                    y=curve[1],
-                    line={"color": color(index), "dash": dash, "width": 1.6},
-                    hovertemplate=f"{law}, {name}<br>a = %{{x:.6~g}}<br>%{{y:.5g}}<extra></extra>",
-                )
-            )
+            words = f"{law}, {name}<br>a = %{{x:.6~g}}<br>%{{y:.5g}}"
+            traces.append(scatter(*curve, hue, words, mode="lines", line={"dash": dash, "width": 1.6}))
+        critical, side = critical_point(one)
         if np.isfinite(critical):
-            traces.append(
-                go.Scatter(
-                    mode="markers",
-                    x=[critical],
-                    y=[side],
-                    marker={"color": color(index), "size": 9, "symbol": SYMBOLS[marker(index)]},
-                    hovertemplate=f"{law}: a<sub>c</sub> = %{{x:.6g}}<extra></extra>",
-                )
-            )
+            words, look = f"{law}: a<sub>c</sub> = %{{x:.6g}}", {"size": 9, "symbol": SYMBOLS[marker(index)]}
+            traces.append(scatter([critical], [side], hue, words, mode="markers", marker=look))
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "layer": "below"}
     look = {"color": INK["muted"], "width": 1}
     shapes = [{**line, "y0": y, "y1": y, "line": look} for y in (-1, 1)]
@@ -65,25 +52,20 @@ def asymmetry(orbits: xarray.Dataset) -> go.Figure:
         known = np.isfinite(one["branch_offset"].values)
         offset = np.abs(one["branch_offset"].values[known])
         traces.append(
-            go.Scatter(
+            scatter(
+                offset,
+                one["branch_asymmetry"].values[known],
+                color(index),
+                f"{law}<br>|a − a<sub>c</sub>| = %{{x:.4g}}<br>|x₁ − x₃| = %{{y:.4g}}",
                 mode="markers",
-                x=offset,
-                y=one["branch_asymmetry"].values[known],
-                marker={"color": color(index), "size": 8, "symbol": f"{SYMBOLS[marker(index)]}-open"},
-                hovertemplate=f"{law}<br>|a − a<sub>c</sub>| = %{{x:.4g}}<br>|x₁ − x₃| = %{{y:.4g}}<extra></extra>",
+                # Laws nearly coincide: the marks of the first surround those of the others.
+                marker={"size": 7 if index else 13, "symbol": f"{SYMBOLS[marker(index)]}-open"},
             )
         )
         exponent = one["amplitude_exponent"].item()
         if np.isfinite(exponent):
-            traces.append(
-                go.Scatter(
-                    mode="lines",
-                    x=offset,
-                    y=one["amplitude_coefficient"].item() * offset**exponent,
-                    line={"color": color(index), "width": 1},
-                    hovertemplate=f"{law}: exponent {text(exponent)}<extra></extra>",
-                )
-            )
+            fit, words = one["amplitude_coefficient"].item() * offset**exponent, f"{law}: exponent {text(exponent)}"
+            traces.append(scatter(offset, fit, color(index), words, mode="lines", line_width=1))
     x, y = (np.concatenate([trace[name] for trace in traces]) for name in ("x", "y"))
     return chart(
         traces,
