@@ -31,7 +31,7 @@ LOW_CONTRAST = """() => {
 
 # Whether the frame of a chart holds all its points and the bars above them.
 FRAMED = """(box) => box._fullData.filter((trace) => trace.error_y?.visible).every((trace) =>
-  trace.y.every((y, n) => y === null || y + trace.error_y.array[n] <= box._fullLayout.yaxis.range[1]))"""
+  trace.y.every((y, n) => !(y + trace.error_y.array[n] > box._fullLayout.yaxis.range[1])))"""
 
 FOCUSED = """() => {
   const node = document.activeElement;
@@ -150,6 +150,14 @@ def click_run(page, law, initial, a):
     page.mouse.up()
 
 
+def under_pointer(page, kind):
+    """Return what the middle of the first chart of that kind says under the pointer."""
+    chart = page.locator(f'.chart[data-chart="{kind}"]').first
+    chart.scroll_into_view_if_needed()
+    chart.locator(".nsewdrag").first.hover()
+    return chart.locator(".hoverlayer").text_content()
+
+
 def tab_through(page):
     """Press Tab from the top to the end; return the names of all that was reached. Each must show that it has focus."""
     page.evaluate(
@@ -205,6 +213,10 @@ def test_the_report_of_a_study(browser, reported):
     assert page.locator("#run-detail").get_attribute("aria-live") == "polite"
     page.locator('[data-copies="run-snakemake"]').click()
     page.locator("#copied").get_by_text("opied").or_(page.locator("#copied").get_by_text("Selected")).wait_for()
+
+    # Numbers under the pointer.
+    assert "certain at τ = " in under_pointer(page, "map")
+    assert "a = " in under_pointer(page, "conventions")
 
     # A chart is saved as a picture, and none can be sent anywhere.
     buttons = page.locator(".modebar-btn").evaluate_all("all => [...new Set(all.map((one) => one.dataset.title))]")

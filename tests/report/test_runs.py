@@ -20,4 +20,4 @@ def test_the_commands_of_every_run_are_those_of_the_workflow(poor):
     )
     assert commands.snakemake("linearized", "pair", "0.1000").endswith(runs["arguments"])
     assert runs["mean_distance"][0][0] == [opened["mean_distance"]["mean_distance"].values[0, 0, 0], None]
-    assert runs["exponents"][0][0][1] == [None, None, None]
+    assert runs["exponent_texts"][0][0][1] == ["–", "–", "–"]

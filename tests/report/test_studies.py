@@ -1,8 +1,11 @@
 """The report of studies of one law, of four laws, of a ring and of blocks that are not alike."""
 
+import base64
 import json
 import re
+import zlib
 
+import plotly.graph_objects as go
 import pytest
 
 from burridge_knopoff.dataset.summary import write_summary
@@ -83,11 +86,24 @@ def test_what_does_not_hold_in_the_chain_is_said(small, html):
         assert (small.found["attractors"]["side"] == 0).all()
 
 
-def test_the_embedded_numbers_are_over_the_laws_of_the_study(small, html):
+def test_the_embedded_runs_are_over_the_laws_of_the_study(small, html):
     data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', html, re.DOTALL)[1])
     laws, states = small.study.laws, small.study.initial
     assert data["runs"]["laws"] == list(laws)
-    assert len(data["runs"]["agrees"]) == len(data["agreement"]["difference"]) == len(laws) - 1
-    assert len(data["sections"]["runs"]) == len(data["attractors"]) == len(laws)
+    assert len(data["runs"]["mean_distance"]) == len(laws)
+    assert len(data["runs"]["agrees"]) == len(laws) - 1
     assert all(len(row) == len(states) for row in data["runs"]["agrees"])
-    assert {one["law"] for one in data["basins"]["maps"]} <= set(laws)
+
+
+def test_every_chart_is_a_figure_of_plotly(html):
+    """Each has something to show, and its colours in the dark theme are in the page."""
+    dark = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', html, re.DOTALL)[1])[
+        "dark"
+    ]
+    packed = re.findall(r'data-figure="([^"]+)"', html)
+    assert packed
+    for one in packed:
+        content = zlib.decompress(base64.b64decode(one)).decode()
+        figure = go.Figure(json.loads(content))
+        assert any(trace.y is not None and len(trace.y) for trace in figure.data)
+        assert figure.layout.template.layout.font.color in dark

@@ -95,18 +95,23 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown, label=LABELS[0])
     if not run["difference"].any():
         say(difference, "0 at all $a$")
-    noise = (settings["standard_errors"] * run["difference_error"]).clip(min=FLOORS[0])
+    noise, share = (one.clip(min=FLOORS[0]) for one in tolerances(run, settings))
     name = f"{settings['standard_errors']:g} standard errors"
     alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
     difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name, **alone)
-    pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
-    share = (settings["relative_tolerance"] * pair.max("law", skipna=False)).clip(min=FLOORS[0])
     name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
     difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name, **alone)
     _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]), unknown)
     _curve(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0), unknown)
     for panel in panels:
         shade(panel, a, run["agrees"].values == Answer.NO)
+
+
+def tolerances(run: xarray.Dataset, settings: dict[str, float]) -> tuple[xarray.DataArray, xarray.DataArray]:
+    """Return what |Δ⟨J⟩| of one law and initial state may be: multiples of its error, and a share of the larger ⟨J⟩."""
+    pair = run["mean_distance"].sel(law=[run["law"].values[0], run["other_law"].item()])
+    noise = settings["standard_errors"] * run["difference_error"]
+    return noise, settings["relative_tolerance"] * pair.max("law", skipna=False)
 
 
 def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, unknown: np.ndarray, **look: Any) -> None:

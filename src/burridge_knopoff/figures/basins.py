@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.table import branch_names
-from burridge_knopoff.figures.branches import map_colors, side_color
+from burridge_knopoff.figures.branches import map_colors, map_parts
 from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
 
 TITLE = "Basins of attraction"
@@ -58,14 +58,11 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
         law = laws[int(one["law"])]
         titles.append(f"{law} law, $a={one['a'].item():g}$")
         picture = np.zeros((*one["branch"].shape, 3))
-        present = sorted(
-            set(zip(one["branch"].values.ravel().tolist(), one["side"].values.ravel().tolist(), strict=True))
-        )
-        for branch, side in present:
-            shade = to_rgb("black") if branch < 0 else side_color(colors[branch], side)
-            picture[(one["branch"].values == branch) & (one["side"].values == side)] = shade
-            name = "undetermined" if branch < 0 else names[branch] + {1: " (+)", -1: " (−)", 0: ""}[side]
-            shown[branch, -side] = Patch(facecolor=shade, edgecolor="0.3", linewidth=0.4, label=name)
+        for part in map_parts(one, colors, names):
+            picture[part.members] = to_rgb(part.color)
+            shown[part.branch, -part.side] = Patch(
+                facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name
+            )
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
         panel.set_box_aspect(1.0)
         for index, (x, y) in enumerate(there.values()):

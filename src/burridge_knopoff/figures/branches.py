@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import cycle
 
 import numpy as np
@@ -84,9 +85,42 @@ def undetermined_share(attractors: xarray.Dataset) -> np.ndarray:
     return np.where(share > 0.0, share, np.nan)
 
 
-def side_color(color: str, side: int) -> tuple[float, float, float]:
-    """Return the colour of one side of a branch, #rrggbb, as parts from 0 to 1: lighter for the side −1."""
-    red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+@dataclass(frozen=True)
+class MapPart:
+    """The states of a map that reach one side of a branch; branch −1 is undetermined.
+
+    members : which pixels, of the shape of the map
+    """
+
+    branch: int
+    side: int
+    name: str
+    color: str
+    members: np.ndarray
+
+
+def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int, str]) -> list[MapPart]:
+    """Return the parts of one map of basins: branches in order, the side + before −, undetermined last.
+
+    colors, names : of the branches, as of `map_colors` and `branch_names`
+    """
+    branch, side = one["branch"].values.astype(int), one["side"].values.astype(int)
+    present = set(zip(branch.ravel().tolist(), side.ravel().tolist(), strict=True))
+    return [
+        MapPart(
+            b,
+            s,
+            "undetermined" if b < 0 else names[b] + {1: " (+)", -1: " (−)", 0: ""}[s],
+            UNDETERMINED_COLOR if b < 0 else side_color(colors[b], s),
+            (branch == b) & (side == s),
+        )
+        for b, s in sorted(present, key=lambda pair: (pair[0] < 0, pair[0], -pair[1]))
+    ]
+
+
+def side_color(color: str, side: int) -> str:
+    """Return the colour of one side of a branch, both #rrggbb: lighter for the side −1."""
     if side >= 0:
-        return red, green, blue
-    return tuple(0.45 * part + 0.55 for part in (red, green, blue))  # type: ignore[return-value]
+        return color
+    parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)

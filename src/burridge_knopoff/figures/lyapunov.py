@@ -49,7 +49,7 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
     panels = list(table.flat)
     a = lyapunov["a"].values
     edges = cells(a)
-    low, high = _frame(lyapunov)
+    low, high = frame(lyapunov)
     titles = []
     for number, panel in enumerate(panels):
         run = lyapunov.sel(law=laws[number // len(states)], initial=states[number % len(states)])
@@ -87,7 +87,7 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
     return figure
 
 
-def _frame(lyapunov: xarray.Dataset) -> tuple[float, float]:
+def frame(lyapunov: xarray.Dataset) -> tuple[float, float]:
     """Return what the frame of the curves reaches down and up to.
 
     It has all ends of bars above 0, and below 0 twice the depth of the largest exponents and of nine tenths of the

@@ -103,16 +103,24 @@ def _runs(panel: Axes, runs: xarray.Dataset) -> None:
 
 
 def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
-    reached = attractors["initial_branch"].stack(row=("initial", "contact", "start")).transpose("row", "a")
+    names, reached = branches_reached(attractors)
     edges = cells(attractors["a"].values)
     picture = np.ones((*reached.shape, 3))
     for branch, color in colors.items():
-        picture[reached.values == branch] = to_rgb(color)
-    panel.pcolormesh(edges, np.arange(reached.sizes["row"] + 1), picture, rasterized=True)
-    names = [", ".join(map(str, row)) for row in reached["row"].values]
+        picture[reached == branch] = to_rgb(color)
+    panel.pcolormesh(edges, np.arange(len(names) + 1), picture, rasterized=True)
     panel.set_yticks(np.arange(len(names)) + 0.5, names, fontsize=6.5)
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(names), 0)
+
+
+def branches_reached(attractors: xarray.Dataset) -> tuple[list[str], np.ndarray]:
+    """Return the names of all initial states under all conventions, and the branches that they reach, shape (name, a).
+
+    attractors : of one law
+    """
+    reached = attractors["initial_branch"].stack(row=("initial", "contact", "start")).transpose("row", "a")
+    return [", ".join(map(str, row)) for row in reached["row"].values], reached.values
 
 
 def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:

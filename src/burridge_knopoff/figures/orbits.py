@@ -103,17 +103,29 @@ def _styles(styles: tuple[Any, ...], labels: tuple[str, ...]) -> list[Line2D]:
 def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
     a = one["a"].values
     look: Any = {"color": hue, "marker": lone_marker(a), "markersize": 3.5}
-    transverse, critical = one["transverse_multiplier"].values, one["critical_a"].item()
-    # Known between the values of a of the study as well.
+    panel.plot(*transverse_curve(one), "-", **look)
+    panel.plot(a, symmetric_curve(one), "--", **look, markerfacecolor="none")
+    panel.plot(*critical_point(one), "o", color=hue, markersize=3.5)
+
+
+def critical_point(one: xarray.Dataset) -> tuple[float, float]:
+    """Return a_c of one law and the transverse multiplier there, 1 or −1."""
+    return one["critical_a"].item(), -1.0 if one["bifurcation_kind"].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
+
+
+def transverse_curve(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Return a and the transverse multiplier of one law, at the values of a of the study and at a_c."""
+    a, (critical, side) = one["a"].values, critical_point(one)
     at = np.searchsorted(a, critical)
-    side = -1.0 if one["bifurcation_kind"].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
-    panel.plot(np.insert(a, at, critical), np.insert(transverse, at, side), "-", **look)
+    return np.insert(a, at, critical), np.insert(one["transverse_multiplier"].values, at, side)
+
+
+def symmetric_curve(one: xarray.Dataset) -> np.ndarray:
+    """Return the modulus of the largest mirror-symmetric multiplier, with the sign of its real part, shape (a,)."""
     symmetric = one.sel(mode="symmetric_1")
     real, imaginary = (symmetric["multiplier"].sel(part=part).values for part in ("real", "imaginary"))
     modulus = np.hypot(real, imaginary)
-    # The modulus, of a complex pair as well, with the sign of the real part.
-    panel.plot(a, np.where(real < 0.0, -modulus, modulus), "--", **look, markerfacecolor="none")
-    panel.plot(critical, side, "o", color=hue, markersize=3.5)
+    return np.where(real < 0.0, -modulus, modulus)
 
 
 def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: str) -> None:

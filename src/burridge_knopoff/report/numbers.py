@@ -1,4 +1,4 @@
-"""Numbers as the scripts of the page need them: rounded, and as JSON inside HTML."""
+"""Numbers as the scripts of the page need them: as JSON inside HTML."""
 
 from __future__ import annotations
 
@@ -6,24 +6,9 @@ import json
 import math
 from typing import Any
 
-import numpy as np
 from markupsafe import Markup
 
 from burridge_knopoff.study.formatting import text
-
-#: Significant digits of curves; exact values are kept for the single runs only.
-DIGITS = 6
-
-
-def rounded(values: Any) -> Any:
-    """Return numbers, or an array of any shape as nested lists, with DIGITS significant digits; None if not finite."""
-    array = np.asarray(values)
-    if array.ndim:
-        return [rounded(item) for item in array]
-    value = array.item()
-    if isinstance(value, float):
-        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
-    return value
 
 
 def exact(value: float) -> float | str | None:

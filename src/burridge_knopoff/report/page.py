@@ -13,13 +13,12 @@ from markupsafe import Markup
 
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.seal import write_sealed_text
-from burridge_knopoff.report import curves, overview, tables
-from burridge_knopoff.report.basin_maps import basin_maps
+from burridge_knopoff.report import overview, tables
+from burridge_knopoff.report.charts.embedded import charts
 from burridge_knopoff.report.numbers import embedded_json
 from burridge_knopoff.report.pictures import read_picture
 from burridge_knopoff.report.prose import prose
 from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
-from burridge_knopoff.report.section_points import section_counts
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
 from burridge_knopoff.study.formatting import text, with_error
@@ -31,7 +30,7 @@ from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
 FOLDER = Path(__file__).parent
 
 #: The scripts of the page, in the order in which they are joined: they share one scope.
-SCRIPTS = ("data", "theme", "charts", "runs", "curves", "orbits", "maps", "agreement", "pictures", "start")
+SCRIPTS = ("data", "theme", "charts", "runs", "pictures", "start")
 
 #: Figures that stand in a section of their own; all others come together.
 PLACED = (
@@ -93,7 +92,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         name: read_picture(path) for name, path in sources.figures.items() if not (left_out and name == OPTIONAL)
     }
     commands = Commands(study, arguments)
-    sections = section_counts(summaries["bifurcation"])
+    shown = charts(study, summaries)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -115,14 +114,14 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         config=overview.config_text(study),
         never_upward=NEVER_UPWARD,
         section_words=_section_words(study),
-        crossed=[[bool(run["count"]) for run in law] for law in sections["runs"]],
-        data=_data(study, commands, summaries, sections),
+        charts=shown.packed,
+        legends=shown.legends,
+        data=_data(commands, summaries, shown.dark),
         laws=list(study.laws),
         mirror_symmetric=study.is_mirror_symmetric,
         initial=list(study.initial),
         pictures=pictures,
         further=[picture for name, picture in pictures.items() if name not in PLACED],
-        exponents=bool(summaries["lyapunov"]["lyapunov_exponent"].notnull().any()),
         branches=_of(summaries, "attractors", tables.branch_table, []),
         attractors=_of(summaries, "attractors", lambda attractors: attractors.attrs),
         sliding=_of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
@@ -150,27 +149,10 @@ def _section_words(study: Study) -> str:
     return f"the co-moving position of block {section.block}" if section.block else "the sum of the co-moving positions"
 
 
-def _data(
-    study: Study, commands: Commands, summaries: Mapping[str, xarray.Dataset], sections: Mapping[str, Any]
-) -> Markup:
-    """Return all numbers of the charts as JSON."""
-    return embedded_json(
-        {
-            "runs": embedded_runs(commands, *(summaries[name] for name in ("mean_distance", "lyapunov", "agreement"))),
-            "kinds": curves.kinds(),
-            "branches": _of(summaries, "attractors", curves.branches, []),
-            "attractors": _of(summaries, "attractors", curves.attractor_points, []),
-            "fractions": _of(summaries, "attractors", curves.basin_fractions, []),
-            "conventions": _of(summaries, "attractors", curves.conventions),
-            "sections": sections,
-            "orbits": curves.orbit_curves(summaries["orbits"]),
-            "basins": _of(
-                summaries, "basins", lambda basins: basin_maps(basins, summaries["attractors"], study.marked_states)
-            ),
-            "agreement": curves.agreement_curves(summaries["agreement"]),
-            "chains": _of(summaries, "chains", curves.chain_fractions),
-        }
-    )
+def _data(commands: Commands, summaries: Mapping[str, xarray.Dataset], dark: Mapping[str, str]) -> Markup:
+    """Return what the scripts of the page need as JSON."""
+    runs = embedded_runs(commands, *(summaries[name] for name in ("mean_distance", "lyapunov", "agreement")))
+    return embedded_json({"runs": runs, "dark": dark})
 
 
 def _of(

@@ -48,7 +48,14 @@ function pick(law, initial, a) {
   byId("run-snakemake").textContent = commands.snakemake;
   byId("run-simulate").textContent = commands.simulate;
   byId("copied").textContent = "";
-  document.querySelectorAll("[data-pick]").forEach((box) => { if (drawn.has(box)) draw(box); });
+  drawn.forEach((box) => { if ("law" in box.dataset) draw(box); });
+}
+
+/** Mark the picked run in a chart of the runs of its law. */
+function markPicked(box, figure) {
+  if (Number(box.dataset.law) !== picked.law) return;
+  const y = runs.mean_distance[picked.law][picked.initial][picked.a];
+  Object.assign(figure.data.at(-1), { x: [runs.a[picked.a]], y: [typeof y === "number" ? y : 0] });
 }
 
 const clamp = (value, size) => Math.min(Math.max(value, 0), size - 1);
@@ -56,10 +63,10 @@ const step = (initial, a) => pick(picked.law, clamp(picked.initial + initial, ru
 
 /** Let a chart of runs be picked on, by pointer and by arrow keys. */
 function connectRuns(box) {
-  if (!("pick" in box.dataset)) return;
+  if (!("law" in box.dataset)) return;
   box.on("plotly_click", ({ points }) => {
     const run = points.find((point) => point.data.meta === "run");
-    if (run) pick(Number(box.dataset.law), run.customdata[0], run.customdata[1]);
+    if (run) pick(Number(box.dataset.law), run.customdata[0], run.pointNumber);
   });
   const moves = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] };
   box.addEventListener("keydown", (event) => {

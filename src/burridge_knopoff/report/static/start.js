@@ -1,6 +1,4 @@
 startTheme();
 startRuns();
 startPictures();
-fillLegends();
-themeListeners.push(fillLegends);
 startCharts();

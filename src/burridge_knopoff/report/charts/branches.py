@@ -1,0 +1,180 @@
+"""⟨J⟩ of runs and attractors, basin fractions, and the branches reached, against a."""
+
+from __future__ import annotations
+
+import numpy as np
+import plotly.graph_objects as go
+import xarray
+
+from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.figures.branches import (
+    OTHER_COLOR,
+    OTHERS,
+    UNDETERMINED_COLOR,
+    branch_colors,
+    fraction_curves,
+    named_colors,
+    undetermined_share,
+)
+from burridge_knopoff.figures.mean_distance import MARKERS, branches_reached
+from burridge_knopoff.figures.style import cells
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.report.charts.legend import Entry
+from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, bars, chart, scatter, steps
+from burridge_knopoff.report.charts.theme import INK
+from burridge_knopoff.study.formatting import text, with_error
+
+# Of the branches that have a colour of their own; all others share one.
+_SHAPES = (
+    "circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star", "hexagon", "pentagon"
+)  # fmt: skip
+
+
+class Branches:
+    """Names, colours and marks of the branches of attractors: those of small basins are one group."""
+
+    def __init__(self, attractors: xarray.Dataset) -> None:
+        self.colors = branch_colors(attractors)
+        self.names = branch_names(attractors)
+        self.groups = named_colors(self.colors, self.names)
+
+    def group(self, number: int) -> str:
+        """Return the name of the group of a branch."""
+        return OTHERS if self.colors[number] == OTHER_COLOR else self.names[number]
+
+    def shape(self, group: str) -> str:
+        """Return the mark of a group."""
+        return "x" if group == OTHERS else _SHAPES[list(self.groups).index(group) % len(_SHAPES)]
+
+    def legend(self) -> list[Entry]:
+        """Return the entries of all groups."""
+        return [Entry(name, color, self.shape(name)) for name, color in self.groups.items()]
+
+
+def run_legend(states: list[str]) -> list[Entry]:
+    """Return the entries of the curves of the runs, and of the run that is picked."""
+    runs = [Entry(f"run from {name}", INK["text"], _run_shape(n)) for n, name in enumerate(states)]
+    return [*runs, Entry("the run shown under One run", INK["focus"], "circle-open")]
+
+
+def _run_shape(number: int) -> str:
+    return SYMBOLS[MARKERS[number % len(MARKERS)]] + ("-open" if number % 2 else "")
+
+
+def distance(runs: xarray.Dataset, kind: xarray.DataArray, top: float, attractors: list[go.Scatter]) -> go.Figure:
+    """Return ⟨J⟩ of the runs of one law, with three standard errors, over that of its attractors.
+
+    kind : of the motion of each run; top : end of the axis of ⟨J⟩; attractors : as of `attractor_marks`
+
+    The page puts the run that is picked into the last trace.
+    """
+    a = runs["a"].values
+    traces = [*attractors]
+    for number, name in enumerate(runs["initial"].values):
+        run = runs.sel(initial=name)
+        mean, error = run["mean_distance"].values, run["mean_distance_error"].values
+        words = [MotionKind(one).words for one in kind.sel(initial=name).values]
+        shown = [with_error(*pair) for pair in zip(mean.tolist(), error.tolist(), strict=True)]
+        traces.append(
+            scatter(
+                a,
+                mean,
+                INK["text"],
+                f"run from {name}: %{{customdata[1]}}<br>a = %{{x}}<br>⟨J⟩ = %{{customdata[2]}}",
+                mode="lines+markers",
+                meta="run",
+                customdata=[[number, *pair] for pair in zip(words, shown, strict=True)],
+                error_y=bars(3.0 * error, INK["text"]),
+                line_width=0.8,
+                marker={"symbol": _run_shape(number), "size": 5},
+            )
+        )
+    ring = {"symbol": "circle-open", "size": 15, "color": INK["focus"], "line": {"width": 2.5}}
+    traces.append(go.Scatter(mode="markers", meta="picked", x=[], y=[], hoverinfo="skip", marker=ring))
+    return chart(traces, xaxis=a_axis(a), yaxis=axis("⟨<i>J</i>⟩", range=[-0.04 * top, 1.06 * top]))
+
+
+def top_distance(runs: xarray.Dataset, attractors: xarray.Dataset | None) -> float:
+    """Return the largest ⟨J⟩ of runs, with three standard errors, and attractors of all laws."""
+    tops = [(runs["mean_distance"] + 3.0 * runs["mean_distance_error"].fillna(0.0)).values.ravel()]
+    if attractors is not None:
+        tops.append(attractors["mean_distance"].values.ravel())
+    found = np.concatenate(tops)
+    largest = found[np.isfinite(found)].max(initial=0.0)
+    # Where all is 0, rounding sets the scale of nothing.
+    return float(largest) if largest > 1e-9 else 0.01
+
+
+def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.Scatter]:
+    """Return ⟨J⟩ of the attractors of one law, a trace for each group of branches."""
+    numbers, mean, kinds = (attractors[name].values for name in ("branch", "mean_distance", "kind"))
+    a = np.broadcast_to(attractors["a"].values[:, None], numbers.shape)
+    traces = []
+    for group, color in branches.groups.items():
+        there = np.isin(numbers, [number for number in branches.colors if branches.group(number) == group])
+        if not there.any():
+            continue
+        pairs = zip(numbers[there].tolist(), kinds[there].tolist(), strict=True)
+        traces.append(
+            scatter(
+                a[there],
+                mean[there],
+                color,
+                "attractor: %{text}<br>a = %{x}<br>⟨J⟩ = %{y:.5g}",
+                mode="markers",
+                text=[f"{branches.names[number]}, {MotionKind(kind).words}" for number, kind in pairs],
+                marker={"symbol": branches.shape(group), "size": 8, "opacity": 0.6},
+            )
+        )
+    return traces
+
+
+def fractions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
+    """Return the basin fractions of one law with their 95 % Wilson intervals, and the share of undetermined states."""
+    a = attractors["a"].values
+    traces = []
+    for name, color, interval in fraction_curves(attractors, branches.colors):
+        fraction, low, high = interval.T
+        traces.append(
+            scatter(
+                a,
+                fraction,
+                color,
+                f"{name}<br>a = %{{x}}<br>fraction %{{y:.4f}} (%{{customdata[0]:.4f}} to %{{customdata[1]:.4f}})",
+                mode="lines+markers",
+                customdata=interval[:, 1:],
+                error_y=bars(high - fraction, f"{color}73", fraction - low),
+                line_width=1,
+                marker={"size": 5, "symbol": branches.shape(name)},
+            )
+        )
+    words = "undetermined<br>a = %{x}<br>fraction %{y:.4f}"
+    look = {"size": 5, "symbol": "x-thin-open"}
+    traces.append(scatter(a, undetermined_share(attractors), UNDETERMINED_COLOR, words, mode="markers", marker=look))
+    return chart(traces, xaxis=a_axis(a), yaxis=axis("fraction of initial states", range=[-0.03, 1.03]))
+
+
+def conventions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
+    """Return which branch of one law each initial state reaches under each convention; no colour where undetermined."""
+    a, groups = attractors["a"].values, list(branches.groups)
+    names, reached = branches_reached(attractors)
+    position = {number: groups.index(branches.group(number)) for number in branches.colors}
+    words = [
+        [
+            f"{name}<br>a = {text(value)}: {branches.names.get(number, 'undetermined')}"
+            for value, number in zip(a, row, strict=True)
+        ]
+        for name, row in zip(names, reached.tolist(), strict=True)
+    ]
+    trace = go.Heatmap(
+        x=cells(a),
+        y=names,
+        z=[[position.get(number) for number in row] for row in reached.tolist()],
+        text=words,
+        ygap=2,
+        hoverongaps=True,
+        hovertemplate="%{text}<extra></extra>",
+        **steps(list(branches.groups.values())),
+    )
+    rows = axis("", autorange="reversed", showgrid=False, ticks="", tickfont={"size": 11}, automargin=True)
+    return chart([trace], xaxis=a_axis(a, showgrid=False, nticks=4), yaxis=rows, margin={"l": 10})

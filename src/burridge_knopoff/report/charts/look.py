@@ -1,0 +1,126 @@
+"""The common look of the charts: axes, marks, and the form in which a chart is in the page."""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from burridge_knopoff.figures.style import cells
+from burridge_knopoff.report.charts.theme import FONT, INK, dark_colors
+
+#: Plotly's names of matplotlib's markers.
+SYMBOLS = {
+    "o": "circle",
+    "s": "square",
+    "D": "diamond",
+    "^": "triangle-up",
+    "v": "triangle-down",
+    "p": "pentagon",
+    "h": "hexagon2",
+    "+": "cross",
+    "x": "x",
+}
+
+_AXIS = {
+    "title": {"standoff": 8},
+    "showline": True,
+    "mirror": "ticks",
+    "ticks": "inside",
+    "zeroline": False,
+    "linecolor": INK["muted"],
+    "tickcolor": INK["muted"],
+    "gridcolor": INK["line"],
+    "gridwidth": 0.5,
+    "minexponent": 4,
+}
+
+_TEMPLATE = go.layout.Template(
+    layout={
+        "font": {"family": FONT, "size": 13, "color": INK["text"]},
+        "paper_bgcolor": "rgba(0,0,0,0)",
+        "plot_bgcolor": "rgba(0,0,0,0)",
+        "margin": {"l": 62, "r": 18, "t": 30, "b": 48},
+        "showlegend": False,
+        "hovermode": "closest",
+        "hoverlabel": {
+            "bgcolor": INK["background"],
+            "bordercolor": INK["muted"],
+            "font": {"color": INK["text"], "size": 13},
+            "align": "left",
+        },
+        "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": INK["muted"], "activecolor": INK["text"]},
+        "xaxis": _AXIS,
+        "yaxis": _AXIS,
+    }
+)
+
+
+def chart(traces: Sequence[Any], **layout: Any) -> go.Figure:
+    """Return a chart in the common look."""
+    return go.Figure(list(traces), {"template": _TEMPLATE, **layout})
+
+
+def scatter(x: Any, y: Any, color: str, hover: str, **more: Any) -> go.Scatter:
+    """Return a curve or marks of one colour; `hover` is what they say under the pointer, `more` is plotly's."""
+    look = {"line_color": color, "marker_color": color, "hovertemplate": f"{hover}<extra></extra>"}
+    return go.Scatter(x=x, y=y, **look, **more)
+
+
+def bars(above: np.ndarray, color: str, below: np.ndarray | None = None) -> dict[str, Any]:
+    """Return the error bars of a curve; those below are as long as those above, if not given."""
+    more = {} if below is None else {"symmetric": False, "arrayminus": np.nan_to_num(below)}
+    return {"array": np.nan_to_num(above), "color": color, "thickness": 0.8, "width": 0, **more}
+
+
+def axis(title: str, **more: Any) -> dict[str, Any]:
+    """Return an axis with a title."""
+    return {"title": {"text": title}, **more}
+
+
+def a_axis(a: np.ndarray, **more: Any) -> dict[str, Any]:
+    """Return the axis of a, with room for what is drawn at the first and at the last value."""
+    first, last = cells(a)[[0, -1]]
+    margin = 0.02 * (last - first)
+    return axis("<i>a</i>", range=[first - margin, last + margin], **{"nticks": 8, **more})
+
+
+def log_axis(title: str, ends: tuple[float, float], **more: Any) -> dict[str, Any]:
+    """Return a logarithmic axis between two powers of ten, with no more labels than a small panel holds."""
+    step = max(1, int(np.ceil((ends[1] - ends[0]) / 5)))
+    return axis(title, type="log", range=list(ends), exponentformat="power", dtick=step, **more)
+
+
+def powers(values: np.ndarray, least: float = np.inf, largest: float = -np.inf) -> tuple[float, float]:
+    """Return the powers of ten around all positive values, and around `least` and `largest`."""
+    found = np.log10(values[values > 0.0])
+    return float(found.min(initial=least)) - 0.1, float(found.max(initial=largest)) + 0.1
+
+
+def steps(colors: Sequence[str]) -> dict[str, Any]:
+    """Return the scale of a heat map whose values are positions in a list of colours."""
+    size = max(2, len(colors))
+    edges = np.clip((np.arange(size + 1) - 0.5) / (size - 1), 0.0, 1.0)
+    edges[len(colors)] = 1.0
+    scale = [[edge, color] for n, color in enumerate(colors) for edge in edges[n : n + 2].tolist()]
+    return {"colorscale": scale, "zmin": 0, "zmax": size - 1, "showscale": False}
+
+
+class Packer:
+    """Puts charts into the page: as compressed JSON, for some of them are large.
+
+    dark : {colour: colour in the dark theme} of the charts so far
+    """
+
+    def __init__(self) -> None:
+        self.dark: dict[str, str] = {}
+
+    def __call__(self, figure: go.Figure) -> str:
+        """Return a chart as base64 of its compressed JSON."""
+        text = figure.to_json()
+        self.dark |= dark_colors(text)
+        return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
