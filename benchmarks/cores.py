@@ -54,8 +54,8 @@ def on(cores, jobs, seconds, parts):
 def main():
     """Print the table of each study."""
     for config in sys.argv[1:]:
-        run, seconds = recorded(config)
-        jobs = run.jobs
+        run, took = recorded(config)
+        jobs, seconds = run.jobs, {number: wall for number, (wall, _) in took.items()}
         parts = {number: parts_of(run.results, job) for number, job in jobs.items()}
         alone = sum(on(1, jobs, seconds, parts)[1].values())
         print(f"{run.results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")

@@ -2,19 +2,22 @@
 
     python benchmarks/progress.py config/paper.yaml config/smoke.yaml [--cores 1]
 
-The studies ran in this folder, but are replayed as if they never had. Printed: what is told at the beginning, and the
-largest ratio of what is told and what is left, from a minute on (or a tenth of a shorter run). Both count as 10 s at
-least, as the display tells no less. Exit code 1 if a ratio exceeds 2.
+The studies ran in this folder, but are replayed as if they never had, each job with its CPU time: what other programs
+took does not count. Printed: what is told at the beginning, and the largest ratio of what is told and what is left,
+from a minute on (or a tenth of a shorter run). Both count as 10 s at least, as the display tells no less. Exit code 1
+if a ratio exceeds 2.
 """
 
 import argparse
 import contextlib
 import io
 import sys
+from pathlib import Path
 
 from snakemake.cli import main as snakemake
 
-from snakemake_logger_plugin_study.durations import Durations, measured, work_of
+from burridge_knopoff.report.stages import job_costs
+from snakemake_logger_plugin_study.durations import Durations, work_of
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
 
@@ -37,18 +40,20 @@ def planned(config, *targets, cores=2):
 
 
 def recorded(config, cores=2):
-    """Return the run of all jobs of a study and {number: seconds that the job took in the last run}."""
+    """Return the run of all jobs of a study and {number: wall and CPU time of the job in the last run, in seconds}."""
     run = planned(config, cores=cores).look_ahead()
     run.cores = cores
-    seconds = {number: measured(job.benchmark, 1) for number, job in run.jobs.items()}
-    if missing := [run.jobs[number].name for number, took in seconds.items() if took is None]:
+    took = {number: next(job_costs(Path(job.benchmark)), None) for number, job in run.jobs.items()}
+    if missing := [run.jobs[number].name for number, costs in took.items() if costs is None]:
         sys.exit(f"{config}: no benchmark file of {missing[0]} and {len(missing) - 1} more: run the study first")
-    return run, seconds
+    return run, {number: costs[:2] for number, costs in took.items()}
 
 
-def told(run, seconds):
+def told(run, took):
     """Return (moment, told, truth) of a run, in seconds, from its begin to its end."""
     run.durations = Durations(work_of(PLAN.study))
+    # Snakemake measures no CPU time of jobs that are too short.
+    seconds = {number: (cpu or wall) / run.jobs[number].threads for number, (wall, cpu) in took.items()}
     ends = schedule(run.jobs, seconds, run.cores)
     end = max(ends.values())
     for moment in (end * step / MOMENTS for step in range(MOMENTS)):
