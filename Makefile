@@ -88,10 +88,10 @@ test-oldest: .venv-oldest/ready
 	.venv-benchmark/bin/python -m pip --disable-pip-version-check --quiet install --no-build-isolation --no-deps --editable .
 	@touch $@
 
-# After a run of these studies on a quiet machine: the durations by which others are estimated, and how honest they are.
+# After a run of these studies on a quiet machine: the durations from which the time left is told, and how good it is.
 durations: .venv/kernel
-	$(BIN)/python benchmarks/durations.py results/paper results/smoke
-	$(BIN)/python benchmarks/progress.py results/paper results/smoke
+	$(BIN)/python benchmarks/durations.py config/paper.yaml config/smoke.yaml
+	$(BIN)/python benchmarks/progress.py config/paper.yaml config/smoke.yaml
 
 benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/kernel.py
@@ -104,7 +104,7 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	rm -rf .snakemake/kept/paper
 	$(BIN)/snakemake -c2 --forceall
 	$(BIN)/python benchmarks/stages.py results/paper
-	$(BIN)/python benchmarks/cores.py results/paper
+	$(BIN)/python benchmarks/cores.py config/paper.yaml
 	$(BIN)/python benchmarks/tori.py results/paper
 	$(BIN)/python benchmarks/lifetimes.py results/paper
 	$(BIN)/python benchmarks/other_settings.py results/paper

@@ -1,56 +1,43 @@
-"""Make the durations that the tree ships anew, from studies that have run on this machine and nothing else beside them.
+"""Make the durations that the tree ships, from benchmark files of a large and a small study that ran in this folder.
 
-    python benchmarks/durations.py results/paper results/smoke
+    python benchmarks/durations.py config/paper.yaml config/smoke.yaml
 
-Each kind of job gets a fixed part and one in proportion to its work, by least squares of relative errors over all its
-jobs; kinds that did not run in any of these studies keep what they have. Printed: kind, jobs, seconds, rate.
+For each rule: the mean CPU time and size of a job, at the least and at the largest work of these studies. Rules that
+did not run keep what they have.
 """
 
 import json
 import sys
 from collections import defaultdict
+from pathlib import Path
 
 import numpy as np
-from scipy.optimize import nnls
+from progress import planned
 
-from snakemake_logger_plugin_study.durations import FILE, SHIPPED, calibrate
-from snakemake_logger_plugin_study.past import read_past
-
-#: Seconds and bytes below which no job is told from another.
-LEAST_SECONDS, LEAST_SIZE = 0.05, 1000.0
-
-
-def fitted(work, values, least):
-    """Return the fixed part and the rate of one kind; the rate is 0 where all jobs have the same small value."""
-    work, values = np.array(work), np.maximum(values, least)
-    if len(set(work)) == 1:
-        # One study tells no two parts: what is long is work but for the start of a program.
-        mean = values.mean()
-        fixed = mean if mean < 100.0 * least else 20.0 * least
-        return fixed, (mean - fixed) / work[0] if work[0] else 0.0
-    (fixed, rate), _ = nnls(np.column_stack([np.ones_like(work), work]) / values[:, None], np.ones_like(values))
-    # Where the larger job takes more for each unit, it is the one whose seconds count.
-    return (fixed, rate) if fixed else (0.0, values.sum() / work.sum())
+from burridge_knopoff.report.stages import job_costs
+from snakemake_logger_plugin_study.durations import FILE, SHIPPED, work_of
 
 
 def main():
-    """Measure, print and write."""
-    jobs = defaultdict(list)
-    for results in sys.argv[1:]:
-        for job in read_past(results).values():
-            jobs[job["kind"]].append(job)
-    calibration = calibrate()
-    # What is kept was measured on a machine of another speed.
-    ratio = calibration / SHIPPED["calibration"]
-    costs = {kind: [ratio * fixed, ratio * rate, *size] for kind, (fixed, rate, *size) in SHIPPED["costs"].items()}
-    for kind, same in sorted(jobs.items()):
-        work = [job["work"] for job in same]
-        seconds = fitted(work, [job["seconds"] for job in same], LEAST_SECONDS)
-        costs[kind] = [*seconds, *fitted(work, [job["size"] for job in same], LEAST_SIZE)]
-        print(f"{kind:32} {len(same):5d}  {seconds[0]:8.3f} s  {seconds[1]:.3e} s")
-    rounded = {kind: [float(f"{value:.4g}") for value in cost] for kind, cost in sorted(costs.items())}
-    lines = ",\n".join(f'  "{kind}": {json.dumps(cost)}' for kind, cost in rounded.items())
-    FILE.write_text(f'{{\n "calibration": {calibration:.4g},\n "costs": {{\n{lines}\n }}\n}}\n')
+    """Read, print and write."""
+    jobs = defaultdict(lambda: defaultdict(list))
+    for config in sys.argv[1:]:
+        plan = planned(config, "all", "chains")
+        work = work_of(plan.study)
+        for job in plan.workflow.dag.jobs:
+            for wall, cpu, _ in job_costs(Path(job.benchmark)) if job.benchmark else ():
+                size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())
+                # Snakemake measures no CPU time of jobs that are too short.
+                jobs[job.rule.name][work.get(job.rule.name, work["all points"])].append((cpu or wall, size))
+    rules = dict(SHIPPED)
+    for rule, by_work in jobs.items():
+        rows = [[least, *np.mean(by_work[least], axis=0)] for least in sorted({min(by_work), max(by_work)})]
+        # More work never takes less.
+        rows[-1] = list(np.max(rows, axis=0))
+        rules[rule] = [[float(f"{value:.4g}") for value in row] for row in rows]
+        print(rule, rules[rule])
+    lines = ",\n".join(f' "{rule}": {json.dumps(rows)}' for rule, rows in sorted(rules.items()))
+    FILE.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,55 +1,67 @@
-"""How honest is the time left? The record of a run is replayed, and what the display would have told held to the truth.
+"""How good is the time left? Runs are replayed from their benchmark files, and what is told is compared with the truth.
 
-    python benchmarks/progress.py results/paper results/smoke [--cores 1]
+    python benchmarks/progress.py config/paper.yaml config/smoke.yaml [--cores 1]
 
-For each study, as if it had never run on this machine: what was told at its begin, and from a minute after it (or a
-tenth of a shorter run) to its end the largest ratio between what was told and what it took, and the share of that time
-in which it was within a factor of 1.5. Both count as 10 s at least: the display tells no less. With `--cores` the jobs
-take as long as they did, on so many cores. Exit code 1 if a ratio is above 1.5.
+The studies ran in this folder, but are replayed as if they never had, each job with its CPU time: what other programs
+took does not count. Printed: what is told at the beginning, and the largest ratio of what is told and what is left,
+from a minute on (or a tenth of a shorter run). Both count as 10 s at least, as the display tells no less. Exit code 1
+if a ratio exceeds 2.
 """
 
 import argparse
+import contextlib
+import io
 import sys
+from pathlib import Path
 
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations
-from snakemake_logger_plugin_study.past import read_record
-from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, Job, Run, schedule
+from snakemake.cli import main as snakemake
+
+from burridge_knopoff.report.stages import job_costs
+from snakemake_logger_plugin_study.durations import Durations, work_of
+from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
 
 #: The factor that is allowed, moments of a run that are looked at, and the least time that the display tells.
-FACTOR, MOMENTS, LEAST = 1.5, 400, 10.0
-#: What a record holds of a job that was known before it began, besides what it needs.
-PLANNED = ("name", "kind", "work", "threads", "priority")
+FACTOR, MOMENTS, LEAST = 2.0, 400, 10.0
 
 
-def recorded(results):
-    """Return the record of the last run of a study; end the program, with a line, if there is none."""
-    return read_record(results) or sys.exit(f"{results}: no record of a run in it; snakemake writes it")
+def planned(config, *targets, cores=2):
+    """Return the plan of all jobs of a study, as `snakemake -n --forceall` makes it."""
+    arguments = [*targets, "-n", "--forceall", "-c", str(cores), "--configfile", config]
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        try:
+            snakemake(arguments)
+        except SystemExit as end:
+            code = end.code
+    if code:
+        sys.exit(said.getvalue())
+    return PLAN
 
 
-def planned(record):
-    """Return the jobs of a record by number, and the seconds that each took."""
-    jobs = {
-        number: Job(stage="", needs=frozenset(job["needs"]), **{name: job[name] for name in PLANNED})
-        for number, job in enumerate(record["jobs"])
-    }
-    return jobs, {number: job["end"] - job["begin"] for number, job in enumerate(record["jobs"])}
+def recorded(config, cores=2):
+    """Return the run of all jobs of a study and {number: wall and CPU time of the job in the last run, in seconds}."""
+    run = planned(config, cores=cores).look_ahead()
+    run.cores = cores
+    took = {number: next(job_costs(Path(job.benchmark)), None) for number, job in run.jobs.items()}
+    if missing := [run.jobs[number].name for number, costs in took.items() if costs is None]:
+        sys.exit(f"{config}: no benchmark file of {missing[0]} and {len(missing) - 1} more: run the study first")
+    return run, {number: costs[:2] for number, costs in took.items()}
 
 
-def told(record, cores=None):
+def told(run, took):
     """Return (moment, told, truth) of a run, in seconds, from its begin to its end."""
-    jobs, seconds = planned(record)
-    ends = {number: job["end"] for number, job in enumerate(record["jobs"])}
-    if cores is not None:
-        ends = schedule(jobs, seconds, cores)
-    for number, job in jobs.items():
-        job.begin, job.end = ends[number] - seconds[number], ends[number]
-    begin, end = min(job.begin for job in jobs.values()), max(ends.values())
-    speed = record["calibration"] / SHIPPED["calibration"]
-    run = Run("", jobs, (), Durations(SHIPPED["costs"], speed), cores or record["cores"])
-    for moment in (begin + (end - begin) * step / MOMENTS for step in range(MOMENTS)):
-        for job in jobs.values():
-            job.state = WAITING if job.begin > moment else RUNNING if job.end > moment else DONE
-        yield moment - begin, run.forecast(moment), end - moment
+    run.durations = Durations(work_of(PLAN.study))
+    # Snakemake measures no CPU time of jobs that are too short.
+    seconds = {number: (cpu or wall) / run.jobs[number].threads for number, (wall, cpu) in took.items()}
+    ends = schedule(run.jobs, seconds, run.cores)
+    end = max(ends.values())
+    for moment in (end * step / MOMENTS for step in range(MOMENTS)):
+        for number, job in run.jobs.items():
+            job.begin = ends[number] - seconds[number]
+            job.state = WAITING if job.begin > moment else RUNNING if ends[number] > moment else DONE
+            job.seconds = seconds[number] * job.threads if job.state == DONE else None
+        yield moment, run.forecast(moment), end - moment
 
 
 def ratio(first, second):
@@ -61,24 +73,16 @@ def ratio(first, second):
 def main():
     """Print a line for each study; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", nargs="+")
-    parser.add_argument("--cores", type=int, help="without it those of the run")
+    parser.add_argument("configs", nargs="+")
+    parser.add_argument("--cores", type=int, default=2)
     given = parser.parse_args()
     worst = 0.0
-    for results in given.results:
-        record = recorded(results)
-        moments = list(told(record, given.cores))
-        took = moments[0][2]
-        counted = [ratio(*pair) for moment, *pair in moments if moment >= min(60.0, took / 10)]
-        within = sum(value <= FACTOR for value in counted) / len(counted)
-        worst = max(worst, *counted)
-        beginning = (
-            f"{results}, cores {given.cores or record['cores']:g}: took {took:.0f} s, told {moments[0][1]:.0f} s"
-        )
-        print(
-            f"{beginning} at its begin; then at most a factor of {max(counted):.2f} off, "
-            f"within {FACTOR} for {100 * within:.0f} % of the time"
-        )
+    for config in given.configs:
+        moments = list(told(*recorded(config, given.cores)))
+        _, begin, took = moments[0]
+        largest = max(ratio(*pair) for moment, *pair in moments if moment >= min(60.0, took / 10))
+        worst = max(worst, largest)
+        print(f"{config}: {took:.0f} s on {given.cores} cores, told {begin:.0f} s, then at most {largest:.2f} off")
     return int(worst > FACTOR)
 
 

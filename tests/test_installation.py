@@ -77,7 +77,9 @@ def test_the_command_works(installed, tmp_path):
     assert (tmp_path / "run.nc").is_file()
 
 
-@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", "report/templates/laws.jinja", "py.typed"])
+@pytest.mark.parametrize(
+    "name", ["kernel/series.py", "kernel/series.pxd", "report/templates/laws.jinja", "py.typed", "__init__.pyi"]
+)
 def test_both_distributions_hold(installed, name):
     assert f"burridge_knopoff/{name}" in zipfile.ZipFile(installed.wheel).namelist()
     with tarfile.open(installed.source) as archive:

@@ -20,7 +20,7 @@ from burridge_knopoff.study.job_log import failure, interrupted
 from burridge_knopoff.study.yaml_file import ConfigError
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost, first_figures
-from snakemake_logger_plugin_study.past import write_past
+from snakemake_logger_plugin_study.durations import measured
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import (
     checked_cores,
@@ -114,11 +114,9 @@ class LogHandler(LogHandlerBase):
                 job = self._run.job(record.jobid, record.rule_name)
                 job.begin, job.message = time.monotonic(), record.rule_msg or ""
                 job.output, job.log = record.output, record.log or []
-                # Jobs of a group start and end together: that tells no duration of each.
-                job.timed = bool(job.kind) and not record.indent
                 job.state = RUNNING
             case LogEvent.JOB_FINISHED if done := self._run.jobs.get(record.job_id):
-                done.end, done.state = time.monotonic(), DONE
+                done.seconds, done.state = measured(done.benchmark, done.threads), DONE
                 if done.name in PLAN.first and (words := first_figures(self._run, PLAN.first)):
                     self._say(words)
             case LogEvent.JOB_ERROR if failed := self._run.jobs.get(record.jobid):
@@ -178,13 +176,9 @@ class LogHandler(LogHandlerBase):
                 return [cost(run)] if run.jobs else []
             if not (run.results and run.jobs):
                 return []
-            # `--quiet progress` keeps from the log which jobs were done, and when, but their files are there.
+            # `--quiet progress` keeps from the log which jobs were done, but their files are there.
             for job in run.of(RUNNING) if self._quiet else ():
-                job.timed = False
                 job.state = DONE if all(Path(path).exists() for path in job.output) else RUNNING
-            # A folder that cannot be written to fails no run.
-            with suppress(OSError):
-                write_past(run, self._begin)
             return closing_lines(run, time.monotonic() - self._begin, stopped=self._stopped)
         except Exception as error:
             what = "the time of a run" if self.common_settings.dryrun else "what the run left"

@@ -48,8 +48,8 @@ def elapsed(seconds: float) -> str:
 
 def cost(run: Run) -> str:
     """Return in a line what a run would cost that has not begun."""
-    costs = [run.durations.cost(job.kind, job.work) for job in run.jobs.values()]
-    cpu, size = (sum(column) for column in zip(*costs, strict=True))
+    expected, jobs = run.expected(), run.jobs.values()
+    cpu, size = sum(expected[job.rule] for job in jobs), sum(run.durations.shipped(job.rule)[1] for job in jobs)
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
     cores = counted(int(run.cores), "core")
     return f"a run takes {about(run.forecast(0.0))} on {cores}: {about(cpu)} of CPU time, and {disk} of disk"

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from snakemake.logging import logger
 
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations, calibrate, units_of, work_of
-from snakemake_logger_plugin_study.past import read_past
+from snakemake_logger_plugin_study.durations import Durations, measured, work_of
 from snakemake_logger_plugin_study.run import Job, Run
 
 
@@ -43,15 +42,16 @@ class Plan:
         """Return the run of the jobs that are to run, with what is known of their durations."""
         if self.study is None:
             return Run()
-        jobs = self._jobs()
         wanted = {job.rule.name for job in self.workflow.dag.jobs}
-        history, speed = read_past(self.results).values(), 1.0
-        if jobs and not history:
-            # Without a kernel nothing can run, but what is to run can be seen.
-            with suppress(ImportError):
-                speed = calibrate() / SHIPPED["calibration"]
-        known = ((job["kind"], job["work"], job["seconds"]) for job in history)
-        return Run(self.results, jobs, wanted, Durations(SHIPPED["costs"], speed).corrected(known))
+        return Run(self.results, self._jobs(), wanted, Durations(work_of(self.study), self._last()))
+
+    def _last(self) -> dict[str, list[float]]:
+        """Return {rule: seconds of each of its jobs in the last run, times their threads}."""
+        last = defaultdict(list)
+        for job in self.workflow.dag.jobs:
+            if job.benchmark and (seconds := measured(job.benchmark, int(job.threads))) is not None:
+                last[job.rule.name].append(seconds)
+        return last
 
     def _jobs(self) -> dict[int, Job]:
         """Return {number: job} of the jobs that make files, in the order of the rules."""
@@ -60,15 +60,15 @@ class Plan:
         # A file of rules is a stage, named after its first rule that only gathers, or the file.
         stages = {rule.snakefile: rule.name for rule in reversed(rules) if not rule.output}
         numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
-        units = units_of(self.study)
         return {
             numbers[job]: Job(
                 " ".join([job.rule.name, *(f"{name}={value}" for name, value in job.wildcards_dict.items())]),
                 stages.get(job.rule.snakefile, Path(str(job.rule.snakefile)).stem),
-                *work_of(units, job.rule.name, job.wildcards_dict, job.params.get("kept")),
+                job.rule.name,
                 threads=int(job.threads),
                 priority=float(job.priority),
                 needs=frozenset(numbers[need] for need in dag.dependencies[job] if need in numbers),
+                benchmark=str(job.benchmark or ""),
             )
             for job in sorted(numbers, key=lambda job: (order[job.rule.name], numbers[job]))
         }

@@ -10,8 +10,6 @@ from dataclasses import dataclass, field
 from snakemake_logger_plugin_study.durations import Durations
 
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
-#: Of a job that has run longer than was thought: what it still takes, as a share of what it has taken.
-OVERDUE = 0.05
 #: Seconds for which a forecast holds.
 FRESH = 2.0
 
@@ -20,22 +18,21 @@ FRESH = 2.0
 class Job:
     """A job that makes files: what is planned and, from `state` on, what became of it.
 
-    kind, work : what its duration is known by; no kind if it was not planned
     needs : numbers of the jobs that come before
-    timed : False if begin and end say nothing about its duration
+    benchmark : the file that Snakemake writes with its duration
+    seconds : how long it took, times its threads; None if it has not finished, or nothing measured it
     """
 
     name: str
     stage: str
-    kind: str = ""
-    work: float = 0.0
+    rule: str = ""
     threads: int = 1
     priority: float = 0.0
     needs: frozenset[int] = frozenset()
+    benchmark: str = ""
     state: str = WAITING
     begin: float = 0.0
-    end: float = 0.0
-    timed: bool = True
+    seconds: float | None = None
     message: str = ""
     output: Sequence[str] = ()
     log: Sequence[str] = ()
@@ -48,7 +45,7 @@ class Run:
     results : folder of the study
     jobs : {number: job}, in the order of the stages
     wanted : rules of all files that the run is to make or has found up to date
-    durations : what jobs take on this machine, as known before any has begun
+    durations : how long jobs take, as known before any has begun
     stopping : whether Ctrl-C has ended it
     """
 
@@ -64,7 +61,7 @@ class Run:
         """Return a job, also one that was not planned."""
         if number not in self.jobs:
             # Another thread may walk through the old mapping.
-            self.jobs = {**self.jobs, number: Job(rule, rule)}
+            self.jobs = {**self.jobs, number: Job(rule, rule, rule)}
         return self.jobs[number]
 
     def of(self, state: str) -> list[Job]:
@@ -95,20 +92,27 @@ class Run:
 
     def forecast(self, now: float) -> float:
         """Return how long the run still takes, in seconds, as a scheduler would run its jobs that fills all cores."""
-        known, running = [], {}
-        for number, job in self.jobs.items():
-            taken = (job.end if job.state == DONE else now) - job.begin
-            if job.state == RUNNING:
-                running[number] = taken
-            # A job that has run longer than was thought tells as much as one that has finished.
-            late = job.state == RUNNING and taken * job.threads > self.durations.cost(job.kind, job.work)[0]
-            if job.timed and (job.state == DONE or late):
-                known.append((job.kind, job.work, taken * job.threads))
-        durations, blocked = self.durations.corrected(known), self.blocked()
-        left = {n: job for n, job in self.jobs.items() if n in running or (job.state == WAITING and n not in blocked)}
-        seconds = {n: durations.cost(job.kind, job.work)[0] / job.threads for n, job in left.items()}
-        ends = {number: max(seconds.pop(number) - taken, OVERDUE * taken) for number, taken in running.items()}
+        expected, blocked = self.expected(), self.blocked()
+        left = {
+            number: job
+            for number, job in self.jobs.items()
+            if job.state == RUNNING or (job.state == WAITING and number not in blocked)
+        }
+        seconds = {number: expected[job.rule] / job.threads for number, job in left.items()}
+        ends = {
+            number: max(0.0, seconds.pop(number) - (now - job.begin))
+            for number, job in left.items()
+            if job.state == RUNNING
+        }
         return max(schedule(left, seconds, self.cores, ends).values(), default=0.0)
+
+    def expected(self) -> dict[str, float]:
+        """Return {rule: expected seconds of a job, times its threads}."""
+        finished: dict[str, list[float]] = defaultdict(list)
+        for job in self.jobs.values():
+            if job.seconds is not None:
+                finished[job.rule].append(job.seconds)
+        return self.durations.expected({job.rule for job in self.jobs.values()}, finished)
 
 
 def schedule(

@@ -18,8 +18,6 @@ import snakemake_logger_plugin_study as plugin
 from burridge_knopoff.study.job_log import SILENT
 from burridge_knopoff.study.study import load_study
 from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations
-from snakemake_logger_plugin_study.past import read_past, write_past
 from snakemake_logger_plugin_study.plan import Plan
 from snakemake_logger_plugin_study.refusal import checked_cores, reworded
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
@@ -33,15 +31,14 @@ def test_durations_in_words():
     assert {seconds: elapsed(seconds) for seconds in told} == told
 
 
-def test_a_cost_in_words():
-    durations = Durations(
-        {"short": (3.0, 0.0, 5e5, 0.0), "long": (0.0, 10.0, 0.0, 2e6), "huge": (3.0, 0.0, 2.5e9, 0.0)}
-    )
-    jobs = {0: Job("", "", "short"), 1: Job("", "", "long", 20.3, threads=2)}
+def test_a_cost_in_words(monkeypatch):
+    rows = {"short": [[0.0, 3.0, 5e5]], "long": [[0.0, 203.0, 40.6e6]], "huge": [[0.0, 3.0, 2.5e9]]}
+    monkeypatch.setattr("snakemake_logger_plugin_study.durations.SHIPPED", rows)
+    jobs = {0: Job("", "", "short"), 1: Job("", "", "long", threads=2)}
     told = "a run takes about 2 min on 2 cores: about 3 min of CPU time, and 41 MB of disk"
-    assert cost(Run("", jobs, (), durations, 2)) == told
+    assert cost(Run("", jobs, cores=2)) == told
     told = "a run takes a few seconds on 1 core: a few seconds of CPU time, and 2.5 GB of disk"
-    assert cost(Run("", {0: Job("", "", "huge")}, (), durations, 1)) == told
+    assert cost(Run("", {0: Job("", "", "huge")}, cores=1)) == told
 
 
 def test_a_line_at_the_begin_and_now_and_then(monkeypatch):
@@ -86,7 +83,7 @@ class Dag:
             SimpleNamespace(name=name, snakefile=f"rules/{file}.smk", output=["x"] if name != "points" else [])
             for name, file in files.items()
         ]
-        options = {"wildcards_dict": {}, "params": {}, "threads": 1, "priority": 0}
+        options = {"wildcards_dict": {}, "threads": 1, "priority": 0, "benchmark": None}
         self.jobs = [AJob(rule=rule, output=rule.output, **options) for rule in self.rules]
         orbits, simulate, points, edges = self.jobs
         simulate.wildcards_dict = {"a": "0.05"}
@@ -100,25 +97,25 @@ class Dag:
         return 7 + self.jobs.index(job)
 
 
-def test_what_the_snakefile_announces(tmp_path, monkeypatch):
-    """Stages are files of rules; jobs are those that make files, with what they need."""
-    calibrated = iter([3.0 * SHIPPED["calibration"]])
-    monkeypatch.setattr("snakemake_logger_plugin_study.plan.calibrate", lambda: next(calibrated))
+def test_what_the_snakefile_announces(tmp_path):
+    """Stages are files of rules; jobs are those that make files, with what they need and what they took before."""
     study = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
     dag = Dag()
     plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), study)
     plan.announce()
     assert list(plan.run.jobs.items()) == [
-        (7, Job("orbits", "stability", "orbits", 4.0, needs=frozenset({8}))),
-        (8, Job("simulate a=0.05", "points", "simulate", 30000.0)),
+        (7, Job("orbits", "stability", "orbits", needs=frozenset({8}))),
+        (8, Job("simulate a=0.05", "points", "simulate")),
     ]
     assert plan.run.wanted == {"simulate", "orbits", "points", "bifurcations"}
-    assert plan.run.durations.speed == pytest.approx(3.0)
-    # The second time the machine is known.
-    for job in plan.run.jobs.values():
-        job.state, job.begin, job.end = DONE, 1.0, 3.0
-    write_past(plan.run, begin=1.0)
-    assert 2.0 < plan.look_ahead().forecast(0.0) < 5.0
+    assert plan.run.durations.last == {}
+    # The second time it is known what they take.
+    for number, job in enumerate(dag.jobs):
+        job.benchmark = tmp_path / f"{number}.tsv"
+        job.benchmark.write_text(f"s\n{number + 1}.5\n")
+    plan.announce()
+    assert plan.run.durations.last == {"orbits": [1.5], "simulate": [2.5], "points": [3.5], "bifurcations": [4.5]}
+    assert plan.run.forecast(0.0) == 4.0
 
 
 def test_a_defect_of_the_plan_is_only_told(caplog):
@@ -236,11 +233,7 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     last = ["study x: done in 0 s", "made: x.nc, x.nc", "report: results/x/report.html"]
     assert written(*ROUTINE, start(2), end(2), **run) == [BEGIN, *last]
     # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
-    known = read_past(run["results"])
     assert written(*BEGUN, start(2), quiet={Quietness.PROGRESS}, **run) == [BEGIN, *last]
-    # Nor when they ended, so that nothing is learnt of how long they take.
-    assert read_past(run["results"]) == known
-    assert min(job["seconds"] for job in known.values()) >= 0.0
     assert written(*BEGUN, start(2), quiet={Quietness.ALL}, **run) == []
     monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
     assert "what the run left cannot be told: division by zero" in written(*ROUTINE, **run)

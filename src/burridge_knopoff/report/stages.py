@@ -49,7 +49,7 @@ def read_stages(
     for path in sorted(Path(folder).rglob("*.tsv")):
         name = path.relative_to(folder).with_suffix("").parts[0]
         name = next((whole for start, whole in joined.items() if name.startswith(start)), name)
-        for wall, cpu, memory in _costs(path) if name not in skipped else ():
+        for wall, cpu, memory in job_costs(path) if name not in skipped else ():
             stage = stages.setdefault(name, Stage(name))
             stage.jobs += 1
             stage.wall += wall
@@ -59,7 +59,7 @@ def read_stages(
     return sorted(stages.values(), key=lambda stage: (-stage.wall, stage.name))
 
 
-def _costs(path: Path) -> Iterator[tuple[float, float, float]]:
+def job_costs(path: Path) -> Iterator[tuple[float, float, float]]:
     """Yield wall time, CPU time and MB of the jobs in a file; what cannot be read is left out: it is no result."""
     with suppress(OSError, ValueError, KeyError, csv.Error), path.open(encoding="utf-8") as file:
         for row in csv.DictReader(file, delimiter="\t", restval=""):

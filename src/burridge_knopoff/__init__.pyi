@@ -1,0 +1,40 @@
+# The public names, and where each is defined.
+from .attractors.attractor import Attractor as Attractor
+from .attractors.labels import label_states as label_states
+from .attractors.settings import SearchSettings as SearchSettings
+from .laws import FormulaLaw as FormulaLaw
+from .laws import Law as Law
+from .laws import law_of as law_of
+from .library.basin_map import basin_map as basin_map
+from .library.find_attractors import find_attractors as find_attractors
+from .library.open_study import open_study as open_study
+from .library.run import Run as Run
+from .library.simulate import simulate as simulate
+from .library.sweep import sweep as sweep
+from .model.chain import Chain as Chain
+from .model.initial import InitialState as InitialState
+from .model.model import ChainState as ChainState
+from .model.model import Model as Model
+from .motion.chain_synchronization import transverse_exponent as transverse_exponent
+from .motion.kind import MotionKind as MotionKind
+from .motion.limit_cycle import limit_cycle as limit_cycle
+from .motion.observables import SteadyMotion as SteadyMotion
+from .motion.settings import MotionSettings as MotionSettings
+from .motion.synchronized_orbit import synchronized_orbit as synchronized_orbit
+from .periodic_orbits.bifurcation_kind import BifurcationKind as BifurcationKind
+from .periodic_orbits.bifurcations import Bifurcation as Bifurcation
+from .periodic_orbits.bifurcations import locate_bifurcations as locate_bifurcations
+from .periodic_orbits.floquet import Multipliers as Multipliers
+from .periodic_orbits.floquet import multipliers as multipliers
+from .periodic_orbits.flow import OrbitError as OrbitError
+from .periodic_orbits.following import Following as Following
+from .periodic_orbits.following import follow as follow
+from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
+from .periodic_orbits.periodic import find_periodic_orbit as find_periodic_orbit
+from .periodic_orbits.pseudo_arclength import BranchOrbit as BranchOrbit
+from .periodic_orbits.symmetry import Symmetry as Symmetry
+from .running.section import Section as Section
+from .running.settings import Settings as Settings
+from .running.trajectory import Trajectory as Trajectory
+
+__version__: str
