@@ -19,6 +19,7 @@ container: "docker://python:3.11"
 
 
 include: "workflow/rules/study.smk"
+include: "workflow/rules/groups.smk"
 include: "workflow/rules/seals.smk"
 include: "workflow/rules/simulate.smk"
 

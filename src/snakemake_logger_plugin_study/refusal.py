@@ -6,7 +6,10 @@ import argparse
 import atexit
 import os
 import re
+import shlex
 import shutil
+import subprocess
+import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -72,6 +75,27 @@ def several_files(paths: Sequence[str | Path]) -> str:
         f"--configfile: got {second} as a second file, expected one file: one file is one study; "
         f"a target stands before it, as in snakemake {second} --configfile {first}"
     )
+
+
+def refused_call(checkout: Path, config_files: Sequence[str | Path]) -> str:
+    """Return why no study is run here from a checkout by these config files, in one line; nothing if it can be."""
+    # Results lie where `snakemake` is called: there it would find the second Snakefile and begin another study.
+    if Path.cwd() == checkout / "workflow":
+        return f"no study is run in the folder workflow: cd {shlex.quote(str(checkout))}"
+    if len(config_files) > 1:
+        return several_files(config_files)
+    if " " in sys.executable:
+        return f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
+    return ""
+
+
+def refused_cluster(submit: str | None) -> str:
+    """Return why no job goes to Slurm by a submit command, in one line: else each job would try for minutes."""
+    program = Path(submit or "")
+    if program.name != "submit.py" or not program.with_name("jobs.py").is_file():
+        return ""
+    answer = subprocess.run(["sh", "-c", "squeue --me --noheader"], capture_output=True, text=True)
+    return f"no job is submitted, Slurm does not answer: squeue: {answer.stderr.strip()}" if answer.returncode else ""
 
 
 def checked_cores(arguments: Sequence[str]) -> int:

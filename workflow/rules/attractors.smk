@@ -1,6 +1,8 @@
 # Attractors: found for each law along the whole grid of a and between its values, then put together.
 
-OF_LAW = [f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined", "returns")]
+OF_LAW = [
+    f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined", "returns")
+]
 
 # Their section returns, by which states are labelled.
 RETURNS = OF_LAW[2]
@@ -8,8 +10,8 @@ RETURNS = OF_LAW[2]
 
 # What decides them under one law, but for the values of a.
 SEARCH_PARAMS = {
-    **keys("initial", "start", "attractors", "refine"),
-    "motion": motion_config(),
+    **keys(STUDY, "initial", "start", "attractors", "refine"),
+    "motion": motion_config(STUDY),
 }
 
 
@@ -32,13 +34,14 @@ rule attractors_of_law:
     params:
         **SEARCH_PARAMS,
         grid=list(STUDY.grid.values()),
-        model=lambda wildcards: model_config([wildcards.law]),
+        model=lambda wildcards: model_config(STUDY, [wildcards.law]),
         sources=sources("attractors_of_law"),
         seals=seals,
         kept=lambda wildcards: cache_folder(
+            STUDY,
             f"attractors {wildcards.law}",
             SEARCH_PARAMS,
-            model_config([wildcards.law]),
+            model_config(STUDY, [wildcards.law]),
             source_fingerprint("burridge_knopoff.continuation.along_a"),
         ),
     message:
@@ -71,8 +74,8 @@ rule attractors:
         mem_mb=lambda wildcards, threads: 400 + 100 * threads,
         runtime=10,
     params:
-        **keys("attractors"),
-        model=model_config(),
+        **keys(STUDY, "attractors"),
+        model=model_config(STUDY),
         a=list(STUDY.grid.values())[0],
         blocks=STUDY.blocks,
         sources=sources("attractors"),

@@ -5,7 +5,7 @@ PLANE_STATE = STUDY.config["basins"]["initial"]
 # What both kinds of jobs of a map depend on.
 BASIN_PARAMS = {
     "state": {"name": PLANE_STATE, **STUDY.config["initial"][PLANE_STATE]},
-    **keys("start", "attractors"),
+    **keys(STUDY, "start", "attractors"),
 }
 
 
@@ -29,8 +29,8 @@ rule basin_tile:
     params:
         **BASIN_PARAMS,
         a=lambda wildcards: STUDY.value(wildcards.a),
-        model=lambda wildcards: model_config([wildcards.law]),
-        basins=basin_keys("pairs"),
+        model=lambda wildcards: model_config(STUDY, [wildcards.law]),
+        basins=basin_keys(STUDY, "pairs"),
         sources=sources("basin_part"),
         seals=seals,
     message:
@@ -48,7 +48,7 @@ use rule basin_tile as basin_pairs with:
     benchmark:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/pairs.tsv"
     params:
-        basins=basin_keys("pixels", "tiles"),
+        basins=basin_keys(STUDY, "pixels", "tiles"),
     message:
         "pairs of near states, {wildcards.law} law, a = {wildcards.a}"
 
@@ -78,10 +78,10 @@ rule basins:
     group:
         group("summaries")
     params:
-        **keys("start", "attractors"),
+        **keys(STUDY, "start", "attractors"),
         maps=[(law, STUDY.value(a)) for law, a in STUDY.basin_maps],
-        model=model_config(),
-        basins=basin_keys(),
+        model=model_config(STUDY),
+        basins=basin_keys(STUDY),
         state=BASIN_PARAMS["state"],
         sources=sources("basins"),
         seals=seals,

@@ -18,14 +18,15 @@ rule bifurcations_of_law:
         mem_mb=lambda wildcards, threads: 350 + 100 * threads,
         runtime=60,
     params:
-        model=lambda wildcards: model_config([wildcards.law]),
+        model=lambda wildcards: model_config(STUDY, [wildcards.law]),
         blocks=STUDY.blocks,
         a=min(STUDY.grid.values()),
         sources=sources("bifurcations_of_law"),
         seals=seals,
         kept=lambda wildcards: cache_folder(
+            STUDY,
             f"bifurcations {wildcards.law}",
-            model_config([wildcards.law]),
+            model_config(STUDY, [wildcards.law]),
             source_fingerprint("burridge_knopoff.continuation.bifurcations"),
         ),
     message:

@@ -28,7 +28,7 @@ rule watch_chain:
     resources:
         runtime=30,
     params:
-        model=lambda wildcards: other_length_config(CHAINS["laws"]),
+        model=lambda wildcards: other_length_config(STUDY, CHAINS["laws"]),
         grid=CHAINS["a"],
         watch={key: CHAINS[key] for key in ("time_limit", "synchronization_distance")},
         sample={

@@ -27,6 +27,7 @@ rule claims:
         study=STUDY.name,
         claims=CLAIMS,
         config=keys(
+            STUDY,
             "v",
             "contact",
             "start",

@@ -20,11 +20,11 @@ rule phases_of_law:
         mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=60,
     params:
-        **keys("attractors"),
+        **keys(STUDY, "attractors"),
         blocks=STUDY.blocks,
         grid=PHASES["a"],
         phases={key: value for key, value in PHASES.items() if key != "a"},
-        model=lambda wildcards: model_config([wildcards.law]),
+        model=lambda wildcards: model_config(STUDY, [wildcards.law]),
         sources=sources("phases_of_law"),
         seals=seals,
     message:

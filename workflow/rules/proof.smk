@@ -18,7 +18,7 @@ rule proof:
     group:
         group("summaries")
     params:
-        model=lambda wildcards: proved_config(),
+        model=lambda wildcards: proved_config(STUDY),
         sources=sources("proof"),
         seals=seals,
     message:

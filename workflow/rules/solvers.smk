@@ -1,5 +1,7 @@
 # Solvers: the points of a few values of a once more, by every other solver of each law.
 
+from dataclasses import asdict
+
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.study import solver_points
 

@@ -60,7 +60,7 @@ SUMMARY_PARAMS = {
         "of_points": POINT_SOURCES,
     },
     "models": {
-        "model": model_config(),
+        "model": model_config(STUDY),
         "blocks": STUDY.blocks,
         "grid": list(STUDY.grid.values()),
     },
@@ -116,7 +116,7 @@ for name, row in SUMMARIES.items():
             **SUMMARY_PARAMS[row["of"]],
             script=f"summary_of_{row['of']}",
             summary=name,
-            config=keys(*row.get("keys", [])),
+            config=keys(STUDY, *row.get("keys", [])),
             sources=sources(f"summary_of_{row['of']}", f"summaries.{name}"),
             seals=seals,
         message:

@@ -20,15 +20,17 @@ rule two_blocks:
         mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=30,
     params:
-        **keys("agreement"),
-        model=lambda wildcards: other_length_config(),
+        **keys(STUDY, "agreement"),
+        model=lambda wildcards: other_length_config(STUDY),
         sample={key: CHAINS[key] for key in ("seed", "position", "velocity")},
         two_blocks=CHAINS["two_blocks"],
-        settings=keys("start", "transient", "window"),
+        settings=keys(STUDY, "start", "transient", "window"),
         search={key: STUDY.config["attractors"][key] for key in OF_GIVEN_STATES},
         # A block of the study's section need not be there: the sum always is.
         motion={
-            key: value for key, value in motion_config().items() if key != "section"
+            key: value
+            for key, value in motion_config(STUDY).items()
+            if key != "section"
         },
         sources=sources("two_blocks"),
         seals=seals,

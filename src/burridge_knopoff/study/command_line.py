@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.study.yaml_file import plain_value
@@ -27,3 +29,12 @@ def config_entries(overrides: Mapping[str, Any]) -> Iterable[str]:
     for key, value in overrides.items():
         text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
         yield f"{key}={'' if value is None else text}"
+
+
+def config_arguments(config_file: str | Path | None, overrides: Mapping[str, Any]) -> list[str]:
+    """Return what names a study to `snakemake` by its config, from the folder of the run.
+
+    config_file : None for the one that `snakemake` takes by itself
+    """
+    named = [] if config_file is None else ["--configfile", os.path.relpath(config_file)]
+    return [*named, *(["--config", *config_entries(overrides)] if overrides else [])]

@@ -297,3 +297,12 @@ def solver_points(study: Study) -> list[dict[str, str]]:
     """Return the same of every point that another solver makes once more."""
     points = [point for point in all_points(study) if point["a"] in study.compared]
     return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]
+
+
+def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
+    """Return what a study goes without although one might look for it, a line each; given : its config as written."""
+    if study.blocks == 1:
+        return ["one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"]
+    if given.get("basins") and "basins" not in study.left_out and not study.basin_maps:
+        return ["basins: no map: give basins.a; none of its usual values is in the grid"]
+    return []

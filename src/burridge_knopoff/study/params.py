@@ -1,0 +1,63 @@
+"""The parts of a config that decide what a job makes: its rule has these among its params, and no others."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection
+from typing import Any
+
+from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
+from burridge_knopoff.provenance.seal import identity
+from burridge_knopoff.study.model import MODEL_KEYS
+from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.yaml_file import ConfigError
+
+
+def keys(study: Study, *names: str) -> dict[str, Any]:
+    """Return these keys of the config."""
+    return {name: study.config[name] for name in names}
+
+
+def basin_keys(study: Study, *unused: str) -> dict[str, Any]:
+    """Return the keys of `basins` that a job uses, without those that have a name of their own or change no map."""
+    others = {"a", "initial", "threads", *unused}
+    return {key: value for key, value in study.config["basins"].items() if key not in others}
+
+
+def motion_config(study: Study) -> dict[str, Any]:
+    """Return how kinds of motion are distinguished."""
+    return {**study.config["motion"], **keys(study, "synchronization_threshold", "section")}
+
+
+def model_config(study: Study, laws: Collection[str] | None = None) -> dict[str, Any]:
+    """Return what decides the models of a study under some of its laws, by default all: see `study.model.model_of`."""
+    chosen = study.laws if laws is None else laws
+    return {**keys(study, *MODEL_KEYS), "laws": {law: study.config["laws"][law] for law in chosen}}
+
+
+def other_length_config(study: Study, laws: Collection[str] | None = None) -> dict[str, Any]:
+    """Return the same for chains of other lengths; raises ConfigError if the study has one length only."""
+    key = study.single_length_key
+    if key:
+        raise ConfigError(
+            f"chain.{key}: got {study.config['chain'][key]}, expected one number for chains of another length"
+        )
+    return model_config(study, laws)
+
+
+def proved_config(study: Study) -> dict[str, Any]:
+    """Return what decides the models of the proof; raises ConfigError if the proof covers no model of the study."""
+    if not study.proved_laws:
+        raise ConfigError(
+            f"study {study.name}: nothing to prove: the proof is of the paper's chain of 3 blocks and its two laws "
+            f"(linearized: any v, at most {LARGEST_V:g} under a symmetric contact; nonlinear: v = {NONLINEAR_V:g})"
+        )
+    return model_config(study, study.proved_laws)
+
+
+def cache_folder(study: Study, what: str, *decides: Any) -> str:
+    """Return where a long job caches what it finds, for a run with other values of a, or after a kill.
+
+    decides : all that decides it but the values of a
+    """
+    return f".snakemake/study_cache/{study.name}/{what}/{identity(json.dumps(decides))}"
