@@ -50,7 +50,7 @@ def cloud(scale: float, shift: float) -> Alteration:
     """Of the section points from plus."""
 
     def move(world: Summaries) -> None:
-        bifurcation = world["bifurcation"]
+        bifurcation = world["bifurcation_diagram"]
         of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
         bifurcation["crossing_velocity"].values[of_plus] *= scale
         bifurcation["crossing_velocity"].values[of_plus] += shift
@@ -62,7 +62,7 @@ def few_points(where: Callable[[np.ndarray], np.ndarray]) -> Alteration:
     """Let the section points from plus be one, and those of the attractors."""
 
     def move(world: Summaries) -> None:
-        bifurcation = world["bifurcation"]
+        bifurcation = world["bifurcation_diagram"]
         chosen = np.repeat(
             (bifurcation["initial"].values == 1) & where(bifurcation["a"].values), bifurcation["crossing_count"].values
         )
@@ -75,7 +75,7 @@ def line_from(first: float) -> Alteration:
     """Put the section points from plus on the line of minus from a value of a on, and below it before."""
 
     def move(world: Summaries) -> None:
-        bifurcation = world["bifurcation"]
+        bifurcation = world["bifurcation_diagram"]
         count = bifurcation["crossing_count"].values
         a, initial = (np.repeat(bifurcation[name].values, count) for name in ("a", "initial"))
         velocity = bifurcation["crossing_velocity"].values
@@ -86,7 +86,7 @@ def line_from(first: float) -> Alteration:
 
 def no_crossings(world: Summaries) -> None:
     """Let the runs from plus cross the section downward only."""
-    bifurcation = world["bifurcation"]
+    bifurcation = world["bifurcation_diagram"]
     of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
     bifurcation["crossing_direction"].values[of_plus] = -1
 
@@ -95,10 +95,10 @@ def crossing(chosen: Callable[[np.ndarray], np.ndarray]) -> Alteration:
     """Leave the section points of some values of a."""
 
     def leave(world: Summaries) -> None:
-        points = world["bifurcation"]
+        points = world["bifurcation_diagram"]
         there = chosen(points["a"].values)
         each = np.repeat(there, points["crossing_count"].values)
-        world["bifurcation"] = points.isel(point=there, crossing=each)
+        world["bifurcation_diagram"] = points.isel(point=there, crossing=each)
 
     return leave
 
