@@ -1,4 +1,4 @@
-# The study: config -> points -> summaries -> figures -> report. `snakemake -c2` here runs it; README.md tells more.
+# The study: config -> points -> summaries -> figures -> report. `snakemake -c2` here runs it, see README.md.
 from snakemake.utils import min_version
 
 min_version("9.22")
@@ -10,11 +10,11 @@ if not workflow.configfiles:
     configfile: f"{workflow.current_basedir}/config/paper.yaml"
 
 
-# What `snakemake --report` says on its first page.
+# First page of `snakemake --report`.
 report: "workflow/report/workflow.rst"
 
 
-# The least in which `make setup` works: Python, a C compiler and make. Used only if jobs are to run in containers.
+# A minimal image in which `make setup` works: Python, a C compiler and make. Only used to run jobs in containers.
 container: "docker://python:3.11"
 
 
@@ -24,7 +24,7 @@ include: "workflow/rules/seals.smk"
 include: "workflow/rules/simulate.smk"
 
 
-# Stages that the config can leave out, with all files that they make.
+# Optional stages, with all files that they make.
 for stage in ("attractors", "basins", "bifurcations", "phases", "solvers", "proof"):
     if stage not in STUDY.left_out:
 

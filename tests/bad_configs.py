@@ -151,11 +151,14 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         f"{GOOD}laws: {{m: {{formula: log(3 - a*u)/log(3)}}}}\nv: 40\n",
         ["v: got 40.0, expected one up to ten times which the law m is analytic"],
     ),
-    "springs": (f"{GOOD}chain: {{coupling: [1, 2, 3]}}\n", ["chain.coupling: 3 numbers for 2 springs"]),
-    "ring_springs": (f"{GOOD}chain: {{coupling: [1, 2], ends: ring}}\n", ["chain.coupling: 2 numbers for 3 springs"]),
-    "pulls": (f"{GOOD}chain: {{pulling: [1, 2]}}\n", ["chain.pulling: 2 numbers for 3 blocks"]),
+    "springs": (f"{GOOD}chain: {{coupling: [1, 2, 3]}}\n", ["chain.coupling: got 3 numbers, expected 1, or 2"]),
+    "ring_springs": (
+        f"{GOOD}chain: {{coupling: [1, 2], ends: ring}}\n",
+        ["chain.coupling: got 2 numbers, expected 1, or 3"],
+    ),
+    "pulls": (f"{GOOD}chain: {{pulling: [1, 2]}}\n", ["chain.pulling: got 2 numbers, expected 1, or 3"]),
     "pull_word": (f"{GOOD}chain: {{pulling: all}}\n", ["chain.pulling: 'all'", "neighbours"]),
-    "thresholds": (f"{GOOD}chain: {{threshold: [1]}}\n", ["chain.threshold: 1 numbers for 3 blocks"]),
+    "thresholds": (f"{GOOD}chain: {{threshold: [1]}}\n", ["chain.threshold: got 1 numbers, expected 1, or 3"]),
     "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: got 0, expected a number between 1e-06 and 1e+06"]),
     "spring_text": (f"{GOOD}chain: {{coupling: [1, stiff]}}\n", ["chain.coupling[1]: 'stiff'", "a number"]),
     "spring_word": (
@@ -188,7 +191,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         f"study: x\n{GRID}initial: {{m: {{position: [0, 0], velocity: [0, -0.1]}}}}\n",
         ["initial.m.velocity: -0.1", "one_sided"],
     ),
-    "no_map": (f"{GOOD}solver: {{nonlinear: map}}\n", ["solver.nonlinear: 'map'", "no straight line", "series | rk4"]),
+    "no_map": (
+        f"{GOOD}solver: {{nonlinear: map}}\n",
+        ["solver.nonlinear: 'map'", "not linear in the speed", "series | rk4"],
+    ),
     "steep_map": (
         f"study: x\na: [0.1, 2.5]\n{STATES}solver: {{linearized: map}}\n",
         ["solver.linearized: 'map'", "at a = 2.5", "steeper than 2"],

@@ -65,7 +65,12 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, "edge_of_synchrony", "edge_of_chaos", "judge: got 'synchronization.edge_of_chaos', expected one of"),
         (EDGE, "edge_of_synchrony", "worst", "judge: got 'synchronization.worst', expected one of"),
         (EDGE, "synchronization.edge", "chaos.edge", "judge: got 'chaos.edge_of_synchrony', expected"),
-        (EDGE, ", loose: 0.01", "", "parameters.loose: missing; needed by synchronization.edge_of_synchrony"),
+        (
+            EDGE,
+            ", loose: 0.01",
+            "",
+            "parameters.loose: missing, expected a value for synchronization.edge_of_synchrony",
+        ),
         (
             EDGE,
             "loose: 0.01",

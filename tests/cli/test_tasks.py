@@ -82,7 +82,7 @@ def test_the_synchronized_orbit(capsys):
         orbit = synchronized_orbit(MODEL.at(a))
         printed = said(capsys, "orbit", "--law", "linearized", "--a", str(a))
         assert f"period       {orbit.period:.9f}\n" in printed
-        assert f"part mirror blocks: {multipliers(orbit).transverse.real:.6g}\n" in printed
+        assert f"mirror-breaking perturbations: {multipliers(orbit).transverse.real:.6g}\n" in printed
         assert f"stability    {words} the unit circle\n" in printed
         assert printed.count(" stops\n") == printed.count(" starts\n") == 3
 
@@ -92,7 +92,7 @@ def test_the_orbit_that_a_state_comes_to(capsys):
     printed = said(capsys, "orbit", *GIVEN, "--initial", "plus", "--events", "4")
     assert f"period       {orbit.period:.9f}\n" in printed
     assert "symmetry     symmetric\n" in printed
-    assert f"stops        {' '.join(map(str, orbit.stop_counts))} of each block" in printed
+    assert f"stops        {' '.join(map(str, orbit.stop_counts))} (each block, in a period)" in printed
     assert printed.endswith(f"and {len(orbit.events) - 4} more: --events {len(orbit.events)}\n")
 
 
@@ -105,7 +105,7 @@ def test_exponents(capsys, tmp_path):
     for number, value in enumerate(trajectory.lyapunov_exponent, 1):
         assert f"\n{number}  {value + 0.0:.6f}" in printed
     assert f"motion: {words_of(motion_of_run(vars(trajectory), True, MOTION), MOTION)}\n" in printed
-    value, error = map(float, printed.split("beside it: ")[1].splitlines()[0].split(" +- "))
+    value, error = map(float, printed.split("symmetric motion: ")[1].splitlines()[0].split(" +- "))
     orbit = synchronized_orbit(MODEL)
     assert value == pytest.approx(np.log(multipliers(orbit).transverse.real) / orbit.period, abs=4.0 * error)
     assert error < 0.003

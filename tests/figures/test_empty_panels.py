@@ -90,13 +90,13 @@ def test_differences_of_0_lie_at_the_foot_and_are_said():
     # The shading leaves the columns alike.
     assert np.allclose(figure.axes[0].get_xlim(), (0.098, 0.202))
     (legend,) = figure.legends
-    assert "not known" not in [text.get_text() for text in legend.get_texts()]
+    assert "undecided" not in [text.get_text() for text in legend.get_texts()]
 
 
 def test_laws_of_which_nobody_knows_whether_they_agree_have_open_symbols():
     figure = agreement.draw(compared(agrees=[1, -1]))
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()][-1] == "not known"
+    assert [text.get_text() for text in legend.get_texts()][-1] == "undecided"
     for panel in figure.axes:
         (hollow,) = [line for line in panel.get_lines() if line.get_markerfacecolor() == "white"]
         assert np.isfinite(hollow.get_ydata()).tolist() == [False, True]
@@ -109,7 +109,7 @@ def test_a_distance_of_0_is_said():
         {"transient": 50.0, "law": "linearized", "initial": "symmetric"},
     )
     other = run.assign(distance=run["distance"] + 0.1)
-    assert words(distance.draw({"symmetric": run, "plus": other})) == [["$J$ is 0 at all times"], []] * 2
+    assert words(distance.draw({"symmetric": run, "plus": other})) == [["$J = 0$ at all times"], []] * 2
 
 
 def test_windows_of_no_attractors_keep_their_axis():

@@ -25,4 +25,4 @@ def test_long_chains_are_drawn_by_their_ends(blocks, names):
 
 def test_what_differs_between_blocks_is_said():
     said = words(blocks=3, coupling=[1.0, 1.5, 2.5], threshold=[1.0, 1.2, 1.0], ends="ring")
-    assert {"$1$", "$1.5$", "$F=1.2$", "a spring of strength $2.5$ joins block 3 to block 1"} <= set(said)
+    assert {"$1$", "$1.5$", "$F=1.2$", "a spring of strength $2.5$ couples block 3 to block 1"} <= set(said)

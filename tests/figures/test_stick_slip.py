@@ -45,7 +45,7 @@ def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, bloc
 def test_two_blocks_have_no_ratio_to_a_middle_one():
     figure = draw(cycles(2), "nonlinear")
     labels = [panel.get_ylabel().splitlines()[0] for panel in figure.axes]
-    assert labels == ["time between stops", "correlation of", "share of time stuck"]
+    assert labels == ["time between stops", "correlation of", "fraction of time stuck"]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "block 1",
         "block 2",

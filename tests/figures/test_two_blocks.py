@@ -29,4 +29,4 @@ def test_each_state_for_which_the_laws_disagree_is_marked(a):
     assert (both_pulled[:, :-1] == 1.0).all()
     (legend,) = figure.legends
     words = [text.get_text() for text in legend.get_texts()]
-    assert words == ["linearized law", "nonlinear law", "not known", "the laws disagree"]
+    assert words == ["linearized law", "nonlinear law", "undecided", "the laws disagree"]

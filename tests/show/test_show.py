@@ -115,7 +115,7 @@ def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
 
 def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
     alone = shutil.copy(study / "summary/basins.nc", tmp_path)
-    assert "its figure takes attractors.nc besides" in shown(capsys, alone, "--plot", "x.png", code=2)
+    assert "its figure also needs attractors.nc" in shown(capsys, alone, "--plot", "x.png", code=2)
     assert "x.doc: got '.doc', expected .png | .pdf | .svg" in shown(capsys, alone, "--plot", "x.doc", code=2)
     assert "there is no folder no" in shown(capsys, alone, "--plot", "no/x.png", code=2)
 

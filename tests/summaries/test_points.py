@@ -65,7 +65,7 @@ def test_points_are_read(grid):
     ("change", "reason"),
     [
         ({"command": "bk simulate"}, "is another run: "),
-        ({"sources": "0" * 16}, "was made by other sources than those of now"),
+        ({"sources": "0" * 16}, "was made by other sources"),
     ],
 )
 def test_another_file_is_refused(grid, read, change, reason):

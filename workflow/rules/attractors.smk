@@ -1,4 +1,4 @@
-# Attractors: found for each law along the whole grid of a and between its values, then put together.
+# Attractors: found for each law along the grid of a and between its values, then merged.
 
 OF_LAW = [
     f"{RESULTS}/{folder}/{{law}}.nc" for folder in ("attractors", "refined", "returns")
@@ -8,7 +8,7 @@ OF_LAW = [
 RETURNS = OF_LAW[2]
 
 
-# What decides them under one law, but for the values of a.
+# The settings that decide the attractors of one law, except the values of a.
 SEARCH_PARAMS = {
     **keys(STUDY, "initial", "start", "attractors", "refine"),
     "motion": motion_config(STUDY),
@@ -23,11 +23,11 @@ rule attractors_of_law:
         f"{RESULTS}/logs/attractors/{{law}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/attractors/{{law}}.tsv"
-    # The longest jobs of a study: right after the points and the figures of the paper.
+    # The longest jobs of a study, started right after the points and the figures of the paper.
     priority: 2
     threads: SHARED_CORES
     resources:
-        # Set by a profile where threads are the width of a group: `cores` of workflow/profiles/slurm.
+        # A profile sets this if threads are the width of a group: `cores` in workflow/profiles/slurm.
         cpus_per_task=lambda wildcards, threads: threads,
         mem_mb=lambda wildcards, threads: 300 + 100 * threads,
         runtime=240,
@@ -51,7 +51,7 @@ rule attractors_of_law:
 
 
 rule attractors:
-    """Put the attractors of all friction laws together, with their branches, basin fractions and rotation numbers."""
+    """Merge the attractors of all friction laws, with their branches, basin fractions and rotation numbers."""
     input:
         grid=expand(OF_LAW[0], law=STUDY.laws),
         refined=expand(OF_LAW[1], law=STUDY.laws),

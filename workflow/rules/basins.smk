@@ -1,8 +1,8 @@
-# Basins of attraction: tiles of maps over a plane of initial states, and the maps put together.
+# Basins of attraction: tiles of maps over a plane of initial states, and their merge.
 TILE = f"{RESULTS}/basins/{{law}}/a{{a}}/tile{{tile}}.nc"
 PLANE_STATE = STUDY.config["basins"]["initial"]
 
-# What both kinds of jobs of a map depend on.
+# Settings that both kinds of jobs of a map depend on.
 BASIN_PARAMS = {
     "state": {"name": PLANE_STATE, **STUDY.config["initial"][PLANE_STATE]},
     **keys(STUDY, "start", "attractors"),
@@ -54,7 +54,7 @@ use rule basin_tile as basin_pairs with:
 
 
 rule basins:
-    """Put the tiles and pairs together into maps of the basins of attraction."""
+    """Merge the tiles and pairs into basin maps."""
     input:
         attractors=f"{SUMMARY}/attractors.nc",
         tiles=[

@@ -1,4 +1,4 @@
-# Bifurcations: where each branch of attractors begins, ends or changes, and by what; for each law, then put together.
+# Bifurcations: bifurcations and crises of the branches of attractors, for each law, then merged.
 
 
 rule bifurcations_of_law:
@@ -36,7 +36,7 @@ rule bifurcations_of_law:
 
 
 rule bifurcations:
-    """Put the bifurcations of all friction laws together."""
+    """Merge the bifurcations of all friction laws."""
     input:
         expand(rules.bifurcations_of_law.output, law=STUDY.laws),
     output:

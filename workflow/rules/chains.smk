@@ -1,6 +1,6 @@
-# Longer chains: an optional stage with a target of its own, `snakemake -c2 chains`.
+# Longer chains: an optional stage with its own target, `snakemake -c2 chains`.
 
-# Long chains take longest; they begin first.
+# Long chains take longest and start first.
 CHAIN_BLOCKS = sorted(CHAINS["blocks"], reverse=True)
 
 
@@ -54,7 +54,7 @@ rule watch_chain:
 
 
 rule chains_summary:
-    """Put the fraction of synchronizing initial states together over chain length and a."""
+    """Merge the fractions of synchronizing initial states over chain length and a."""
     input:
         expand(rules.watch_chain.output, blocks=CHAIN_BLOCKS),
     output:

@@ -1,8 +1,8 @@
-# Claims: each statement of the paper judged by the summaries.
+# Claims: the verdict on each statement of the paper, from the summaries.
 
 
 rule claims:
-    """Judge every claim of the paper by the summaries."""
+    """Judge every claim of the paper from the summaries."""
     input:
         expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
     output:

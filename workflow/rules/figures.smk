@@ -2,14 +2,14 @@
 from burridge_knopoff.figures.description import study_figures
 from burridge_knopoff.study.stages import CHAIN_SUMMARIES
 
-# Those of longer chains too, which have a target of their own: it refuses a chain that has one length only.
+# Includes figures of longer chains, whose own target refuses a chain of fixed length.
 DESCRIPTIONS = study_figures(STUDY, CHAIN_SUMMARIES)
 SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
     law=STUDY.shown_law, a=STUDY.shown_point, initial="{initial}"
 )
 
 
-# The figures of the paper; of the logger's own words they are the first.
+# The figures of the paper, which the display announces first.
 OF_PAPER = [figure for figure in DESCRIPTIONS if figure.paper]
 PLAN.first = [f"figure_{figure.name}" for figure in OF_PAPER]
 
@@ -22,9 +22,9 @@ rule curves:
         f"the figures of the paper are in {FIGURES}"
 
 
-# Without those of the optional stage.
+# Without the figures of the optional stage.
 rule figures:
-    """Draw all figures but that of longer chains."""
+    """Draw all figures except that of longer chains."""
     input:
         pictures([figure for figure in DESCRIPTIONS if "chains" not in figure.inputs]),
 
@@ -35,7 +35,7 @@ for figure in DESCRIPTIONS:
         name:
             f"figure_{figure.name}"
         input:
-            # Of one initial state if the name of the picture has it, else of each.
+            # The runs of one initial state if the picture's name has it, else of all.
             expand(
                 SHOWN_RUNS,
                 initial=("{initial}" if "{initial}" in figure.file else STUDY.initial),
@@ -54,7 +54,7 @@ for figure in DESCRIPTIONS:
             f"{RESULTS}/logs/figure_{figure.file}.log",
         benchmark:
             f"{RESULTS}/benchmarks/figure_{figure.file}.tsv"
-        # What a reader wants first runs first.
+        # The figures wanted first run first.
         priority: 4 if figure.paper else 0
         group:
             group("figures")
@@ -73,7 +73,7 @@ for figure in DESCRIPTIONS:
         script:
             "../scripts/{params.script}.py"
 
-    # Written inside, it would be the same for all of them; an importing workflow names rules by itself.
+    # Set here, since a docstring inside would be the same for all; an importing workflow names rules itself.
     if not IMPORTED:
         workflow.get_rule(f"figure_{figure.name}").docstring = (
             f"Draw {figure.subject}"

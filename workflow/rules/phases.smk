@@ -1,4 +1,4 @@
-# Phases: states by the phases of their end blocks, labelled for each law by the attractors that are known.
+# Phases: states by the phases of their end blocks, labelled for each law by the known attractors.
 
 PHASES = STUDY.config["phases"]
 
@@ -34,7 +34,7 @@ rule phases_of_law:
 
 
 rule phases:
-    """Put the outcomes of initial phases of all friction laws together."""
+    """Merge the outcomes of initial phases of all friction laws."""
     input:
         expand(rules.phases_of_law.output, law=STUDY.laws),
     output:

@@ -1,7 +1,7 @@
 # Report: one HTML file that opens offline, with the verdicts, charts, figures and commands of the study.
 import hashlib
 
-# Results of the optional stage are no inputs: the report must not make them. It shows those that are there.
+# Results of the optional stage are not inputs, since the report must not make them. It shows existing ones.
 OPTIONAL_RESULTS = {
     path: hashlib.sha256(Path(path).read_bytes()).hexdigest()
     for path in (f"{SUMMARY}/chains.nc", f"{FIGURES}/chains.png")

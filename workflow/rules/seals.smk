@@ -1,5 +1,5 @@
-# Seals: what each file of the study should be. Jobs write it with their files, and the record of the study has it for
-# every reader, as `bk check`.
+# Seals: the expected content of each file of the study. Jobs write it with their files; the record of the study has it
+# for readers such as `bk check`.
 from functools import cache
 
 from snakemake.io import apply_wildcards
@@ -8,7 +8,7 @@ from snakemake.iocontainers import Wildcards
 from burridge_knopoff.check.leftovers import study_files
 from burridge_knopoff.provenance.seal import BadFile, canonical, read_seal
 
-# Params that decide nothing in a file, but say where things lie and how they are named to `snakemake`.
+# Params that decide nothing in a file: paths, and arguments of `snakemake`.
 NOT_SEALED = {
     "seals",
     "script",
@@ -18,18 +18,18 @@ NOT_SEALED = {
     "optional",
     "arguments",
 }
-# What points are is decided by their commands; a file that is made from them has these among its params.
+# Points are described by their commands, which are among the params of a file made from them.
 OF_POINTS = ("points/", "solvers/")
 
 
 def seals(wildcards, output):
-    """Return {path: what the file is} of the output of a job: a param of every rule but those of points."""
+    """Return {path: description} of the output of a job: a param of every rule except those of points."""
     return {f"{path}": seal_of(f"{path}") for path in output}
 
 
 @cache
 def seal_of(path):
-    """Return what a file is: its name, the params of its rule, and a digest of what each of its inputs is."""
+    """Describe a file: its name, the params of its rule, and a digest of the description of each input."""
     made_by, wildcards = next(
         (each, found.groupdict())
         for each in workflow.rules
@@ -54,17 +54,17 @@ def seal_of(path):
 
 
 def below(path):
-    """Return the name of a file below the results of the study."""
+    """Return the name of a file relative to the results of the study."""
     return os.path.relpath(path, RESULTS)
 
 
 def recorded_seals():
-    """Return {name below the results: what the file should be} of all files of the study but points."""
+    """Return {name in the results: expected description} of all files of the study except points."""
     return {name: seal_of(f"{RESULTS}/{name}") for name in study_files(STUDY)}
 
 
 def remove_damaged():
-    """Remove texts and pictures that are damaged, so that the run makes them again: most of them no job reads."""
+    """Remove damaged texts and pictures, so that the run remakes them; most of them are read by no job."""
     for name in study_files(STUDY):
         path = Path(RESULTS, name)
         if path.suffix != ".nc" and path.is_file():
@@ -78,6 +78,6 @@ def remove_damaged():
                     path.unlink()
 
 
-# Not in the processes of jobs.
+# Only in the main process, not in jobs.
 if workflow.is_main_process:
     remove_damaged()

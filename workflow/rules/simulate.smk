@@ -31,6 +31,6 @@ rule simulate:
         sources=POINT_SOURCES,
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, a = {wildcards.a}"
-    # A run that ended at a limit is a result too.
+    # A run that hit a limit is a result too.
     shell:
         "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"

@@ -1,4 +1,4 @@
-# Solvers: the points of a few values of a once more, by every other solver of each law.
+# Solvers: the points at a few values of a, repeated with every other solver of each law.
 
 from dataclasses import asdict
 
@@ -10,7 +10,7 @@ SOLVER_POINTS = solver_points(STUDY)
 
 
 use rule simulate as simulate_solver with:
-    """Simulate one point again by another solver."""
+    """Simulate one point again with another solver."""
     output:
         SOLVER_POINT,
     log:

@@ -10,7 +10,7 @@ from snakemake.utils import update_config
 
 from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
 
-# Before anything imports the kernel. What is to run can be seen without one.
+# Before anything imports the kernel. A dry run needs no kernel.
 try:
     check_kernel(compiled=not workflow.output_settings.dryrun)
 except KernelError as error:
@@ -43,7 +43,7 @@ from burridge_knopoff.study.yaml_file import read_config, read_yaml
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import refused_call, refused_cluster
 
-# Another Snakefile may import this one as a module; then it is the other that Snakemake calls the main one.
+# Another Snakefile may import this one as a module; Snakemake then calls the other one the main Snakefile.
 ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
 SNAKEFILES = [ROOT / "Snakefile", ROOT / "workflow/Snakefile"]
 IMPORTED = Path(workflow.main_snakefile).resolve() not in SNAKEFILES
@@ -66,7 +66,7 @@ try:
     CLAIMS_FILE = ROOT / "config/claims.yaml"
     CLAIMS = read_yaml(CLAIMS_FILE)
     checked_claims(CLAIMS, CLAIMS_FILE, picture_names({*PAPER_STATES, *STUDY.initial}))
-    # What Snakemake itself would tell in a traceback. Results may be read-only until a job is to run.
+    # Snakemake itself would report this with a traceback. Results may be read-only until a job has to run.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
     check_owner(RESULTS, CONFIG_FILE, WRITTEN)
@@ -75,8 +75,8 @@ except (ValueError, OSError) as error:
 
 SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
 
-# Cores for a long job, which shares them out among processes: those of all laws run side by side, but each has two at
-# least, since on one core each they would not end together. Where no job is to run, as for --unlock, there need be no number of cores.
+# Cores of a long job, shared among its processes. The jobs of all laws run side by side, each with at least two cores,
+# since with one core each they would not end together. Without jobs, as for --unlock, the number may be missing.
 SHARED_CORES = max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
 
 # How the study is named to `snakemake`, by its config alone and from another folder.
@@ -102,7 +102,7 @@ PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
 PLAN.record = record_study
 
 
-# Jobs find the `bk` of this environment, activated or not.
+# Jobs use the `bk` of this environment, whether activated or not.
 shell.prefix(
     f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
 )
@@ -135,7 +135,7 @@ def prepare_results():
 
 
 def sources(script, *modules):
-    """Return the fingerprint of a script, of modules that it picks by name, and of all that they import."""
+    """Return the fingerprint of a script, of modules that it loads by name, and of all their imports."""
     return source_fingerprint(
         ROOT / f"workflow/scripts/{script}.py",
         *(f"burridge_knopoff.{module}" for module in modules),

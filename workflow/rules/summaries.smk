@@ -1,13 +1,13 @@
-# Summaries of points, and of models alone: a netCDF file a question, by the module of its name in burridge_knopoff.summaries.
+# Summaries of points, and of models alone: one netCDF file a question, by the module of its name in `summaries`.
 from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.study.stages import TEXTS
 
-# What the figures of the paper show comes first.
+# Summaries in the figures of the paper come first.
 OF_PAPER_FIGURES = {
     name for figure in figure_descriptions() if figure.paper for name in figure.inputs
 }
 
-# What a summary is for, and of; what else it reads; keys of the config that it uses; texts beside it, {suffix: result}.
+# Purpose and inputs of a summary, other files that it reads, config keys that it uses, and texts: {suffix: result}.
 SUMMARIES = {
     "mean_distance": {
         "docstring": "Average the distance J between the end blocks over each run.",
@@ -45,7 +45,7 @@ SUMMARIES = {
         "of": "models",
     },
 }
-# Of these and of the stages that the study has.
+# These summaries, and those of the study's stages.
 MADE = [*SUMMARIES, *STUDY.stage_summaries]
 CLAIMS_MADE = (
     multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md")
@@ -124,6 +124,6 @@ for name, row in SUMMARIES.items():
         script:
             "../scripts/{params.script}.py"
 
-    # Written inside, it would be the same for all of them; an importing workflow names rules by itself.
+    # Set here, since a docstring inside would be the same for all; an importing workflow names rules itself.
     if not IMPORTED:
         workflow.get_rule(name).docstring = row["docstring"]

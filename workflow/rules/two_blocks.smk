@@ -1,18 +1,18 @@
-# Two blocks under each law: a statement of the paper on them is judged in every study.
+# Two blocks under each law: every study judges a statement of the paper about them.
 from burridge_knopoff.attractors.settings import OF_GIVEN_STATES
 
 CHAINS = STUDY.config["chains"]
 
 
 rule two_blocks:
-    """Compare the motion of two blocks under each friction law with that under the first one."""
+    """Compare the motion of two blocks under each friction law with that under the first law."""
     output:
         f"{SUMMARY}/two_blocks.nc",
     log:
         f"{RESULTS}/logs/two_blocks.log",
     benchmark:
         f"{RESULTS}/benchmarks/two_blocks.tsv"
-    # A long job that waits for nothing: begun early, so that it is not left alone at the end.
+    # A long job that waits for nothing: started early, so that it does not run alone at the end.
     priority: 1
     threads: SHARED_CORES
     resources:
@@ -26,7 +26,7 @@ rule two_blocks:
         two_blocks=CHAINS["two_blocks"],
         settings=keys(STUDY, "start", "transient", "window"),
         search={key: STUDY.config["attractors"][key] for key in OF_GIVEN_STATES},
-        # A block of the study's section need not be there: the sum always is.
+        # The block of the study's section may not exist here; the sum always does.
         motion={
             key: value
             for key, value in motion_config(STUDY).items()

@@ -1,4 +1,4 @@
-"""Attractors of all laws, their branches numbered alike where one law turns into the other."""
+"""Attractors of all laws; branches that continue into each other have the same number."""
 
 import logging
 import sys

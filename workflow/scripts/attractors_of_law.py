@@ -1,4 +1,4 @@
-"""Attractors of one law along a, at the values of the grid and at those put in between."""
+"""Attractors of one law along a, at the values of the grid and at values added between them."""
 
 import logging
 import sys
@@ -21,7 +21,7 @@ refine = Refine(**params.refine)
 share = {"processes": snakemake.resources.cpus_per_task, "folder": params.kept}
 found = continue_attractors(models, settings, motion, refine, starts=initial, start=params.start, **share)
 
-# Not before: the processes that the search is shared out among would each hold what writes files, 40 MB.
+# Imported late: each process of the search would otherwise hold another 40 MB, for writing files.
 from burridge_knopoff.attractors.stored_returns import returns_of_law
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.summaries import attractors, refined

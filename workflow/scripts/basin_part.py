@@ -1,4 +1,4 @@
-"""Basins: one tile of a map, or its pairs of near states."""
+"""Basins: one tile of a map, or its pairs of nearby states."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Summary: maps of basins of attraction."""
+"""Summary: basin maps."""
 
 import sys
 

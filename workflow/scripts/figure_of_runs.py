@@ -1,9 +1,9 @@
-"""Figure: drawn by the module of its name, of single runs."""
+"""Figure of single runs, drawn by the module of its name."""
 
 import gc
 import sys
 
-# What imports and drawing leave behind goes with the process; looking for it takes a tenth of the time.
+# No garbage collection: the process ends soon, and collecting takes a tenth of the time.
 gc.disable()
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 

@@ -1,4 +1,4 @@
-"""Summary: the files of a stage, one for each of its jobs, put together by the module of its rule."""
+"""Summary: the files of a stage's jobs, merged by the module of its rule."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Summary: what is proved of the synchronized orbit under each law."""
+"""Summary: proofs of the synchronized orbit under each law."""
 
 import sys
 

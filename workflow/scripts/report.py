@@ -1,4 +1,4 @@
-"""Report: everything that a study found, in one HTML file."""
+"""Report: all results of a study in one HTML file."""
 
 import sys
 from pathlib import Path

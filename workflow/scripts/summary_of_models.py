@@ -1,4 +1,4 @@
-"""Summary: made by the module of its name, of the models of a study, without a point."""
+"""Summary of the models of a study, made by the module of its name."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Summary: made by the module of its name, of points, of other summaries, and of keys of the config."""
+"""Summary of points, other summaries and keys of the config, made by the module of its name."""
 
 import sys
 

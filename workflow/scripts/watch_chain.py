@@ -1,4 +1,4 @@
-"""Chain file: what becomes of the sampled initial states of one number of blocks."""
+"""Chain file: the outcome of the sampled initial states for one number of blocks."""
 
 import sys
 

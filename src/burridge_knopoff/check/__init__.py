@@ -1,1 +1,1 @@
-"""What is wrong with the files of a study, and which of them are not part of it."""
+"""Checks of the files of a study: wrong files, and files that do not belong to it."""

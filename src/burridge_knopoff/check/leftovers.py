@@ -1,4 +1,4 @@
-"""The files of a study by their names: those that it has, lacks, or had once by its config."""
+"""The files of a study by name: existing, missing, and left over from an earlier config."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES, TEXTS
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
-#: What stands in the names of files; of any other name no file is ever held for left over.
+#: Patterns of the parts of file names; a file with any other name never counts as leftover.
 _WILDCARDS = {
     "law": r"[a-z]\w*",
     "initial": r"[A-Za-z]\w*",
@@ -22,16 +22,16 @@ _WILDCARDS = {
     "blocks": r"[1-9]\d*",
 }
 
-#: The stage whose job makes a file, if it is not that of the file's name.
+#: The stage whose job makes a file, if it differs from the stage in the file's name.
 _STAGE_OF = {name: stage for stage, names in SUMMARIES.items() for name in names}
 
-#: The forms of the files below the results that a job makes and, without suffix, of its log; and all wildcards that a
-#: study has there: one without any for files that it has, none for files that it has not.
+#: The name patterns of the files that a job makes and, without suffix, of its log; and all combinations of wildcards in
+#: the study: one empty combination for a file without wildcards, none if the study does not have the file.
 Named = tuple[list[str], str, list[dict[str, str]]]
 
 
 def leftovers(results: Path, study: Study) -> list[Path]:
-    """Return the results, logs and benchmarks of points, stages and figures that a study does not have."""
+    """Return results, logs and benchmarks of points, stages and figures that the study does not have."""
     patterns: list[str] = []
     known: set[str] = set()
     for files, log, named in (*run_files(study), *_other_files(study)):
@@ -45,23 +45,23 @@ def leftovers(results: Path, study: Study) -> list[Path]:
         for path, name in names.items()
         if pattern.fullmatch(name)
         and name not in known
-        # What a link leads to is not the study's own.
+        # The target of a link does not belong to the study.
         and path.resolve() == whole / name
         and path.is_file()
     ]
 
 
 def study_files(study: Study) -> list[str]:
-    """Return the names, below its results, of all files of a study but points and their logs."""
+    """Return the names, relative to its results, of all files of a study except points and their logs."""
     return [
         file.format(**wildcards) for files, _, named in _other_files(study) for wildcards in named for file in files
     ]
 
 
 def unmade(results: Path, study: Study) -> dict[Path, Path]:
-    """Return {file: log} of what is not there, besides points, although its job has begun, which its log shows.
+    """Return {file: log} of missing files, except points, whose job has started, as its log shows.
 
-    What has no log was not asked for yet, or waits for what is missing itself.
+    A file without a log was not requested yet, or waits for other missing files.
     """
     made = {
         results / file.format(**wildcards): results / f"logs/{log}.log".format(**wildcards)
@@ -73,7 +73,7 @@ def unmade(results: Path, study: Study) -> dict[Path, Path]:
 
 
 def run_files(study: Study) -> list[Named]:
-    """Return the point files of all runs: the wildcards of each are the arguments of `Study.command`."""
+    """Return the point files of all runs, with the wildcards of each as arguments of `Study.command`."""
     log = POINT.removesuffix(".nc")
     return [
         ([f"points/{POINT}"], f"simulate/{log}", all_points(study)),
@@ -93,14 +93,14 @@ def _other_files(study: Study) -> Iterator[Named]:
     numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
     yield ["chains/blocks{blocks}.nc"], "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
     absent = study.absent_summaries
-    # Those that every study has are known by the figures of them.
+    # Summaries that every study has are identified by their figures.
     shown = {name for figure in figure_descriptions() if not figure.of_runs for name in figure.inputs}
     for name in sorted(OPTIONAL_SUMMARIES | shown):
         files = [f"summary/{name}.{suffix}" for suffix in ("nc", *TEXTS.get(name, ()))]
         yield files, _STAGE_OF.get(name, name), [{}] if name not in absent else []
     files = [f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")]
     yield files, "claims", [{}] if "claims" in study.stages else []
-    # A picture of a single run is named for its state.
+    # A picture of a single run has the name of its state.
     drawn = {figure.file for figure in study_figures(study, study.chain_summaries)}
     for figure in figure_descriptions():
         states = study.initial if figure.file in drawn else ()
@@ -110,7 +110,7 @@ def _other_files(study: Study) -> Iterator[Named]:
 
 
 def delete(results: Path, paths: list[Path]) -> None:
-    """Delete files of a study, and the folders in it that are empty without them; raises OSError if one cannot be."""
+    """Delete files of a study, and folders that this leaves empty; raises OSError if a file cannot be deleted."""
     for path in paths:
         path.unlink(missing_ok=True)
         seal_path(path).unlink(missing_ok=True)

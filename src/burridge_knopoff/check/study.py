@@ -1,4 +1,4 @@
-"""Which files of a study are missing, corrupt, stale, or of a run that failed: `bk check`."""
+"""`bk check`: files of a study that are missing, corrupt, stale, or of failed runs."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
 
 KINDS = ("missing", "corrupt", "stale", "failed")
-#: How logs and benchmarks end, and no result.
+#: Suffixes of logs and benchmarks, which are not results.
 LOGS = (".log", ".tsv")
-#: Files that a command is printed with; more are left to --paths.
+#: Maximum number of files in a printed command; more are left to --paths.
 MOST_IN_COMMAND = 8
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A file that is not as it should be: what it is, and why, in a line."""
+    """A file with a problem: its kind and the reason, in a line."""
 
     kind: str
     path: Path
@@ -41,12 +41,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class Check:
-    """What was found in the results of a study.
+    """The findings in the results of a study.
 
-    files : what was looked at, in words
-    findings : what is wrong with these files
-    others : what running the last config again does not mend: left over, of an unknown name, or of another config
-    notes : what else there is to say, in lines
+    files : description of the checked files
+    findings : problems with these files
+    others : files that rerunning the last config does not fix: leftover, of unknown name, or of another config
+    notes : further remarks, in lines
     """
 
     results: Path
@@ -63,11 +63,11 @@ class Check:
 
     @property
     def paths(self) -> list[str]:
-        """Paths of the files that are to be made again."""
+        """Paths of the files to remake."""
         return [str(finding.path) for finding in self.findings if finding.kind != "failed"]
 
     def lines(self) -> list[str]:
-        """Return all findings and their sum, a line each, and the command that makes what is listed again."""
+        """Return all findings and their totals, a line each, and the command that remakes the files."""
         counts = Counter(finding.kind for finding in (*self.findings, *self.others))
         numbers = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
         lines = [*map(str, (*self.findings, *self.others)), f"{self.results}: {self.files}: {numbers}", *self.notes]
@@ -79,14 +79,14 @@ class Check:
 
 
 def root_of(results: Path) -> Path:
-    """Return the folder in which `snakemake` was called for results/<study>."""
+    """Return the folder from which `snakemake` was called for results/<study>."""
     return results.absolute().parents[1]
 
 
 def check_study(results: str | Path) -> Check:
     """Check every file of a study against its seal, its config and the current sources.
 
-    Of summaries, figures and the report what is not there is missing if its job has begun, see `unmade`.
+    A summary, figure or report that does not exist is missing only if its job has started, see `unmade`.
     Raises ValueError, one line, if the folder holds no study.
     """
     results = Path(results)
@@ -96,7 +96,7 @@ def check_study(results: str | Path) -> Check:
     notes = []
     if study.name != results.resolve().name:
         notes.append(f"this is study {study.name} under another name: Snakemake looks for it in a folder {study.name}")
-    # Nobody who asks for points only asks for them by other solvers.
+    # A user who requests points alone does not expect those of other solvers.
     if not ((results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()):
         unasked = [points.pop(path) for path in list(points) if path.is_relative_to(results / "solvers")]
         runs = counted(len(unasked), "run")
@@ -135,7 +135,7 @@ def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
-    """Return what is wrong with the point file of a run, or with another file if there is no command, or None."""
+    """Return the problem with the point file of a run (or with another file, without a command), or None."""
     try:
         if not command:
             open_summary(path) if path.suffix == ".nc" else check_seal(path)
@@ -151,8 +151,8 @@ def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
 
 
 def changed(results: Path, record: dict[str, Any]) -> Finding | None:
-    """Return that the config file is not that of the last run: stale, or a note if it is not there to be compared."""
-    # Which file it was can be told from where it lay only.
+    """Return the finding if the config file differs from that of the last run: stale, or a note if it is missing."""
+    # The record only has the path of the config file.
     file, path = Path(record["config_file"]), root_of(results) / record["config_file"]
     if not path.exists():
         return Finding("note", file, "is not there; what is checked is the config of the last run")

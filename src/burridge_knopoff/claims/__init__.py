@@ -1,1 +1,1 @@
-"""The claims of the paper, each judged by a function from summaries to a verdict."""
+"""The claims of the paper. Each is judged by a function that turns summaries into a verdict."""

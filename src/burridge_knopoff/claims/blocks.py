@@ -18,9 +18,9 @@ from burridge_knopoff.motion.kind import CHAOS, MotionKind
 
 
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether both laws lead to like motion of the train of two blocks, from all sampled states, in a range of a.
+    """Judge whether both laws lead to like motion of the two-block train from all sampled states, in a range of a.
 
-    The same of two blocks that are both pulled, which is not the paper's chain, is measured beside it.
+    For comparison, the same is measured for two blocks that are both pulled, which is not the paper's chain.
     """
     both = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
     found = both.sel(chain="train")
@@ -36,13 +36,13 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     wrong = grid[known & ~right]
     if len(wrong):
         measured += [
-            Measured("least a at which they disagree", wrong[0]),
+            Measured("smallest a at which they disagree", wrong[0]),
             Measured("largest a at which they disagree", wrong[-1]),
         ]
     by_distance = (same_kind == 1) & (agrees >= 0) & np.isfinite(margin)
     if by_distance.any():
         nearest = float(np.abs(margin[by_distance]).min())
-        measured.append(Measured("least distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
+        measured.append(Measured("smallest distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
     other_known, other_right = _for_all_states(both["agrees"].sel(chain="both_pulled").transpose("state", "a").values)
     if other_known.any():
         of_other = float(other_right[other_known].mean())
@@ -56,21 +56,21 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     )
     changes = [f"they disagree {at_values(grid, known & ~right)}"] if len(wrong) else []
     if not known.all():
-        changes.append(f"it is not known {at_values(grid, ~known)}")
+        changes.append(f"unknown {at_values(grid, ~known)}")
     return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
 
 
 def _for_all_states(agrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where it is known whether laws agree from all states, and where they do, of answers (states, a)."""
-    # One state that parts them is enough; to say that none does, all have to be known.
+    """Return where it is known whether laws agree from all states, and where they agree; answers : (states, a)."""
+    # One state that disagrees decides; to say that all agree, all have to be known.
     return (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0), (agrees == 1).all(axis=0)
 
 
 def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether one block sticks and slips periodically at all a of a range, and two or three perhaps in chaos.
+    """Judge whether one block sticks and slips periodically at all a of a range, and more blocks perhaps chaotically.
 
-    The train of two blocks begins at the sampled states of the comparison of two blocks, one block at the first of
-    them, under both laws. `Perhaps` chaotic asks for one chaotic motion of two blocks or of the study's chain.
+    The two-block train starts from the sampled states of the comparison of two blocks, the single block from the first
+    of them, under both laws. `Perhaps chaotic` requires one chaotic motion of two blocks or of the study's chain.
     """
     evidence.check_runs()
     found = evidence.choose(evidence.summary("two_blocks"), a)
@@ -79,7 +79,7 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     known = (one != MotionKind.UNDETERMINED).all(axis=1)
     right = ((one == MotionKind.PERIODIC) & sticks).all(axis=1)
     grid = found["a"].values
-    share = known_share(right, known, loose_share, f"the motion of one block is not known {at_values(grid, ~known)}")
+    share = known_share(right, known, loose_share, f"the motion of one block is unknown {at_values(grid, ~known)}")
     measured = [Measured("share of a at which one block sticks and slips periodically", share)]
     two = np.isin(found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1), CHAOS)
     evidences = [("the train of two blocks", grid, two)]
@@ -90,11 +90,11 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     for name, values, chaos in evidences:
         measured.append(Measured(f"share of motions of {name} that are chaotic", float(chaos.mean())))
         if chaos.any():
-            measured.append(Measured(f"least a with chaos of {name}", values[chaos.any(axis=1)][0]))
+            measured.append(Measured(f"smallest a with chaos of {name}", values[chaos.any(axis=1)][0]))
     chaotic = sum(int(chaos.sum()) for *_, chaos in evidences)
     reason = (
         f"One block sticks and slips periodically under both laws at {100 * share:.1f} % of the values of a with {a}; "
-        + (f"{chaotic} motions of two or three blocks are chaotic there." if chaotic else "no chaos of more was found.")
+        f"{chaotic or 'no'} motions of two or three blocks are chaotic there."
     )
     changes = [f"one block is not periodic {at_values(grid, known & ~right)}"] if (known & ~right).any() else []
     return Verdict(by_share(share, loose_share) if chaotic else FAILS, reason, measured, "; ".join(changes))

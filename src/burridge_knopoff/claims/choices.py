@@ -1,7 +1,7 @@
-"""The evidence of a study if its own tolerances were others: those of agreement, and those of the kinds of motion.
+"""The evidence of a study for other values of its tolerances: those of agreement, and those of the kinds of motion.
 
-A kind of motion is changed where the rule that gives it says another one for the exponents, section points and ⟨J⟩ of
-the run. Kinds of attractors, which longer windows have shown, stay as they are.
+The kind of a run is changed if the classification gives another kind for its exponents, section points and ⟨J⟩ with the
+new tolerance. The kinds of attractors come from longer windows and stay as they are.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ THRESHOLD = "synchronization_threshold"
 
 
 def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
-    """Yield («tolerance = another value (its own)», the evidence with it), each half and twice as large."""
+    """Yield («tolerance = another value (its own)», the evidence with it), at half and at twice the tolerance."""
     summaries, motion = evidence.summaries, dict(evidence.config["motion"])
     agreement = summaries["agreement"].attrs if "agreement" in summaries else {}
     for factor in FACTORS:
@@ -48,7 +48,7 @@ def _said(name: str, value: float, factor: float) -> str:
 
 
 def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
-    """Return evidence with the kinds of the runs, and which synchronize, by other tolerances than `evidence` has."""
+    """Return evidence in which kinds and synchrony of the runs follow tolerances other than those of `evidence`."""
     lyapunov = evidence.summaries["lyapunov"]
     own = evidence.summaries.get("agreement")
     threshold = {} if own is None else own.attrs
@@ -70,7 +70,7 @@ def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any
 
 
 def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[str, Any]) -> np.ndarray:
-    """Return the kind of motion of each run by the tolerances of a config and a threshold of synchrony."""
+    """Return the kind of motion of each run for the tolerances of a config and a threshold of synchrony."""
     threshold = {THRESHOLD: about[THRESHOLD]} if THRESHOLD in about else {}
     settings = MotionSettings(**{**config["motion"], **threshold}).at_speed(config["v"])
     names = "section_period", "period", "mean_distance", "lyapunov_exponent", "lyapunov_error"
@@ -83,7 +83,7 @@ def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[s
 
 
 def _compared(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
-    """Return evidence in which the laws are compared by other tolerances, for three blocks and for two."""
+    """Return evidence in which the laws are compared with other tolerances, for three blocks and for two."""
     changed = {}
     for name in ("agreement", "two_blocks"):
         if name not in evidence.summaries:

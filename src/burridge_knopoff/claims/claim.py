@@ -1,4 +1,4 @@
-"""The claims as `config/claims.yaml` states them, each with its judge."""
+"""The claims as stated in `config/claims.yaml`, each with its judge."""
 
 from __future__ import annotations
 
@@ -48,24 +48,24 @@ class _Arguments(ranges.Range):
 
 
 _WORDS = Text("words", r"(?s:.*\S.*)")
-#: The file: claims by name.
+#: The file of claims: claims by name.
 CLAIMS = Named(
     Text("small letters, digits and _, a letter first", "[a-z][a-z0-9_]{0,63}"),
     Keys(
         {
-            "statement": Field(_WORDS, "what the paper states, in our own words"),
-            "place": Field(_WORDS, "where it stands in the paper"),
+            "statement": Field(_WORDS, "the paper's statement, in our words"),
+            "place": Field(_WORDS, "its place in the paper"),
             "judge": Field(
                 Text(f"topic.function, the topic one of {', '.join(TOPICS)}", rf"({'|'.join(TOPICS)})\.[a-z_]+"),
-                "the function that judges it",
+                "the function that judges the claim",
             ),
             "parameters": Field(_Arguments(), "its arguments"),
             "figure": Field(
-                Text("small letters, digits and _", "[a-z][a-z0-9_]*"), "the figure of the study that shows it"
+                Text("small letters, digits and _", "[a-z][a-z0-9_]*"), "the figure of the study that shows the claim"
             ),
             "depends_on": Field(
                 Several(Text("one name"), distinct=True),
-                "the claims of which it is a case, a repetition or a consequence",
+                "the claims of which this is a case, a repetition or a consequence",
                 (),
             ),
         }
@@ -74,7 +74,7 @@ CLAIMS = Named(
 )
 
 _NUMBER, _NAME, _SHARE = Number(-ranges.HUGE, ranges.HUGE), Text("one name"), Number(0.0, 1.0, above=True)
-#: Parameters of judges by name, and by their type if they are not among these.
+#: Ranges of judges' parameters by name; other parameters are checked by their type.
 _BY_NAME: Mapping[str, ranges.Range] = {
     "a": Keys({name: Field(_NUMBER, "one end", FOLLOWS) for name in _RANGE}),
     "laws": Several(OneOf(PAPER_LAWS), 1, distinct=True),
@@ -99,11 +99,11 @@ _BY_TYPE: Mapping[Any, ranges.Range] = {
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper, in our own words, and how it is judged.
+    """A statement of the paper, in our words, and how it is judged.
 
-    topic, judge, parameters : the function judge of the module topic, and its arguments
-    figure : the figure of the study that shows it
-    depends_on : names of the claims of which it is a case, a repetition or a consequence; without any it is independent
+    topic, judge, parameters : the function `judge` of the module `topic`, and its arguments
+    figure : the figure of the study that shows the claim
+    depends_on : names of the claims of which this is a case, a repetition or a consequence; empty if independent
     """
 
     name: str
@@ -120,13 +120,13 @@ def read_claims(path: str | Path, figures: Collection[str]) -> list[Claim]:
     """Return the claims in a YAML file, in its order.
 
     figures : names of all figures that a study can have
-    Raises ConfigError, one line: file, key, value, what is allowed.
+    Raises ConfigError, one line: file, key, value, expected values.
     """
     return checked_claims(read_yaml(path), path, figures)
 
 
 def checked_claims(content: Mapping[str, Any], path: str | Path, figures: Collection[str]) -> list[Claim]:
-    """Return the claims in the content of such a file, once it is read; raises ConfigError as `read_claims` does."""
+    """Return the claims in the parsed content of such a file; raises ConfigError as `read_claims` does."""
     try:
         claims = claims_of(content)
         for claim in claims:
@@ -137,7 +137,7 @@ def checked_claims(content: Mapping[str, Any], path: str | Path, figures: Collec
 
 
 def claims_of(content: Mapping[str, Any]) -> list[Claim]:
-    """Return the claims in the content of such a file; raises ValueError, one line: key, value, what is allowed."""
+    """Return the claims in the content of such a file; raises ValueError, one line: key, value, expected values."""
     claims = [_claim(name, item) for name, item in CLAIMS.form(content, "").items()]
     for claim in claims:
         for other in claim.depends_on:
@@ -159,7 +159,7 @@ def _claim(name: str, item: Mapping[str, Any]) -> Claim:
             raise unknown_key(place, key, list(expected))
     for key, kind in expected.items():
         if key not in parameters:
-            raise ValueError(f"{place}.{key}: missing; needed by {item['judge']}")
+            raise ValueError(f"{place}.{key}: missing, expected a value for {item['judge']}")
         parameters[key] = _parameter(key, parameters[key], kind, f"{place}.{key}")
     for state in np.atleast_1d(parameters.get("initial", [])):
         if state not in PAPER_STATES:
@@ -172,7 +172,7 @@ def _claim(name: str, item: Mapping[str, Any]) -> Claim:
 
 
 def _parameter(key: str, value: Any, kind: Any, place: str) -> Any:
-    """Return a parameter as the judge takes it, whose annotation is `kind`."""
+    """Return a parameter as its judge takes it; `kind` is the annotation."""
     if kind is bool:
         if not isinstance(value, bool):
             raise refusal(place, value, "true | false")
@@ -189,7 +189,7 @@ def _parameter(key: str, value: Any, kind: Any, place: str) -> Any:
 
 
 def _judges(topic: str) -> dict[str, Callable[..., Verdict]]:
-    """Return the judges of a topic by name: the public functions that its module defines."""
+    """Return the judges of a topic by name: the public functions defined in its module."""
     module = TOPICS[topic]
     return {
         name: function

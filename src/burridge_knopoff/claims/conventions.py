@@ -1,6 +1,6 @@
-"""A claim under each convention of contact and start.
+"""Judging a claim under each convention of contact and start.
 
-Under the study's own it is judged by the runs, under the others by the attractors that the initial states reach.
+Under the study's convention the runs decide, under the others the attractors that the initial states reach.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ def under_conventions(
     exceptions: Sequence[str],
     judge: Callable[[xarray.Dataset], tuple[str, str]],
 ) -> Verdict:
-    """Return the verdict of a claim that the conventions may decide.
+    """Return the verdict of a claim that may depend on the convention.
 
-    own : verdict of the study's own runs
-    exceptions : where the claim does not hold under the study's own convention
-    judge : takes the attractors with what the initial states reach under one convention; returns the verdict and the
-        numbers behind it as text, or "" for the verdict if nothing is known
+    own : verdict from the study's runs
+    exceptions : where the claim does not hold under the study's convention
+    judge : takes the attractors with the branches that the initial states reach under one convention; returns the
+        verdict and the numbers behind it as text, or "" as the verdict if nothing is known
 
-    A claim depends on convention if it holds, at least loosely, under one and fails under another.
+    A claim depends on convention if it holds, at least loosely, under one convention and fails under another.
     """
     verdicts, others, unknown = {evidence.own_convention: own}, [], []
     if "attractors" in evidence.summaries:
@@ -63,9 +63,9 @@ def under_conventions(
 
 
 def by_readings(verdicts: Mapping[str, str]) -> tuple[str, str]:
-    """Return (the verdict of a claim that can be read in more than one way, the verdict under the first reading).
+    """Return (the verdict of a claim with more than one reading, the verdict under the first reading).
 
-    It depends on reading if it holds, at least loosely, under one and fails under another.
+    It depends on reading if it holds, at least loosely, under one reading and fails under another.
     """
     own = next(iter(verdicts.values()))
     return (READING if _divided(verdicts) else own), own
@@ -77,7 +77,7 @@ def _divided(verdicts: Mapping[str, str]) -> bool:
 
 
 def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range) -> list[str]:
-    """Return in words where states that round to the paper's reach another attractor than these, under each law.
+    """Return, in words, where states that round to the paper's reach another attractor than the paper's states.
 
     The paper gives positions to three decimals: see `rounded_branch` of attractors.nc.
     """
@@ -99,7 +99,7 @@ def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence
 
 
 def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:
-    """Return (the worst verdict by shares, the shares as text); ("", "") if there are none."""
+    """Return (the verdict for the worst share, the shares as text); ("", "") without shares."""
     if not shares:
         return "", ""
     return worst(by_share(share, loose) for share in shares.values()), shares_text(shares)

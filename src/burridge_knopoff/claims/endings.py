@@ -1,4 +1,4 @@
-"""How states by their phases end, counted for each share of the inner blocks: what `history.phases_decide` judges."""
+"""Outcomes of states by the phases of their blocks, for each amplitude of the inner blocks; see `phases_decide`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criteria:
-    """When phases decide: parameters of the judge, which says what they are."""
+    """The criteria by which phases decide: parameters of the judge, which explains them."""
 
     a: Range
     close: float
@@ -31,7 +31,7 @@ class Criteria:
 
 @dataclass(frozen=True)
 class Counted:
-    """Which fraction of the states ends as claimed, and the ends of its Wilson interval, over (law, a, amplitude)."""
+    """The fraction of states that end as claimed, and its Wilson interval, over (law, a, amplitude)."""
 
     fraction: np.ndarray
     low: np.ndarray
@@ -39,14 +39,15 @@ class Counted:
 
 
 class Endings:
-    """How the states end whose inner blocks oscillate with one share of the amplitude A of the end blocks.
+    """The outcomes of states whose inner blocks oscillate with one fraction of the amplitude A of the end blocks.
 
-    together : the states of close phases that synchronize; against : those of opposite phases that end in antiphase
+    together : states with close phases that synchronize; against : states with opposite phases that end in antiphase
     right : whether enough states of both end so, by the lower ends of the intervals, shape (law, a, amplitude)
-    slips : at which amplitudes every velocity is positive at the start, whatever the phases
-    inside : which values of a are judged
+    slips : amplitudes at which every velocity is positive at the start, whatever the phases
+    inside : values of a that are judged
 
-    Raises NotTestableError for a share that phases.nc has no states of, or too few, and where no amplitude slips.
+    Raises NotTestableError if phases.nc has no states, or too few, for this fraction, and if at every amplitude some
+    velocity is negative.
     """
 
     def __init__(self, phases: xarray.Dataset, inner_share: float, criteria: Criteria) -> None:
@@ -65,7 +66,7 @@ class Endings:
         self.together = _counted(phases["branch"] == 0, difference <= criteria.close, criteria.share)
         self.against = _counted(antiphase, difference >= criteria.opposite, criteria.share)
         self.right = (self.together.low >= criteria.share) & (self.against.low >= criteria.share)
-        # What is judged: all laws, the values of a inside, and the amplitudes that slip.
+        # Judge all laws, the values of a inside the range, and the amplitudes without backward slip.
         self.cells = np.ix_(np.arange(len(self.laws)), self.inside, self.slips)
         cells = zip(self.laws, self.right[self.cells], strict=True)
         own, self.shares = judge_shares(
@@ -75,26 +76,26 @@ class Endings:
 
     @property
     def amplitudes(self) -> str:
-        """The amplitudes that are judged, as text."""
+        """The judged amplitudes, as text."""
         numbers = self.amplitude[self.slips]
         return span(f"{numbers.min():g}", f"{numbers.max():g}")
 
     def told(self) -> str:
-        """Return what becomes of the states that are judged, with their Wilson intervals."""
+        """Describe the outcome of the judged states, with Wilson intervals."""
         together, against = (
             f"{percent(found.fraction[self.cells])} {words} "
             f"(Wilson intervals {percent(found.low[self.cells], found.high[self.cells])})"
             for found, words in (
                 (self.together, "of the close phases synchronize"),
-                (self.against, "of the opposite ones end in antiphase"),
+                (self.against, "of the opposite phases end in antiphase"),
             )
         )
         return f"{together}, {against}"
 
     def measured(self, words: str, at: np.ndarray) -> Iterator[Measured]:
-        """Yield the least shares of the states that end as claimed, under each law.
+        """Yield the smallest fractions of states that end as claimed, under each law.
 
-        words : which states; at : amplitudes, a mask
+        words : description of the states; at : mask of amplitudes
         """
         cells = np.ix_(np.arange(len(self.laws)), self.inside, at)
         for found, ending in (
@@ -102,11 +103,11 @@ class Endings:
             (self.against, "opposite phases in antiphase"),
         ):
             for law, part in zip(self.laws, found.fraction[cells], strict=True):
-                yield Measured(f"least share of {ending}, {words}, {law}", float(part.min()))
+                yield Measured(f"smallest share of {ending}, {words}, {law}", float(part.min()))
 
 
 def percent(*shares: np.ndarray) -> str:
-    """Return from where to where shares reach: «97.5 to 100.0 %»."""
+    """Return the range of fractions in percent: «97.5 to 100.0 %»."""
     least, most = min(part.min() for part in shares), max(part.max() for part in shares)
     return f"{span(f'{100 * least:.1f}', f'{100 * most:.1f}')} %"
 
@@ -114,8 +115,8 @@ def percent(*shares: np.ndarray) -> str:
 def _counted(claimed: xarray.DataArray, chosen: np.ndarray, share: float) -> Counted:
     """Count the states that end as claimed.
 
-    claimed : over (law, a, amplitude, phase_difference, state); chosen : which differences of phase
-    share : what the interval of all states has to reach
+    claimed : over (law, a, amplitude, phase_difference, state); chosen : mask of phase differences
+    share : fraction that the interval has to reach if all states end as claimed
 
     Raises NotTestableError if there are too few states.
     """

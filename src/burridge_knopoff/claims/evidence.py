@@ -1,4 +1,4 @@
-"""The summaries and the setting of a study, in the form in which the judges of claims need them."""
+"""The summaries and the setting of a study, in the form that the judges of claims use."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, P
 if TYPE_CHECKING:
     import xarray
 
-# On fewer values of a than these a statement on a range of a is not judged.
+# A statement on a range of a is judged only with at least this many values of a.
 LEAST_VALUES = 10
 
-# A computed a_c is good to this: rounding of the multiplier over its slope.
+# Accuracy of a computed a_c: rounding of the multiplier divided by its slope.
 COMPUTED_WITHIN = 1e-13
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a study has found.
+    """The results of a study.
 
-    summaries : Datasets by name: mean_distance, lyapunov, …; those that the study does not make are left out
+    summaries : Datasets by name: mean_distance, lyapunov, …; without those that the study does not make
     config : the study's config: laws, chain, v, contact, start, transient, window, initial, and the section `motion`
-    verdicts : on the claims before, by name
+    verdicts : on the claims judged before, by name
     """
 
     summaries: Mapping[str, xarray.Dataset]
@@ -41,7 +41,7 @@ class Evidence:
 
     @cached_property
     def halves(self) -> list[Evidence]:
-        """The evidence with every second value of a, from the first and from the second on."""
+        """The evidence at every second value of a, starting with the first and with the second."""
         return [
             replace(
                 self,
@@ -54,14 +54,14 @@ class Evidence:
         ]
 
     def check_setting(self) -> None:
-        """Raise NotTestableError if the driver is not as fast as the paper's, or springs or thresholds are others."""
+        """Raise NotTestableError if the driver velocity, springs or thresholds are not the paper's."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
         if not Chain(self._blocks, **self.config["chain"]).is_like(Chain(self._blocks)):
             raise NotTestableError("the study's chain has other springs or static friction than the paper's")
 
     def check_laws(self, laws: Iterable[str]) -> None:
-        """Raise NotTestableError if the study lacks one of these laws of the paper, or has another under its name."""
+        """Raise NotTestableError if the study lacks one of these laws of the paper, or uses its name for another."""
         for law in laws:
             if law not in self.config["laws"]:
                 raise NotTestableError(f"the study has no {law} law")
@@ -69,7 +69,7 @@ class Evidence:
                 raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:
-        """Raise NotTestableError if the runs are shorter than the paper's: what has not settled is no evidence."""
+        """Raise NotTestableError if the runs are shorter than the paper's, and might not have settled."""
         transient, window = self.config["transient"], self.config["window"]
         if transient < PAPER_TRANSIENT or window < PAPER_WINDOW:
             raise NotTestableError(
@@ -87,7 +87,7 @@ class Evidence:
         return len(next(iter(self.config["initial"].values()))["position"])
 
     def summary(self, name: str) -> xarray.Dataset:
-        """Return a summary, for the paper's laws only; raises NotTestableError if the study has none."""
+        """Return a summary, for the paper's laws only; raises NotTestableError if the study does not have it."""
         if name not in self.summaries:
             raise NotTestableError(f"the study has no summary {name}.nc")
         dataset = self.summaries[name]
@@ -96,9 +96,9 @@ class Evidence:
         return dataset.sel(law=[law for law in dataset["law"].values if law in PAPER_LAWS])
 
     def compared(self, dataset: xarray.Dataset) -> xarray.Dataset:
-        """Return the comparison of the paper's laws with each other from a summary that compares with the first law.
+        """Return the comparison of the paper's two laws from a summary that compares laws with the first one.
 
-        Raises NotTestableError if the first law of the study is neither of them.
+        Raises NotTestableError if the first law of the study is neither of the two.
         """
         first = next(iter(self.config["laws"]))
         if first not in PAPER_LAWS:
@@ -109,7 +109,7 @@ class Evidence:
     def of_state(self, name: str, initial: str) -> xarray.Dataset:
         """Return a summary over law and a for one of the paper's initial states, completed runs only.
 
-        Raises NotTestableError if the study has no such state, or another under its name.
+        Raises NotTestableError if the study lacks the state, or uses its name for another.
         """
         self.check_runs()
         self.check_state(initial)
@@ -119,7 +119,7 @@ class Evidence:
         return dataset
 
     def check_state(self, initial: str) -> None:
-        """Raise NotTestableError if the study has no initial state of that name, or not the paper's."""
+        """Raise NotTestableError if the study has no initial state of that name, or it is not the paper's."""
         states = self.config["initial"]
         if initial not in states:
             raise NotTestableError(f"the study has no initial state {initial}")
@@ -144,11 +144,11 @@ class Evidence:
 
     @property
     def own_convention(self) -> str:
-        """The study's convention of contact and start, as a table names it."""
+        """The study's convention of contact and start, as tables name it."""
         return f"{self.config['contact']}, {self.config['start']}"
 
     def conventions(self) -> Iterator[tuple[str, xarray.Dataset]]:
-        """Yield («contact, start», the attractors with what initial states reach) for each convention."""
+        """Yield («contact, start», the attractors with the branches of the initial states) for each convention."""
         self.check_blocks()
         attractors = self.summary("attractors")
         for contact in attractors["contact"].values:
@@ -156,7 +156,7 @@ class Evidence:
                 yield f"{contact}, {start}", attractors.sel(contact=contact, start=start)
 
     def own_attractors(self) -> xarray.Dataset:
-        """Return the attractors with what the initial states reach under the study's own convention."""
+        """Return the attractors with the branches that initial states reach under the study's convention."""
         self.check_blocks()
         return self.summary("attractors").sel(contact=self.config["contact"], start=self.config["start"])
 
@@ -168,9 +168,9 @@ class Evidence:
         return orbits["critical_a"].item(), orbits["critical_a_error"].item()
 
     def proved_critical_a(self, law: str) -> tuple[float, float] | None:
-        """Return a_c and how far it may be off at most, both proved; None if there is no proof for a law.
+        """Return the proved a_c and its proved error bound; None if there is no proof for the law.
 
-        Raises ValueError, one line, if another a_c was computed: then one of the two is wrong.
+        Raises ValueError, one line, if the computed a_c lies outside: then one of the two is wrong.
         """
         if "proof" not in self.summaries or law not in self.summaries["proof"]["law"]:
             return None
@@ -179,7 +179,7 @@ class Evidence:
         critical, error = self.critical_a(law)
         if abs(critical - middle) > error + COMPUTED_WITHIN:
             raise ValueError(f"orbits.nc: critical_a: got {critical!r}, expected {low!r} to {high!r} by proof.nc")
-        # Rounded or not, the middle lies between the two, as a_c does.
+        # Even if rounded, the midpoint lies between the two, as a_c does.
         return middle, high - low
 
 

@@ -1,4 +1,4 @@
-"""The ledger as files: claims.json, claims.csv and claims.md; docs/data.md describes them."""
+"""The ledger as files, claims.json, claims.csv and claims.md, which docs/data.md describes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from burridge_knopoff.claims.verdict import NOT_TESTABLE
 
 
 def untestable(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Return {reason: claims of a ledger that cannot be judged for it}."""
+    """Return {reason: claims that cannot be judged for this reason}."""
     return _grouped("reason", (claim for claim in claims if claim["verdict"] == NOT_TESTABLE))
 
 
 def by_topic(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Return {topic: claims of a ledger that could be judged}."""
+    """Return {topic: claims that could be judged}."""
     return _grouped("topic", (claim for claim in claims if claim["verdict"] != NOT_TESTABLE))
 
 
@@ -34,7 +34,7 @@ def as_json(content: Mapping[str, Any]) -> str:
 
 
 def as_csv(content: Mapping[str, Any]) -> str:
-    """Return the ledger as CSV, a line for each measured number; a claim without numbers has one line."""
+    """Return the ledger as CSV, a line for each measured number, or one line for a claim without numbers."""
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     texts = ("name", "topic", "statement", "place", "verdict", "own")
@@ -53,9 +53,9 @@ def as_csv(content: Mapping[str, Any]) -> str:
 
 
 def as_markdown(content: Mapping[str, Any], figures: str) -> str:
-    """Return the ledger as Markdown tables, one for each topic, and in a line for each reason what cannot be judged.
+    """Return the ledger as Markdown: a table for each topic, and a line for each reason why claims are not testable.
 
-    figures : folder of the figures that a table links to, relative to the file that it goes into
+    figures : folder of the linked figures, relative to the Markdown file
     """
     every, independent = content["counts"], content["independent_counts"]
     lines = [

@@ -1,4 +1,4 @@
-"""Claims on what decides between motions that coexist: the initial state, the first block, the end blocks' phases."""
+"""Claims on what decides between coexisting attractors: initial state, first block, phases of the end blocks."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
     """Judge whether more than one attractor exists at each a of a range, so that history can decide, under both laws.
 
-    An attractor counts if sampled states or initial states of the study reach it; mirror images count once.
-    samples : sampled states that it takes at least to say that there is only one attractor
+    An attractor counts if sampled states or the study's initial states reach it; mirror images count once.
+    samples : number of sampled states required to say that there is only one attractor
     """
     attractors = evidence.choose(evidence.own_attractors(), a)
     shares, measured, single = {}, [], []
@@ -45,7 +45,7 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
         fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
-            measured.append(Measured(f"least basin fraction of synchrony, {law}", float(fraction.min())))
+            measured.append(Measured(f"smallest basin fraction of synchrony, {law}", float(fraction.min())))
             measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
         if not (count > 1).all():
             single.append(f"at most one attractor {at_values(found['a'].values, count <= 1)} ({law})")
@@ -55,7 +55,7 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
 
 
 def one_attractor(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
-    """Judge whether one attractor alone exists at each a of a range, so that history decides nothing, under both laws.
+    """Judge whether exactly one attractor exists at each a of a range, so that history is irrelevant, under both laws.
 
     Attractors are counted as in `coexistence`.
     """
@@ -68,12 +68,12 @@ def one_attractor(evidence: Evidence, a: Range, samples: int, loose_share: float
         if (count > 1).any():
             several.append(f"more than one {at_values(attractors['a'].values, count > 1)} ({law})")
     verdict, text = judge_shares(shares, loose_share)
-    reason = f"One attractor alone is reached at {text} of the values of a with {a}."
+    reason = f"Exactly one attractor is reached at {text} of the values of a with {a}."
     return Verdict(verdict, reason, measured, "; ".join(several))
 
 
 def _coexisting(found: xarray.Dataset, samples: int) -> np.ndarray:
-    """Return how many attractors are reached at each a under one law; see `coexistence`."""
+    """Return the number of attractors reached at each a under one law; see `coexistence`."""
     reached = np.where(found["basin_count"].values > 0, found["branch"].values, -1)
     started = found["initial_branch"].transpose("a", "initial").values
     count = np.array([len(set(row[row >= 0])) for row in np.concatenate([reached, started], axis=1)])
@@ -83,7 +83,7 @@ def _coexisting(found: xarray.Dataset, samples: int) -> np.ndarray:
 
 
 def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether one of two initial states leads to synchrony and the other does not, for all a and both laws."""
+    """Judge whether one of two initial states synchronizes and the other does not, for all a and both laws."""
     first, second = (evidence.choose(evidence.of_state("mean_distance", name), a) for name in initial)
     shares, same = {}, []
     for law in PAPER_LAWS:
@@ -135,17 +135,17 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
 
 
 def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.DataArray) -> float | None:
-    """Return at which share of a two branches are both synchrony or both not, or one is; None if too few are known."""
+    """Return the fraction of a at which both branches synchronize, or neither (same), or one does; None if unknown."""
     known = ((one >= 0) & (other >= 0)).values
     right = (((one == 0) == (other == 0)) == same).values
     return float(right[known].mean()) if is_decided(right, known, loose) else None
 
 
 def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
-    """Judge whether there is one convention of contact and start under which some claims hold together.
+    """Judge whether some claims hold together under one convention of contact and start.
 
-    claims : by name; each has to be judged before this one. It holds loosely if some hold loosely under it; a
-    convention under which a claim is not judged is none.
+    claims : by name; each has to be judged before this one. This claim holds loosely if some of them hold loosely. A
+        convention under which one of them is not judged does not count.
     """
     known = {name: evidence.verdicts[name] for name in claims}
     for verdict in known.values():
@@ -170,7 +170,7 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
             f"{convention}: "
             + "; ".join(
                 [
-                    *([f"against it {', '.join(against)}"] if against else ["nothing is against it"]),
+                    *([f"contradicted by {', '.join(against)}"] if against else ["not contradicted"]),
                     *([f"not judged {', '.join(open_ones)}"] if open_ones else []),
                 ]
             )
@@ -178,15 +178,15 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
     best = min(together.values(), key=(HOLDS, LOOSELY, FAILS).index)
     under = [convention for convention, verdict in together.items() if verdict == best]
     reason = (
-        f"Under {' and '.join(under)} all of them hold{' loosely' if best == LOOSELY else ''}."
+        f"All of them hold{' loosely' if best == LOOSELY else ''} under {'; '.join(under)}."
         if best != FAILS
-        else f"Under none of {len(conventions)} conventions do all {len(claims)} statements hold."
+        else f"None of the {len(conventions)} conventions makes all {len(claims)} statements hold."
     )
     return Verdict(best, reason, measured, " | ".join(texts))
 
 
 def _words(name: str) -> str:
-    """Return the name of a claim in words: «plus does not synchronize»."""
+    """Return the name of a claim as words: «plus does not synchronize»."""
     return f"«{name.replace('_', ' ')}»"
 
 
@@ -200,16 +200,17 @@ def phases_decide(
     share: float,
     loose_share: float,
 ) -> Verdict:
-    """Judge whether close phases of the end blocks lead to synchrony and opposite ones to antiphase, under both laws.
+    """Judge whether close phases of the end blocks lead to synchrony and opposite phases to antiphase, under both laws.
 
-    inner_share : of the states that are judged; those of other shares are told beside them
-    close, opposite : difference of phase in degrees up to which phases are close, and from which they are opposite
-    correlation : of the velocities of the end blocks, up to which these are in antiphase
-    share : of the states that have to end so, by the lower end of a Wilson interval
+    inner_share : amplitude of the inner blocks, as a fraction, of the judged states; other fractions are reported too
+    close, opposite : phase difference in degrees up to which phases are close, and from which they are opposite
+    correlation : of the velocities of the end blocks; up to this value they are in antiphase
+    share : fraction of states that have to end so, by the lower end of a Wilson interval
 
-    It holds if that is so at every amplitude, and loosely if it is at all those at which every velocity is positive at
-    the start, whatever the phases: only there the states are oscillations about uniform sliding. The paper says nothing
-    of the inner block: if it holds for one share of those that were computed and fails for another, it depends on that.
+    The claim holds if this is so at every amplitude, and holds loosely if it is so at all amplitudes at which every
+    velocity is positive at the start, whatever the phases: only there are the states oscillations about uniform
+    sliding. The paper does not mention the inner block. If the claim holds for one computed fraction and fails for
+    another, it depends on reading.
     """
     evidence.check_blocks()
     phases = evidence.summary("phases")
@@ -223,7 +224,7 @@ def phases_decide(
         if not judged.right[:, judged.inside, k].all():
             shown = [percent(found.fraction[:, judged.inside, k]) for found in (judged.together, judged.against)]
             changes.append(
-                f"A = {size:g}: {shown[0]} of the close phases synchronize, {shown[1]} of the opposite ones end in "
+                f"A = {size:g}: {shown[0]} of the close phases synchronize, {shown[1]} of the opposite phases end in "
                 "antiphase"
             )
     for law, low in zip(judged.laws, judged.together.low, strict=True):
@@ -240,7 +241,7 @@ def phases_decide(
             continue
         readings[where] = endings.verdict
         changes.append(
-            f"{where} (A = {endings.amplitudes}): {endings.verdict}, right at {endings.shares} of the values of a: "
+            f"{where} (A = {endings.amplitudes}): {endings.verdict}, true at {endings.shares} of the values of a: "
             f"{endings.told()}"
         )
         measured += endings.measured(where, endings.slips)
@@ -250,14 +251,14 @@ def phases_decide(
         for found in (judged.together, judged.against)
     )
     reason = (
-        f"With {_inner_block(inner_share)}, end blocks that oscillate about uniform sliding, none of them backward "
-        f"(A = {judged.amplitudes}), synchronize from phases within {close:g}° ({together}) and end in antiphase from "
-        f"opposite ones ({against}), at {judged.shares} of the values of a with {a}."
+        f"With {_inner_block(inner_share)}, end blocks that oscillate about uniform sliding without slipping backward "
+        f"(A = {judged.amplitudes}) synchronize from phases within {close:g}° ({together}) and end in antiphase from "
+        f"opposite phases ({against}), at {judged.shares} of the values of a with {a}."
     )
     verdict, own = by_readings(readings)
     return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
 
 
 def _inner_block(share: float) -> str:
-    """Return in words what the inner block does."""
+    """Describe the motion of the inner block."""
     return "the inner block sliding uniformly" if share == 0.0 else f"the inner block oscillating with {share:g} A"

@@ -43,13 +43,13 @@ CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
 def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) of the runs from a state, as `agreement.nc` has it."""
+    """Return (a, kind of motion) of the runs from a state, from `agreement.nc`."""
     runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
     return runs["a"].values, with_one_chaos(runs["kind"].values)
 
 
 def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return where the kind of motion that a state reaches is known, and which it is: all chaos is one."""
+    """Return where the kind of motion reached from a state is known, and the kind; all chaos counts as one kind."""
     known, kind = reached(attractors, initial, law, "kind")
     return known & (kind != MotionKind.UNDETERMINED), with_one_chaos(kind)
 
@@ -57,11 +57,11 @@ def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[n
 def all_of_kind(
     evidence: Evidence, initial: Sequence[str], laws: Sequence[str], kinds: Sequence[str], a: Range, loose_share: float
 ) -> Verdict:
-    """Judge whether all runs from some states and under some laws have one of some kinds of motion in a range of a.
+    """Judge whether all runs from some states under some laws have one of several kinds of motion in a range of a.
 
     kinds : meanings of `kind`: synchronized, periodic, quasiperiodic, chaotic
 
-    Not testable where the runs whose kind of motion is not known decide.
+    Not testable if the runs with an unknown kind of motion decide.
     """
     allowed = [int(kind) for kind in MotionKind if kind.name.lower() in kinds]
     what = " or ".join(kinds)
@@ -71,14 +71,14 @@ def all_of_kind(
             grid, kind = _kinds(evidence, state, law, a)
             known = kind != MotionKind.UNDETERMINED
             right = np.isin(kind, allowed)
-            unknown = f"no kind of motion is known from {state} under the {law} law {at_values(grid, ~known)}"
+            unknown = f"the kind of motion from {state} under the {law} law is unknown {at_values(grid, ~known)}"
             name = f"{law}, {state}"
             shares[name] = known_share(right, known, loose_share, unknown)
             measured.append(Measured(f"share of a with {what} motion, {name}", shares[name]))
             if not right[known].all():
                 exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
             if not known.all():
-                exceptions.append(f"not known {at_values(grid, ~known)} ({name})")
+                exceptions.append(f"unknown {at_values(grid, ~known)} ({name})")
     if "attractors" in evidence.summaries:
         attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
         known = (attractors["branch"] >= 0).values & (attractors["kind"].values != MotionKind.UNDETERMINED)
@@ -98,15 +98,15 @@ def all_of_kind(
 
     own, text = judge_shares(shares, loose_share)
     reason = f"The motion is {what} at {text} of the values of a with {a}."
-    # Both together are all regular motion, wherever the line between them is drawn.
+    # Periodic and quasiperiodic together are regular motion, however the two are divided.
     if ("periodic" in kinds) != ("quasiperiodic" in kinds):
         longest = evidence.config["motion"]["longest_period"]
-        reason += f" Periodic is what repeats within {longest:g} time units."
+        reason += f" Motion that repeats within {longest:g} time units counts as periodic."
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
 def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether, in a range of a, runs without synchrony are never periodic: periodic means synchronized."""
+    """Judge whether, in a range of a, runs without synchrony are never periodic: all periodic runs are synchronized."""
     shares, measured, exceptions = {}, [], []
     for law in PAPER_LAWS:
         for state in initial:
@@ -114,10 +114,10 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
             periodic = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC))
             if not periodic.any():
                 continue
-            # What is not known may be periodic without synchrony.
+            # A run of unknown kind may be periodic without synchrony.
             may_be = periodic | (kind == MotionKind.UNDETERMINED)
             where = at_values(grid, may_be & ~periodic)
-            unknown = f"no kind of motion is known from {state} under the {law} law {where}"
+            unknown = f"the kind of motion from {state} under the {law} law is unknown {where}"
             name = f"{law}, {state}"
             right = kind[may_be] == MotionKind.SYNCHRONIZED
             shares[name] = known_share(right, periodic[may_be], loose_share, unknown)
@@ -125,24 +125,24 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
             if shares[name] < 1.0:
                 exceptions.append(f"periodic without synchrony {at_values(grid, kind == MotionKind.PERIODIC)} ({name})")
             if (may_be & ~periodic).any():
-                exceptions.append(f"not known {where} ({name})")
+                exceptions.append(f"unknown {where} ({name})")
     if not shares:
         raise NotTestableError(f"no run is periodic with {a}")
     verdict, text = judge_shares(shares, loose_share)
     longest = evidence.config["motion"]["longest_period"]
-    reason = f"Of the runs with {a} that repeat within {longest:g} time units these are synchronized: {text}."
+    reason = f"Of the runs with {a} that repeat within {longest:g} time units, {text} are synchronized."
     return Verdict(verdict, reason, measured, "; ".join(exceptions))
 
 
 def onset_of_chaos(
     evidence: Evidence, initial: Sequence[str], claimed: float, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge the a from which on there is a chaotic attractor, under both laws.
+    """Judge the a from which there is a chaotic attractor, under both laws.
 
-    It lies between the least a with one and the last before it, at all values of a at which attractors were looked for:
-    those of the grid and those put in where something changes. Chaos of which an ensemble does not show that it lasts
-    is none. Beside it stand the windows of chaos, the least a with a chaotic run, whose chaos may be a transient, and
-    a_c, where synchrony is lost.
+    It lies between the smallest a with a chaotic attractor and the value of a before it, among all values at which
+    attractors were searched for, including those added where something changes. Chaos that an ensemble does not show to
+    last does not count. Also reported: the windows of chaos; the smallest a with a chaotic run, whose chaos may be
+    transient; and a_c, where synchrony is lost.
     """
     evidence.check_blocks()
     refined = evidence.summary("refined")
@@ -161,7 +161,7 @@ def onset_of_chaos(
         verdicts.append(by_interval(low, high, claimed, tolerance, loose))
         if np.isfinite(high):
             middle, half = 0.5 * (low + high), 0.5 * (high - low)
-            measured.append(Measured(f"least a with a chaotic attractor, {law}", middle, half))
+            measured.append(Measured(f"smallest a with a chaotic attractor, {law}", middle, half))
             windows.append(f"chaotic attractors {at_values(grid, chaotic)} ({law})")
             texts.append(f"at a = {high:.5g}, and not at {low:.5g} ({law})")
         else:
@@ -171,7 +171,7 @@ def onset_of_chaos(
             values, kind = _kinds(evidence, state, law, Range())
             if (kind == MotionKind.CHAOTIC).any():
                 first_run = values[np.argmax(kind == MotionKind.CHAOTIC)]
-                measured.append(Measured(f"least a with a chaotic run, {law}, {state}", float(first_run)))
+                measured.append(Measured(f"smallest a with a chaotic run, {law}, {state}", float(first_run)))
     for law in PAPER_LAWS:
         critical, error = evidence.critical_a(law)
         if np.isfinite(critical):
@@ -183,7 +183,7 @@ def onset_of_chaos(
 def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether the largest Lyapunov exponent is 0 within its error at all a of a range.
 
-    By the study's own thresholds: `motion.zero_exponent` and `motion.standard_errors`.
+    The thresholds are the study's: `motion.zero_exponent` and `motion.standard_errors`.
     """
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     if not runs.sizes.get("exponent"):
@@ -192,7 +192,7 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     known = np.isfinite(exponent) & np.isfinite(error)
     settings = MotionSettings(**evidence.config["motion"]).at_speed(evidence.config["v"])
     zero = zero_exponents(exponent, error, settings)
-    unknown = f"no Lyapunov exponent of the run from {initial} is known {at_values(runs['a'].values, ~known)}"
+    unknown = f"the Lyapunov exponents of the run from {initial} are unknown {at_values(runs['a'].values, ~known)}"
     share = known_share(zero, known, loose_share, unknown)
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [
@@ -205,10 +205,10 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     )
     changes = [f"not 0 {at_values(runs['a'].values, known & ~zero)}"] if share < 1.0 else []
     if not known.all():
-        changes.append(f"not known {at_values(runs['a'].values, ~known)}")
+        changes.append(f"unknown {at_values(runs['a'].values, ~known)}")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        # The largest exponent of regular motion is that of the flow, 0; that of chaos is positive.
+        # The largest exponent of regular motion is that of the flow, 0; in chaos it is positive.
         there, kind = kinds_reached(evidence.choose(attractors, a), initial, law)
         regular = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
         if not is_decided(regular, there, loose_share):
@@ -219,9 +219,9 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
 
 
 def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) -> Verdict:
-    """Judge whether the motion from a state at one a is aperiodic, under some laws: chaotic, or quasiperiodic.
+    """Judge whether the motion from a state at one a, under some laws, is aperiodic: chaotic or quasiperiodic.
 
-    Quasiperiodic is regular motion that does not repeat within `motion.longest_period`, locked or not.
+    Quasiperiodic means regular motion that does not repeat within `motion.longest_period`, locked or not.
     """
     verdicts, measured, texts, elsewhere = [], [], [], []
     runs = evidence.choose(evidence.of_state("lyapunov", initial), Range(above=0.0))
@@ -231,10 +231,10 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
         grid, kinds = _kinds(evidence, initial, law, Range(above=0.0))
         kind = int(kinds[grid == at].item())
         if kind == MotionKind.UNDETERMINED:
-            raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is not known")
+            raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is unknown")
         verdicts.append(FAILS if kind in CLOSED else HOLDS)
         period = int(run["section_period"].item())
-        measured.append(Measured(f"section points in a period, 0 if there is none, {law}", float(period)))
+        measured.append(Measured(f"section points in a period (0: not periodic), {law}", float(period)))
         if run.sizes.get("exponent", 0) > 1:
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
@@ -262,7 +262,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
 
 
 def _neighbours(evidence: Evidence, law: str, at: float, kind: int) -> list[str]:
-    """Return from where to where branch 1 is locked around one a, if its motion is locked there."""
+    """Return, in words, the range of a over which branch 1 is locked around one a, if it is locked there."""
     if kind != MotionKind.PERIODIC or "rotation" not in evidence.summaries:
         return []
     found = [one for one in plateaux(evidence.summary("rotation").sel(law=law)) if one.first <= at <= one.last]

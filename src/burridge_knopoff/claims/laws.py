@@ -1,4 +1,4 @@
-"""Claims on the two friction laws and the ways to solve them: whether they agree, and what they cost."""
+"""Claims on the two friction laws and the solvers: agreement and cost."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether both laws lead to the same ⟨J⟩ at all a of a range, by the study's tolerance of agreement."""
+    """Judge whether both laws lead to the same ⟨J⟩ at all a of a range, within the study's tolerance of agreement."""
     measured, answers = [], {}
     for state in initial:
         found = _compared(evidence, state, a)
@@ -54,7 +54,7 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
 def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same kind of motion at all a of a range.
 
-    A torus and a closed orbit without synchrony are one kind, see `judgement.compare`.
+    A torus and an unsynchronized closed orbit count as one kind, see `judgement.compare`.
     """
     found = {state: _compared(evidence, state, a) for state in initial}
     answers = {state: (one["a"].values, one["same_kind"].values) for state, one in found.items()}
@@ -72,7 +72,7 @@ def _by_answers(
     a: Range,
     loose_share: float,
 ) -> Verdict:
-    """Return the verdict of a claim that the laws agree; answers : {initial state: (a, an Answer each)}."""
+    """Return the verdict of a claim that the laws agree; answers : {initial state: (a, an Answer for each)}."""
     shares, numbers, apart = {}, [], []
     for state, (grid, same) in answers.items():
         known = same != Answer.UNDETERMINED
@@ -81,10 +81,10 @@ def _by_answers(
         numbers.append(Measured(f"share of a at which the laws agree {what}, {state}", shares[state]))
         differ = same == Answer.NO
         if differ.any():
-            numbers.append(Measured(f"least a at which they differ, {state}", float(grid[differ][0])))
+            numbers.append(Measured(f"smallest a at which they differ, {state}", float(grid[differ][0])))
             apart.append(f"they differ {at_values(grid, differ)} ({state})")
         if not known.all():
-            apart.append(f"it is not known {at_values(grid, ~known)} ({state})")
+            apart.append(f"unknown {at_values(grid, ~known)} ({state})")
     verdict, text = judge_shares(shares, loose_share)
     reason = f"The laws agree {what} at {text} of the values of a with {a}."
     return Verdict(verdict, reason, [*numbers, *measured], "; ".join(apart))
@@ -95,10 +95,10 @@ def solutions_agree(
 ) -> Verdict:
     """Judge whether the map, the numerical solution of the linearized law, and that of the nonlinear law agree.
 
-    Solvers of one law agree at a point if their ⟨J⟩ differ from that of the study's own solver by no more than the
-    share `relative`, three standard errors, or the threshold of synchronization. The laws agree there if both lead to
-    synchrony, or both to other regular motion, or both to chaos: the paper's results are these.
-    loose_share : share of points from which on the claim holds loosely
+    Solvers of one law agree at a point if their ⟨J⟩ differs from that of the study's solver by no more than the
+    fraction `relative`, three standard errors, or the threshold of synchronization. The laws agree at a point if both
+    lead to synchrony, both to other regular motion, or both to chaos, which are the paper's results.
+    loose_share : fraction of points from which the claim holds loosely
     """
     solved: dict[tuple[str, float], bool] = {}
     compared, measured, apart = [], [], []
@@ -112,7 +112,7 @@ def solutions_agree(
                 found[name].values for name in ("mean_distance", "difference", "difference_error")
             )
             there = np.isfinite(difference)
-            # A solver that a law does not have is none that failed.
+            # A solver that cannot do a law has not failed.
             if (found["status"].values > Status.COMPLETED).any() or (there.sum(axis=-1) < 2).all():
                 continue
             allowed = np.maximum.reduce(
@@ -154,10 +154,10 @@ def solutions_agree(
 def linearization_justified(
     evidence: Evidence, initial: Sequence[str], law: str, a: Range, part: str, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge by how much the laws of friction differ at the fastest slips of the runs, as a share of static friction.
+    """Judge the difference of the friction laws at the fastest slips of the runs, as a fraction of the static friction.
 
-    law : the linearized one, whose friction is 1 − aU' and tells the speed; tolerance, loose : shares allowed
-    part : of the runs, window or run, the transient included
+    law : the linearized law, whose friction 1 − aU' gives the speed; tolerance, loose : allowed fractions
+    part : part of the runs: window, or run with its transient
     The laws differ by (aU')²/(1 + aU').
     """
     grid, speed = _fastest_slips(evidence, initial, law, a, part)
@@ -167,8 +167,8 @@ def linearization_justified(
     measured = [
         Measured("largest difference of the laws on a slipping block", difference),
         Measured("largest aU'", float(product[top])),
-        Measured("fastest slip over v, least", float(speed.min())),
-        Measured("fastest slip over v, most", float(speed.max())),
+        Measured("smallest ratio of the fastest slip to v", float(speed.min())),
+        Measured("largest ratio of the fastest slip to v", float(speed.max())),
     ]
     verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
     reason = (
@@ -182,13 +182,13 @@ def linearization_justified(
 def springs_help(
     evidence: Evidence, initial: Sequence[str], law: str, a: Range, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge whether stronger springs or larger masses bring the laws nearer to each other, the driver being the same.
+    """Judge whether stronger springs or larger masses bring the laws closer together, for the same driver.
 
-    claimed : power of a with which their difference falls: (aU')² would fall with the square of a if U' did not change
+    claimed : power of a with which the difference falls: (aU')² would fall as the square of a if U' did not change
 
-    By stronger springs a falls and v grows, and av = cV stays, V being the velocity of the driver and F(0)/(1 + cV) the
-    friction. Linearized motion at one a is proportional to v: so is aU' to cV, times the speed of the slips over v,
-    which is a function of a alone and known from the windows of the runs.
+    Stronger springs decrease a and increase v, but av = cV stays, where V is the velocity of the driver and
+    F(0)/(1 + cV) the friction. At one a, linearized motion is proportional to v. Hence aU' is proportional to cV, times
+    the ratio of slip speed to v, which is a function of a alone, known from the windows of the runs.
     """
     grid, speed = _fastest_slips(evidence, initial, law, a, "window")
     power = float(np.polyfit(np.log(grid), 2.0 * np.log(speed), 1)[0])
@@ -196,12 +196,12 @@ def springs_help(
     ratio = float((speed[least] / speed[largest]) ** 2)
     measured = [
         Measured("power of a with which the difference of the laws falls at fixed V", power),
-        Measured(f"what is left of it from a = {grid[largest]:g} to {grid[least]:g}", ratio),
+        Measured(f"remaining fraction of it from a = {grid[largest]:g} to {grid[least]:g}", ratio),
     ]
     reason = (
         f"At a fixed V stronger springs or larger masses change a, but not av = cV. From a = {grid[largest]:g} down to "
         f"{grid[least]:g} the difference of the laws on a slipping block only falls to {100 * ratio:.0f} %, as "
-        f"a^{power:.2f} against a^{claimed:g}."
+        f"a^{power:.2f}; the claim says a^{claimed:g}."
     )
     return Verdict(by_value(power, claimed, tolerance, loose), reason, measured)
 
@@ -209,7 +209,7 @@ def springs_help(
 def _fastest_slips(
     evidence: Evidence, initial: Sequence[str], law: str, a: Range, part: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, fastest slip over v) of all runs that completed, from their least friction 1 − aU'."""
+    """Return (a, fastest slip divided by v) of all completed runs, from their least friction 1 − aU'."""
     found = []
     for state in initial:
         runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
@@ -223,12 +223,12 @@ def _fastest_slips(
 
 
 def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
-    """Judge whether the map needs far fewer steps in a unit of time than stepping at a fixed step.
+    """Judge whether the map needs far fewer steps per unit time than integration with a fixed step.
 
-    steps : the paper's time steps in a unit of time
-    much, loose : the claim holds if they are this many times the steps of the map, loosely if that many; it holds
-        loosely as well if other solutions of the differential equations take fewer than so many times the steps
-    A step of the map is a solution between two events or part of one; it costs some tens of Runge-Kutta steps.
+    steps : the paper's time steps per unit time
+    much, loose : ratio of these to the steps of the map from which the claim holds, and from which it holds loosely. It
+        also holds only loosely if other solvers of the differential equations need fewer than `much` times its steps
+    A step of the map is a solution between two events, or part of one; it costs some tens of Runge-Kutta steps.
     """
     evidence.check_blocks()
     found = evidence.summary("solvers").sel(law="linearized")
@@ -241,16 +241,16 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         raise NotTestableError("no run with the solver map completed")
     ratio = steps / float(own.max())
     measured = [
-        Measured("steps of the map in a unit of time, most", float(own.max())),
-        Measured("times fewer than the paper's steps", ratio),
+        Measured("largest number of steps of the map per unit time", float(own.max())),
+        Measured("ratio of the paper's steps to these", ratio),
     ]
-    # What else solves the linearized equations: by steps as long as each is accurate with, not the paper's.
+    # Other solvers of the linearized equations, with the steps that their accuracy requires rather than the paper's.
     taken = {
         name: float(np.nanmax(rate.sel(solver=name)))
         for name in ("series", "rk4")
         if name in found["solver"].values and np.isfinite(rate.sel(solver=name)).any()
     }
-    measured += [Measured(f"steps of {name} in a unit of time, most", number) for name, number in taken.items()]
+    measured += [Measured(f"largest number of steps of {name} per unit time", number) for name, number in taken.items()]
     if "rk4" in taken:
         error = np.abs(found["difference"].sel(solver="rk4").values)
         measured.append(Measured("largest |Δ⟨J⟩| of rk4 at that step", float(np.nanmax(error))))
@@ -260,13 +260,18 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
 
     others = {name: number / float(own.max()) for name, number in taken.items()}
     changes = [
-        f"against {name}, with {taken[name]:.4g} steps in a unit of time: {judged(times)} ({times:.4g} times as many)"
+        f"compared with {name}, which takes {taken[name]:.4g} steps per unit time: {judged(times)} ({_more(times)})"
         for name, times in others.items()
         if judged(times) != judged(ratio)
     ]
     verdict = LOOSELY if judged(ratio) == HOLDS and changes else judged(ratio)
     reason = (
-        f"The map takes at most {own.max():.2f} steps in a unit of time, the paper's stepping {steps:,.0f}: "
+        f"The map takes at most {own.max():.2f} steps per unit time, the paper's time stepping {steps:,.0f}, "
         f"about {float(f'{ratio:.1g}'):,.0f} times as many."
     )
     return Verdict(verdict, reason, measured, "; ".join(changes))
+
+
+def _more(times: float) -> str:
+    """Describe a ratio of steps: «no more steps», «20 times as many»."""
+    return f"{times:.4g} times as many" if f"{times:.4g}" != "1" else "no more steps"

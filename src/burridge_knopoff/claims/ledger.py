@@ -1,4 +1,4 @@
-"""The ledger: every claim judged, with what would turn its verdict."""
+"""The ledger: every claim with its verdict and what would change it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 
 
 def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None = None) -> Verdict:
-    """Return the verdict of one claim; «not testable» with the reason where the study's data cannot judge it.
+    """Return the verdict on a claim; «not testable», with the reason, if the study's data cannot judge it.
 
-    parameters : others than its own
+    parameters : replace the claim's own
     """
     parameters = claim.parameters if parameters is None else parameters
     try:
@@ -35,12 +35,12 @@ def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None
 
 
 def _laws(parameters: Mapping[str, Any]) -> list[str]:
-    """Return the laws that a claim is on."""
+    """Return the laws that a claim is about."""
     return np.atleast_1d(parameters.get("laws", parameters.get("law", PAPER_LAWS))).tolist()
 
 
 def _told(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[tuple[str, Evidence]]) -> Verdict:
-    """Return a verdict with what would turn it, and where states that round to the paper's reach another attractor."""
+    """Return a verdict with what would change it, and where states that round to the paper's reach other attractors."""
     changes = [verdict.changes] if verdict.changes else []
     a = claim.parameters.get("a")
     if at := claim.parameters.get("at"):
@@ -53,7 +53,7 @@ def _told(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[t
 
 
 def _depth(evidence: Evidence) -> str:
-    """Return how deep the study looked at attractors, in words; nothing where it did not."""
+    """Describe the depth of the study's search for attractors; empty without a search."""
     try:
         attrs = evidence.summary("refined").attrs
     except NotTestableError:
@@ -67,10 +67,10 @@ def _depth(evidence: Evidence) -> str:
 def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collection[str]) -> dict[str, Any]:
     """Return the judged claims as the content of claims.json, which docs/data.md describes.
 
-    figures : names of the figures of the study; a claim whose figure is not among them has none
+    figures : names of the study's figures; a claim with another figure gets none
     """
     verdicts: dict[str, Verdict] = {}
-    # A claim on other claims finds in the evidence what has been judged before it.
+    # A claim about other claims finds their verdicts in the evidence.
     known = replace(evidence, verdicts=verdicts)
     others = list(other_tolerances(known))
     for claim in claims:
@@ -113,5 +113,5 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
 
 
 def _number(value: float | None) -> float | None:
-    """Return a number as JSON knows it: null where it is not finite."""
+    """Return a number for JSON: null if it is not finite."""
     return float(value) if value is not None and math.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""Claims on frequency locking: of the motion without synchrony, and of a branch of attractors before chaos."""
+"""Claims on frequency locking: of the unsynchronized motion, and of a branch of attractors before chaos."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 
 def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether the motion without synchrony, branch 1, is locked at all a of a range, under both laws.
+    """Judge whether the unsynchronized motion, branch 1, is locked at all a of a range, under both laws.
 
-    By its rotation number, since its end blocks have one frequency in any case: the motion is its own mirror image.
-    The share of a is that of the values of the grid; plateaux are known between the values put in besides. Where the
-    kind of motion is not known it counts as neither.
+    The rotation number decides. The end blocks always have equal frequencies, since the motion is its own mirror image.
+    The fraction of a is taken over the values of the grid; plateaux are also known between the added values. A value
+    with an unknown kind of motion counts as neither.
 
-    loose_share : share of a from which on the claim holds loosely
+    loose_share : fraction of a from which the claim holds loosely
     """
     evidence.check_blocks()
     rotation = evidence.summary("rotation")
@@ -56,7 +56,7 @@ def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
         number = found["rotation_number"].values[inside]
         measured += [
             Measured(f"share of a at which branch 1 is locked, {law}", share),
-            Measured(f"least rotation number, {law}", float(np.nanmin(number))),
+            Measured(f"smallest rotation number, {law}", float(np.nanmin(number))),
             Measured(f"largest rotation number, {law}", float(np.nanmax(number))),
         ]
         met = [one for one in plateaux(found.isel(value=inside)) if one.last > one.first]
@@ -71,9 +71,9 @@ def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
         if share:
             where.append(f"locked {at_values(found['a'].values[known], found['locked'].values[known] == 1)} ({law})")
     reason = (
-        f"Branch 1 is locked at {', '.join(shares)} of the values of a with {a}: there its rotation number is a "
-        "ratio of whole numbers that does not change with a. That its end blocks have one frequency follows from its "
-        "mirror symmetry and shows no locking."
+        f"Branch 1 is locked at {', '.join(shares)} of the values of a with {a}: its rotation number there is a "
+        "ratio of whole numbers and constant in a. The equal frequencies of its end blocks show no locking: they "
+        "follow from its mirror symmetry."
     )
     return Verdict(worst(verdicts), reason, measured, "; ".join(where))
 
@@ -81,15 +81,15 @@ def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     """Judge whether a closed orbit, not a torus, precedes chaos where a branch of attractors turns chaotic as a grows.
 
-    On a closed orbit the blocks stop in a ratio of whole numbers: they are locked. On a torus they are not. What a
-    branch is like before it turns chaotic is taken at the value of a next below. Chaos that was there before is no
-    beginning of chaos, whether it died or a branch ended on it. Nor is a bifurcation that a branch passes without a
-    change. A torus may be chaos that is weaker than the search resolves, or lock between the values of a, which the
-    verdict says. A closed orbit that is too long to be followed to the bifurcation, as in a tongue of a torus, counts
-    as one as well: another value of a may show the torus. A closer search finds more places, so that those of a study
-    are a sample: the claim fails if the 95 % interval of the share lies below `loose_share`.
+    On a closed orbit the stops of the blocks have rational ratios: they are locked. On a torus they are not. The motion
+    before chaos is that of the branch at the next value of a below. An onset does not count if the chaos existed
+    before, dying or taking over a branch that ends on it, nor does a bifurcation that a branch passes without a change.
+    A torus may be chaos too weak for the search to resolve, or may lock between the values of a; the verdict says so. A
+    closed orbit that is too long to be followed to the bifurcation, as in a locking tongue, counts as one of unknown
+    kind, since another value of a may show the torus. A closer search finds more onsets, so that those of a study are a
+    sample: the claim fails if the 95 % interval of the fraction lies below `loose_share`.
 
-    loose_share : share of the beginnings of chaos from which on the claim holds loosely
+    loose_share : fraction of the onsets of chaos from which the claim holds loosely
     """
     evidence.check_blocks()
     bifurcations = evidence.summary("bifurcations")
@@ -134,19 +134,19 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             measured.append(Measured(f"bifurcations there, {BifurcationKind(kind).name.lower()}, {name}", often))
         if unknown.any():
             values = np.unique(bifurcations["a"].values[unknown])
-            others.append(f"what comes before is not known at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")
+            others.append(f"the motion before is unknown at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")
         for doubt in (TORUS, UNFOLLOWED):
             if there := sorted(place for (place, _), one in places.items() if one == doubt):
                 others.append(f"{doubt} before chaos above a = {', '.join(f'{a:g}' for a in there)} ({name})")
     reason = (
-        "Where a branch of attractors becomes chaotic as a grows, a closed orbit comes before, not a torus: "
+        "Where a branch of attractors becomes chaotic as a grows, a closed orbit precedes chaos, not a torus: "
         f"{', '.join(texts)}."
     )
     return Verdict(worst(verdicts), reason, measured, "; ".join(others))
 
 
 def _doubt(before: int, bifurcation: int) -> str:
-    """Return what may precede chaos at a bifurcation in place of a closed orbit; nothing where one does."""
+    """Return what may precede chaos at a bifurcation instead of a closed orbit; empty if a closed orbit does."""
     if before == MotionKind.QUASIPERIODIC:
         return TORUS
     return UNFOLLOWED if bifurcation == BifurcationKind.UNDETERMINED else ""

@@ -1,10 +1,10 @@
-"""How far a verdict is from turning: the claim is judged again with other tolerances and on other grids.
+"""The margin of a verdict: the claim is judged again with other tolerances and on other grids.
 
-A tolerance is a choice. Whoever reads a verdict should see which other sensible choice would change it, or leave too
-little to judge: a tolerance of the claim or of the study within a factor of two, every second value of the grid of a,
-the value of a beside the one that it names, a compared value of a less, or another motion of the inner blocks, level of
-J, or part of the runs for which there are data. The verdict under each convention or reading counts as well, where the
-claim depends on them.
+A tolerance is a choice. A reader should see which other sensible choices would change a verdict, or leave too little
+data to judge. Tried are: a tolerance of the claim or of the study within a factor of two; every second value of a; the
+neighbour of a named value of a; one compared value of a less; and other amplitudes of the inner blocks, levels of J, or
+parts of the runs for which there are data. If the claim depends on convention or reading, the verdicts under each count
+as well.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ import numpy as np
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import CONVENTION, NOT_TESTABLE, READING, Verdict
 
-# Parameters of judges that are a choice of ours: by this factor others may choose them larger or smaller.
+# Parameters of judges that are our choice; others may choose values larger or smaller by this factor.
 CHOSEN = ("tolerance", "loose", "near", "relative", "much")
 FACTOR = 2.0
 
-# The same for those whose distance from 1 is the choice.
+# The same for parameters whose distance from 1 is the choice.
 SHARES = ("share", "loose_share", "correlation")
 
-# Of these there are data for a few values only: the summary whose coordinate lists them.
+# Parameters with data for a few values only, and the summary whose coordinate lists these.
 LISTED = {"inner_share": "phases", "level": "mean_distance"}
 
-#: The parts of a run that a claim may be judged by: the averaging window, or the whole run with its transient.
+#: The parts of a run that can judge a claim: the averaging window, or the whole run with its transient.
 PARTS = ("window", "run")
 
-# Halvings of the factor at which a verdict turns: it is then known to 2 %.
+# Number of halvings of the factor at which a verdict changes, which gives it to 2 %.
 HALVINGS = 5
 
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
@@ -45,10 +45,10 @@ def turns(
     verdict: Verdict,
     others: Iterable[tuple[str, Evidence]] = (),
 ) -> list[str]:
-    """Return what would turn a verdict, each as «verdict: what it takes»; empty if nothing that is tried does.
+    """Return what would change a verdict, each as «verdict: condition»; empty if nothing tried does.
 
-    judge : judges the claim from evidence and parameters; verdict : what it gives for these
-    others : the evidence by other tolerances of the study, each with its name, see `choices`
+    judge : judges the claim from evidence and parameters; verdict : its verdict for the given ones
+    others : evidence for other tolerances of the study, each with its name, see `choices`
     """
     if verdict.verdict == NOT_TESTABLE:
         return []
@@ -66,9 +66,9 @@ def turns(
 
 
 def difference(verdict: Verdict, other: Verdict) -> str:
-    """Return what another verdict has that a verdict has not: "" if it is the same, under each convention and reading.
+    """Return the other verdict if it differs, under some convention or reading; "" if it is the same.
 
-    The verdict; where it is the same, and depends on convention or reading, those under which it is another.
+    If only conventions or readings differ, they are listed.
     """
     if other.verdict != verdict.verdict:
         return other.verdict
@@ -80,7 +80,7 @@ def difference(verdict: Verdict, other: Verdict) -> str:
     return f"{verdict.verdict} ({', '.join(changed)})" if changed else ""
 
 
-# What another verdict than its own a claim would have, from evidence and parameters; "" if it would have the same.
+# Returns the changed verdict of a claim from evidence and parameters; "" if it is unchanged.
 Turned = Callable[[Evidence, Mapping[str, Any]], str]
 
 
@@ -104,9 +104,9 @@ def _by_tolerance(turned: Turned, evidence: Evidence, parameters: Mapping[str, A
 
 
 def _nearest(turned: Callable[[float], str], side: float) -> tuple[float, str]:
-    """Return the farthest exponent towards a side at which a verdict is still seen, and what it turns to beyond.
+    """Return the largest exponent towards a side at which the verdict is unchanged, and the verdict beyond it.
 
-    "" if it is seen at the side as well.
+    "" if the verdict is unchanged at the side itself.
     """
     same, end, other = 0.0, side, turned(side)
     if not other:
@@ -122,7 +122,7 @@ def _nearest(turned: Callable[[float], str], side: float) -> tuple[float, str]:
 
 
 def _changed(value: float, name: str, exponent: float) -> float:
-    """Return a tolerance changed by FACTOR to a power."""
+    """Return a tolerance multiplied by a power of FACTOR."""
     factor = FACTOR**exponent
     if name not in SHARES:
         return value * factor
@@ -137,11 +137,11 @@ def _by_grid(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) 
         return
     halves = {}
     for half, first in zip(evidence.halves, ("first", "second"), strict=True):
-        # Of one value there is no second half.
+        # A single value has no second half.
         if not all(dataset.sizes.get("a", 1) for dataset in half.summaries.values()):
             continue
         other = turned(half, parameters)
-        # One of the halves does not have the only value of a that a claim is on: that is no other choice.
+        # If one half lacks the only value of a in a claim, this is not another choice.
         if other != NOT_TESTABLE or "at" not in parameters:
             halves[first] = other
     found = set(halves.values())
@@ -163,7 +163,7 @@ def _by_solved(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]
 
 
 def _by_neighbour(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
-    """Judge a claim on one value of a at the values of the grid beside it."""
+    """Judge a claim about one value of a at the neighbouring values of the grid."""
     if "at" not in parameters:
         return
     grids = [dataset["a"].values for dataset in evidence.summaries.values() if "a" in dataset.dims]

@@ -1,4 +1,4 @@
-"""Claims on the model itself: the equilibrium and its stability, the sign of friction, the shape of the solution."""
+"""Claims on the model itself: the equilibrium and its stability, the sign of friction, the form of the solution."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 
 
 def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:
-    """Judge the formula U_i − vτ = −c_i (1 − av) of the unstable equilibrium, the coefficients c_i given, at all a."""
+    """Judge the formula U_i − vτ = −c_i (1 − av) for the unstable equilibrium, with given c_i, at all a."""
     evidence.check_blocks()
     equilibrium = evidence.summary("equilibrium").sel(law=law)
     v = evidence.config["v"]
@@ -35,11 +35,11 @@ def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[fl
     drift = float(equilibrium["equilibrium_drift"].max())
     measured = [
         Measured("largest difference from the formula", difference),
-        Measured("largest distance to which a simulation begun there has gone", drift),
+        Measured("largest distance reached by a simulation started there", drift),
     ]
     verdict = HOLDS if difference <= tolerance and drift <= tolerance else FAILS
     reason = (
-        f"The equilibrium differs from the formula by at most {difference:.1e}, and a simulation begun there stays "
+        f"The equilibrium differs from the formula by at most {difference:.1e}, and a simulation started there stays "
         f"within {drift:.1e}."
     )
     return Verdict(verdict, reason, measured)
@@ -55,7 +55,7 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
         growth = found["eigenvalue"].sel(part="real").max(dim="mode").values
         seen = found["growth_rate"].values
         verdicts.append(HOLDS if (growth > 0.0).all() else FAILS)
-        measured.append(Measured(f"least of the largest real parts, {law}", float(growth.min())))
+        measured.append(Measured(f"smallest of the largest real parts, {law}", float(growth.min())))
         measured.append(
             Measured(
                 f"largest difference from the growth seen in simulations, {law}", float(np.abs(growth - seen).max())
@@ -69,30 +69,32 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
 
 
 def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, loose: float, a: Range) -> Verdict:
-    """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of the friction there."""
+    """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of friction at v."""
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
     values = found["a"].values
     slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in values])
     ratio = found["growth_rate"].values / slope
     measured = [
-        Measured("least growth rate over −F'(v), in simulations", float(ratio.min())),
+        Measured("smallest growth rate over −F'(v), in simulations", float(ratio.min())),
         Measured("largest growth rate over −F'(v), in simulations", float(ratio.max())),
     ]
     verdict = worst(by_value(float(value), claimed, tolerance, loose) for value in (ratio.min(), ratio.max()))
     rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))
-    reason = f"Perturbations of uniform sliding grow at {rate} times −F'(v) with {a} ({law}), against {claimed:g}."
+    reason = (
+        f"Perturbations of uniform sliding grow at {rate} times −F'(v) with {a} ({law}); the claim says {claimed:g}."
+    )
     return Verdict(verdict, reason, measured)
 
 
 def near_equilibrium(
     evidence: Evidence, initial: tuple[str, str], law: str, at: float, near: float, loose: float
 ) -> Verdict:
-    """Judge whether the first block of one state begins close to its equilibrium, and that of another does not.
+    """Judge whether the first block of one state starts close to its equilibrium, and that of another state does not.
 
     initial : the state that is close, the state that is not
-    near, loose : close is up to this many amplitudes of the block in the motion that the first state comes to, loosely
-        up to that many
+    near, loose : close means up to this many amplitudes of the block in the motion reached from the first state, and
+        loosely close up to that many
     """
     for name in initial:
         evidence.check_state(name)
@@ -110,7 +112,7 @@ def near_equilibrium(
     measured.append(Measured(f"amplitude of block 1 in the motion from {initial[0]}", float(amplitude)))
     reason = (
         f"At a = {at:g} ({law}) the first block begins {distances[0]:.3f} from its equilibrium in {initial[0]} and "
-        f"{distances[1]:.3f} in {initial[1]}; in the motion that {initial[0]} comes to it has an amplitude of "
+        f"{distances[1]:.3f} in {initial[1]}; in the motion reached from {initial[0]} its amplitude is "
         f"{amplitude:.3f}."
     )
     return Verdict(verdict, reason, measured)
@@ -135,7 +137,7 @@ def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a:
 
 
 def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdict:
-    """Judge the number of exponentials in the solution while all blocks slip: it holds loosely of complex pairs."""
+    """Judge the number of exponentials in the solution while all blocks slip; complex pairs count loosely as one."""
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)["eigenvalue"]
     real, imaginary = (found.sel(part=part).values for part in ("real", "imaginary"))
@@ -148,23 +150,24 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
         for pair in zip(real, imaginary, strict=True)
     ]
     measured = [
-        Measured("exponentials, least", float(min(counts))),
-        Measured("exponentials, most", float(max(counts))),
-        Measured("complex pairs, most", float(max(pairs))),
+        Measured("smallest number of exponentials", float(min(counts))),
+        Measured("largest number of exponentials", float(max(counts))),
+        Measured("largest number of complex pairs", float(max(pairs))),
     ]
     right = {*counts} == {claimed}
     verdict = HOLDS if right else LOOSELY if {*pairs} == {claimed} else FAILS
     reason = (
-        f"With {a} a position has {max(counts)} exponentials at most, in {max(pairs)} complex pairs, against {claimed}."
+        f"With {a} a position has at most {max(counts)} exponentials, in {max(pairs)} complex pairs; "
+        f"the claim says {claimed}."
     )
     return Verdict(verdict, reason, measured)
 
 
 def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed: int, a: Range) -> Verdict:
-    """Judge the dimension of the map from event to event: it holds loosely if some of its directions vanish.
+    """Judge the dimension of the map from event to event; the claim holds loosely if some directions vanish.
 
-    Positions relative to the driver and velocities are two numbers a block. Each Lyapunov exponent of −∞ is a direction
-    that sticks have removed for good.
+    A state has two numbers a block: position relative to the driver, and velocity. Each Lyapunov exponent of −∞ is a
+    direction that sticking has removed for good.
     """
     evidence.check_blocks()
     lost = np.concatenate(
@@ -173,29 +176,29 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
             for name in initial
         ]
     )
-    # Without exponents nothing was counted: −1.
+    # Without exponents the count is −1.
     lost = lost[lost >= 0.0]
     if not len(lost):
-        raise NotTestableError(f"no Lyapunov exponents are known with {a}")
+        raise NotTestableError(f"the Lyapunov exponents are unknown with {a}")
     numbers = 2 * len(evidence.summary("equilibrium")["block"])
     left = numbers - lost
     measured = [
         Measured("numbers in a state", float(numbers)),
-        Measured("exponents of −∞, least", float(lost.min())),
-        Measured("exponents of −∞, most", float(lost.max())),
+        Measured("smallest number of exponents of −∞", float(lost.min())),
+        Measured("largest number of exponents of −∞", float(lost.max())),
     ]
     verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
     reason = (
-        f"A state has {numbers} numbers; sticks remove {lost.min():.0f} to "
-        f"{lost.max():.0f} directions for good ({law}), so that the map acts in {left.min():.0f} to {left.max():.0f}."
+        f"A state has {numbers} numbers; sticking removes {lost.min():.0f} to "
+        f"{lost.max():.0f} directions for good ({law}), so that the map acts on {left.min():.0f} to {left.max():.0f}."
     )
     return Verdict(verdict, reason, measured)
 
 
 def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdict:
-    """Judge whether uniform sliding is stable where friction grows with velocity, in simulations.
+    """Judge whether uniform sliding is stable in simulations if friction grows with velocity.
 
-    Under the mirror image of a law at the velocity of the driver: the same friction there, and the slope reversed.
+    Uses the mirror image of a law at the driver velocity: the same friction there, and the opposite slope.
     """
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
@@ -204,6 +207,6 @@ def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdi
         raise NotTestableError(f"the mirror image of the {law} law is no friction law with {a}")
     largest = float(np.nanmax(growth))
     words = f"decay at a rate of {-largest:.3g} or more" if largest < 0.0 else f"grow, at a rate of up to {largest:.3g}"
-    reason = f"With {a} and the slope of the {law} law reversed perturbations {words}."
+    reason = f"With {a} perturbations {words} if the slope of the {law} law is reversed."
     changes = f"growth {at_values(found['a'].values, growth >= 0.0)}" if largest >= 0.0 else ""
     return Verdict(HOLDS if largest < 0.0 else FAILS, reason, [Measured("largest growth rate", largest)], changes)

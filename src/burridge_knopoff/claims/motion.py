@@ -1,4 +1,4 @@
-"""Claims on how the blocks stick and slip: whether they stop, how often, and how the end blocks move together."""
+"""Claims on stick-slip motion: whether and how often blocks stop, and how the end blocks move together."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 if TYPE_CHECKING:
     import xarray
 
-#: What a stick-slip cycle may be.
+#: The two readings of a stick-slip cycle.
 ONE_BLOCK, ANY_BLOCK = "from stop to stop of one block", "from a stop of any block to the next one"
 
 
@@ -47,8 +47,7 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
                 raise NotTestableError(f"the run from {state} at a = {at:g} under the {law} law did not complete")
             verdicts.append(HOLDS if (rate > 0.0).all() else FAILS)
             measured += [
-                Measured(f"stops in a unit of time, block {n}, {law}, {state}", value)
-                for n, value in enumerate(rate, 1)
+                Measured(f"stops per unit time, block {n}, {law}, {state}", value) for n, value in enumerate(rate, 1)
             ]
             everywhere = runs["stop_rate"].sel(law=law).values
             known = np.isfinite(everywhere).all(axis=-1)
@@ -73,12 +72,12 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
 def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """Judge whether in every motion some block stops again and again.
 
-    While all blocks slip, the energy ½|U' − v|² + ½ x·Kx of their motion about uniform sliding grows if friction falls
-    with velocity, at rest there alone excepted, and oscillations that grow without bound bring some velocity to 0
-    (docs/claims.md). Uniform sliding itself repels if its eigenvalues have positive real parts, half of −F'(v) each:
-    where they do not, motion without sticks attracts. That it is so of the attractors that are known is a check.
+    While all blocks slip, the energy ½|U' − v|² + ½ x·Kx of their motion about uniform sliding grows, unless they slide
+    uniformly, if friction falls with velocity. Oscillations that grow without bound bring some velocity to 0
+    (docs/claims.md). Uniform sliding itself is unstable if its eigenvalues have positive real parts, which are half of
+    −F'(v) each; otherwise motion without sticks attracts. As a check, some block has to stop in each known attractor.
 
-    loose_share : share of the values of a, and of the attractors, from which on the claim holds loosely
+    loose_share : fraction of the values of a, and of the attractors, from which the claim holds loosely
     """
     evidence.check_blocks()
     equilibrium = evidence.choose(evidence.summary("equilibrium"), a)
@@ -89,7 +88,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in equilibrium["a"].values])
         shares[f"values of a, {law}"] = float((real > 0.0).all(axis=-1).mean())
         measured += [
-            Measured(f"least real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).min())),
+            Measured(f"smallest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).min())),
             Measured(f"largest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).max())),
         ]
         found = attractors.sel(law=law)
@@ -105,22 +104,22 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     modes = equilibrium.sizes["mode"]
     reason = (
         f"All {modes} eigenvalues of uniform sliding have positive real parts, and some block stops again and again in "
-        f"each attractor: right at {shares_text(shares)} with {a}. Every block does in {shares_text(every)} of the "
+        f"each attractor: true at {shares_text(shares)} with {a}. Every block stops in {shares_text(every)} of the "
         "attractors."
     )
-    changes = "it does not hold of every single block" if min(every.values()) < 1.0 else ""
+    changes = "it does not hold for every block" if min(every.values()) < 1.0 else ""
     return Verdict(worst(by_share(share, loose_share) for share in shares.values()), reason, measured, changes)
 
 
 def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation: float) -> Verdict:
-    """Judge whether the velocities of the end blocks are in antiphase: their correlation is at most that given.
+    """Judge whether the end blocks are in antiphase: the correlation of their velocities is at most `correlation`.
 
-    It holds loosely if the correlation is negative at all.
+    The claim holds loosely if the correlation is negative.
     """
     runs = evidence.of_state("stick_slip", initial).sel(law=law)
     value = evidence.at(runs, at)["velocity_correlation"].item()
     if not np.isfinite(value):
-        raise NotTestableError(f"the correlation of the end blocks from {initial} at a = {at:g} is not known")
+        raise NotTestableError(f"the correlation of the end blocks from {initial} at a = {at:g} is unknown")
     verdict = _in_antiphase(value, correlation)
     everywhere = runs["velocity_correlation"].values
     negative = np.isfinite(everywhere) & (everywhere < 0.0)
@@ -142,10 +141,10 @@ def _in_antiphase(value: float, correlation: float) -> str:
 
 
 def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: float) -> Verdict:
-    """Judge whether end blocks that move in antiphase in a run do so for good: the run is on its attractor.
+    """Judge whether end blocks in antiphase in a run stay so: the run is on its attractor.
 
-    By the correlation of their velocities in the window, which is negative, and by `settled` of agreement.nc: a
-    transient would be followed by another motion.
+    Antiphase means a negative correlation of their velocities in the window. `settled` of agreement.nc tells whether
+    the run is on its attractor: a transient would be followed by another motion.
     """
     runs = evidence.choose(evidence.of_state("stick_slip", initial), a)
     ends = evidence.choose(evidence.of_state("agreement", initial), a)
@@ -157,25 +156,25 @@ def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: 
         if not opposed.any():
             raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
         where = at_values(runs["a"].values, opposed & ~known)
-        unknown = f"whether the run from {initial} under the {law} law is on its attractor is not known {where}"
+        unknown = f"whether the run from {initial} under the {law} law is on its attractor is unknown {where}"
         shares[law] = known_share((settled == 1)[opposed], known[opposed], loose_share, unknown)
         measured.append(Measured(f"share of the runs in antiphase that are on their attractor, {law}", shares[law]))
         measured.append(Measured(f"values of a with a run in antiphase, {law}", float(known.sum())))
         if shares[law] < 1.0:
-            passing.append(f"it passes {at_values(runs['a'].values, known & (settled == 0))} ({law})")
+            passing.append(f"transient {at_values(runs['a'].values, known & (settled == 0))} ({law})")
         if not known[opposed].all():
-            passing.append(f"not known {where} ({law})")
+            passing.append(f"unknown {where} ({law})")
     verdict, text = judge_shares(shares, loose_share)
-    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase these stay so: {text}."
+    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {text} stay in antiphase."
     return Verdict(verdict, reason, measured, "; ".join(passing))
 
 
 def half_frequency(
     evidence: Evidence, initial: str, law: str, at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge the frequency of the end blocks over that of the middle block, by spectra of the velocities and by stops.
+    """Judge the frequency of the end blocks relative to that of the middle block, from velocity spectra and from stops.
 
-    Both ratios have to be what is claimed.
+    Both ratios have to agree with the claim.
     """
     run = evidence.at(evidence.of_state("stick_slip", initial).sel(law=law), at)
     frequency, error, stops = (
@@ -183,7 +182,7 @@ def half_frequency(
     )
     if not np.isfinite(frequency).all() or not frequency[1] or not stops[1]:
         raise NotTestableError(
-            f"the frequencies from {initial} at a = {at:g} are not known, or the middle block never stops"
+            f"the frequencies from {initial} at a = {at:g} are unknown, or the middle block never stops"
         )
     ratios, verdicts = [], []
     for end, name in ((0, "block 1"), (-1, "block 3")):
@@ -195,9 +194,9 @@ def half_frequency(
         ratios.append(Measured(f"stops of {name} over stops of block 2", float(stops[end] / stops[1])))
     verdicts = [by_value(item.value, claimed, tolerance, loose) for item in ratios]
     reason = (
-        f"From {initial} at a = {at:g} ({law}) the end blocks have {with_error(ratios[0].value, ratios[0].error)} of "
-        f"the frequency of the middle one by the peaks of their spectra, {ratios[1].value:.3f} by stops, against "
-        f"{claimed:g}."
+        f"From {initial} at a = {at:g} ({law}) the frequency of the end blocks over that of the middle block is "
+        f"{with_error(ratios[0].value, ratios[0].error)} by the peaks of their spectra and {ratios[1].value:.3f} by "
+        f"stops; the claim says {claimed:g}."
     )
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
@@ -219,10 +218,10 @@ def cycle_time(
 ) -> Verdict:
     """Judge whether the time of a stick-slip cycle lies between two values, in runs of both laws, by medians over a.
 
-    tolerance, loose : how far beyond the values it may lie, and may lie loosely
+    tolerance, loose : how far outside it may lie for the claim to hold, and to hold loosely
 
-    A cycle may be read as the time from stop to stop of one block, or as that from a stop of any block to the next one,
-    of whichever block: the inverse of all stops in a unit of time.
+    A cycle may be read as the time between two stops of one block, or as the time between a stop of any block and the
+    next stop of any block, which is the inverse of the total rate of stops.
     """
     readings: dict[str, dict[str, np.ndarray]] = {ONE_BLOCK: {}, ANY_BLOCK: {}}
     for state in initial:
@@ -243,7 +242,7 @@ def cycle_time(
         )
         measured += [Measured(f"median time {reading}, {name}", median) for name, median in medians.items()]
         least, most = (f"{f(medians.values()):.2f}" for f in (min, max))
-        texts.append(f"{reading} it takes {span(least, most)}: {verdicts[reading]}")
+        texts.append(f"{span(least, most)} {reading} ({verdicts[reading]})")
     verdict, own = by_readings(verdicts)
-    reason = f"The claim says {low:g} to {high:g}. By medians over all {a}, {'; '.join(texts)}."
+    reason = f"The median time with {a} is {'; '.join(texts)}. The claim says {low:g} to {high:g}."
     return Verdict(verdict, reason, measured, "", verdicts, own)

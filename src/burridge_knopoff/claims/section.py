@@ -1,4 +1,4 @@
-"""Claims on the section W = 0, crossed upward: how many points it shows, where they lie, and what they mean."""
+"""Claims on the section W = 0, crossed upward: the number, position and meaning of its points."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether the section W = 0, crossed upward, shows one point at each a of a range.
 
-    Closed motion whose section points do not repeat yet has not settled, and is left out.
+    Closed motion whose section points do not repeat yet has not settled and is left out.
     """
     kind = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)["kind"].values
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     grid, period = runs["a"].values, runs["section_period"].values
     known = (period > 0) | ~np.isin(kind, (*CLOSED, MotionKind.UNDETERMINED))
     one = period == 1
-    unknown = f"no section of the run from {initial} is known {at_values(grid, ~known)}"
+    unknown = f"the section of the run from {initial} is unknown {at_values(grid, ~known)}"
     share = known_share(one, known, loose_share, unknown)
     measured = [Measured("share of a with one section point", share)]
     reason = (
@@ -46,18 +46,18 @@ def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loos
     )
     changes = [f"more than one {at_values(grid, known & ~one)}"] if share < 1.0 else []
     if not known.all():
-        changes.append(f"not known {at_values(grid, ~known)}")
+        changes.append(f"unknown {at_values(grid, ~known)}")
     return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
 
 
 def cloud_at_lower_velocities(
     evidence: Evidence, initial: tuple[str, str], law: str, a: Range, points: int, loose_share: float
 ) -> Verdict:
-    """Judge whether one state has a cloud of section points where the other has one, and at lower velocities W'.
+    """Judge whether one state has a cloud of section points, at lower velocities W' than the other state's one point.
 
     initial : the state with one point, the state with the cloud
-    points : a section of more points than these is a cloud; an empty one is none
-    The cloud is lower where its mean W', crossed upward, is below that of the other state.
+    points : a section with more points than this is a cloud; an empty section is not
+    A cloud is lower if its mean W' is below that of the other state.
     """
     grid, line, cloud = _sections(evidence, initial, law, a)
     known = np.array([len(one) > 0 for one in line], dtype=bool)
@@ -80,7 +80,7 @@ def cloud_at_lower_velocities(
         f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at "
         f"{100 * share:.1f} % of the values of a with {a}."
     )
-    exceptions = [f"no cloud, or none lower, {at_values(grid, known & ~(many & lower))}"] if share < 1.0 else []
+    exceptions = [f"no lower cloud {at_values(grid, known & ~(many & lower))}"] if share < 1.0 else []
     if (known & empty).any():
         exceptions.append(f"no point at all {at_values(grid, known & empty)}")
 
@@ -102,11 +102,11 @@ def cloud_at_lower_velocities(
 def cloud_not_periodic(
     evidence: Evidence, initial: str, law: str, a: Range, points: int, loose_share: float
 ) -> Verdict:
-    """Judge whether motion whose section is a cloud is quasiperiodic or chaotic, at all a of a range that show one.
+    """Judge whether motion with a cloud as its section is quasiperiodic or chaotic, at all a of a range with a cloud.
 
-    points : a section of more points than these is a cloud
+    points : a section with more points than this is a cloud
 
-    Periodic is what repeats within `motion.longest_period`.
+    Motion that repeats within `motion.longest_period` is periodic.
     """
     grid, _, cloud = _sections(evidence, (initial, initial), law, a)
     many = _many(cloud, points)
@@ -114,7 +114,7 @@ def cloud_not_periodic(
         raise NotTestableError(f"no section of a run from {initial} is a cloud with {a}")
     kind = evidence.of_state("agreement", initial).sel(law=law, a=grid[many])["kind"].values
     known, right = kind != MotionKind.UNDETERMINED, ~np.isin(kind, CLOSED)
-    unknown = f"no kind of motion is known from {initial} under the {law} law {at_values(grid[many], ~known)}"
+    unknown = f"the kind of motion from {initial} under the {law} law is unknown {at_values(grid[many], ~known)}"
     share = known_share(right, known, loose_share, unknown)
     measured = [
         Measured("values of a with a cloud", float(many.sum())),
@@ -127,7 +127,7 @@ def cloud_not_periodic(
     )
     exceptions = [f"periodic {at_values(grid[many], known & ~right)}"] if share < 1.0 else []
     if not known.all():
-        exceptions.append(f"not known {at_values(grid[many], ~known)}")
+        exceptions.append(f"unknown {at_values(grid[many], ~known)}")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
         found = evidence.choose(attractors, a)
@@ -151,11 +151,11 @@ def line_returns(
     tolerance: float,
     loose: float,
 ) -> Verdict:
-    """Judge the a from which on the section of one state, crossed upward, has points on the line of another.
+    """Judge the a from which the section of one state, crossed upward, has points on the line of another state.
 
-    initial : the state with the line, the state from which it is missing below
-    claimed : a from which on the line is there; it is that of the other state at the last a below
-    near : share of its W' within which a point is on the line
+    initial : the state with the line, the state that lacks it below
+    claimed : a from which the line is there; the line is that of the other state at the last a below
+    near : a point is on the line if its W' differs by at most this fraction
     """
     for name in initial:
         evidence.of_state("lyapunov", name)
@@ -182,7 +182,7 @@ def line_returns(
     low, high = (float(values[first - 1]) if first else 0.0), float(values[first])
     measured.append(Measured("a from which on the line is there", 0.5 * (low + high), 0.5 * (high - low)))
     reason = (
-        f"From {initial[1]} ({law}) the section has points on the line from between a = {low:g} and {high:g} on; the "
+        f"From {initial[1]} ({law}) the section has points on the line above an a between {low:g} and {high:g}; the "
         f"claim says {claimed:g}."
     )
     gone = ~there & (values > high)
@@ -207,7 +207,7 @@ def _sections(
 
 
 def _many(sections: list[np.ndarray], points: int) -> np.ndarray:
-    """Return which sections have more points than so many, in the second half of the run."""
+    """Tell which sections have more than `points` points in the second half of the run."""
     from burridge_knopoff.summaries.along_attractor import distinct
 
     return np.array([distinct(velocity[len(velocity) // 2 :]) > points for velocity in sections], dtype=bool)

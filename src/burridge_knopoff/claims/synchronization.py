@@ -1,4 +1,4 @@
-"""Claims on synchrony of the end blocks: for which states and a it is reached, how fast, and ⟨J⟩ without it."""
+"""Claims on synchrony of the end blocks: initial states and a that lead to it, how fast, and ⟨J⟩ without it."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
 
 def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose_share: float) -> Verdict:
-    """Judge whether an initial state leads to synchrony, or never does, for all a of a range and both laws.
+    """Judge whether an initial state always, or never, leads to synchrony, for all a of a range and both laws.
 
-    loose_share : share of the values of a from which on the claim holds loosely
+    loose_share : fraction of the values of a from which the claim holds loosely
     """
     runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
     outcome = {True: "synchrony", False: "no synchrony"}
@@ -48,7 +48,7 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
         measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law]))
         mean = runs["mean_distance"].sel(law=law).values[right]
         if len(mean):
-            extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "least")
+            extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
             measured.append(Measured(f"{name} ⟨J⟩ there, {law}", float(extreme)))
         if not right[known].all():
             where = at_values(runs["a"].values, known & ~right)
@@ -71,8 +71,8 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
 def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
     """Judge the largest a at which an initial state synchronizes, under both laws.
 
-    It lies between two neighbours of the grid. Synchrony is judged by the attractor reached: near its loss a run is too
-    short to get there. Where the synchronized orbit loses stability between them, a_c is the edge.
+    It lies between two neighbours of the grid. The attractor reached decides, since close to the loss of synchrony a
+    run is too short to get there. If the synchronized orbit loses stability between the two values, the edge is a_c.
     """
     evidence.check_state(initial)
     attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
@@ -99,7 +99,7 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
 
 
 def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
-    """Return the neighbours of the grid between which synchrony ends; NaN if the grid does not hold them."""
+    """Return the neighbours in the grid between which synchrony ends; NaN if it does not end inside the grid."""
     index = np.flatnonzero(synchronized)
     return (grid[index[-1]], grid[index[-1] + 1]) if len(index) and index[-1] + 1 < len(grid) else (np.nan, np.nan)
 
@@ -107,7 +107,7 @@ def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
 def mean_distance_at(
     evidence: Evidence, initial: str, laws: Sequence[str], at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
-    """Judge ⟨J⟩ of an initial state at one a, under some laws, and under each convention by the attractor reached."""
+    """Judge ⟨J⟩ from an initial state at one a, under some laws, and under each convention by the attractor reached."""
     runs = evidence.at(evidence.of_state("mean_distance", initial), at)
     verdicts, measured, texts = [], [], []
     for law in laws:
@@ -126,14 +126,14 @@ def mean_distance_at(
         verdict = worst(by_value(mean, claimed, tolerance, loose) for mean in means.values())
         return verdict, "⟨J⟩ = " + ", ".join(f"{mean:.4f} ({law})" for law, mean in means.items())
 
-    reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}, against {claimed:g}."
+    reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}; the claim says {claimed:g}."
     return under_conventions(evidence, worst(verdicts), reason, measured, [], labels)
 
 
 def distance_vanishes(
     evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
 ) -> Verdict:
-    """Judge whether J has fallen below a level for good by a time, loosely by `loose` times that."""
+    """Judge whether J falls below a level for good by a time, loosely by `loose` times that time."""
     runs = evidence.at(evidence.of_state("mean_distance", initial), at).sel(law=law)
     if level not in runs["level"].values:
         raise NotTestableError(f"mean_distance.nc has no settling time for J < {level:g}")
@@ -160,7 +160,7 @@ def distance_vanishes(
 
 
 def _decay(runs: xarray.Dataset, least: float) -> float:
-    """Return the rate at which J falls between the two lowest levels above the least; NaN if it reaches only one."""
+    """Return the decay rate of J between the two lowest levels above `least`; NaN if it reaches only one of them."""
     levels = runs["level"].values
     times = runs["settling_time"].values
     above = np.flatnonzero((levels > least) & np.isfinite(times))
@@ -170,7 +170,7 @@ def _decay(runs: xarray.Dataset, least: float) -> float:
 
 
 def _transverse_rate(evidence: Evidence, law: str, at: float) -> float:
-    """Return the rate at which the end blocks of synchronized motion approach each other; NaN if no orbit is known."""
+    """Return the rate at which the end blocks approach each other near synchrony; NaN if no orbit is known."""
     orbits = evidence.summaries.get("orbits")
     if orbits is None or at not in orbits["a"].values:
         return np.nan

@@ -1,4 +1,4 @@
-"""Verdicts, the numbers that they rest on, and the rules that turn numbers into verdicts."""
+"""Verdicts, the numbers behind them, and the rules from numbers to verdicts."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ READING = "depends on reading"
 FAILS = "fails"
 NOT_TESTABLE = "not testable"
 
-#: All verdicts, in the order in which they are counted.
+#: All verdicts, in the order of counts.
 VERDICTS = (HOLDS, LOOSELY, CONVENTION, READING, FAILS, NOT_TESTABLE)
 
-# More spans of a than these are counted instead of listed.
+# More than this many spans of a are counted instead of listed.
 MOST_SPANS = 8
 
-# From the best to the worst of those that a rule gives.
+# The verdicts that a rule can give, from best to worst.
 _RANK = (HOLDS, LOOSELY, FAILS)
 
 
 class NotTestableError(Exception):
-    """A claim that the study's data cannot judge; the message says why."""
+    """A claim that the study's data cannot judge; the message gives the reason."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A number that a verdict rests on, with its error where it has one.
+    """A number behind a verdict, with its error if it has one.
 
-    proved : whether it is proved that the true number is no farther from it than the error
+    proved : whether it is proved that the true number lies within the error
     """
 
     quantity: str
@@ -44,14 +44,14 @@ class Measured:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a claim is worth: the verdict, why, the measured numbers, and where the verdict would be another.
+    """A judgement: the verdict, its reason, the measured numbers, and where the verdict would differ.
 
     changes : ranges of a, conventions, readings, or states that round to the paper's, for which the verdict changes or
-        may; empty where there is none
-    conventions : verdict under each convention «contact, start», or under each reading of the claim's words, where it
-        can be judged under each
-    own : verdict under the study's own convention, or under the first reading
-    turns : other choices of judgement that would turn it, see `margins`
+        may change; empty if there are none
+    conventions : verdict under each convention «contact, start», or under each reading of the claim, where it can be
+        judged under each
+    own : verdict under the study's convention, or under the first reading
+    turns : other choices of tolerances and grid that would change the verdict, see `margins`
     """
 
     verdict: str
@@ -65,7 +65,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Range:
-    """A range of the friction parameter: `first` and `last` belong to it, `above` and `below` do not."""
+    """A range of the friction parameter: includes `first` and `last`, excludes `above` and `below`."""
 
     first: float | None = None
     last: float | None = None
@@ -81,7 +81,7 @@ class Range:
 
     @property
     def empty(self) -> bool:
-        """Whether no number lies in the range."""
+        """Whether the range contains no number."""
         low = self.first if self.first is not None else self.above
         high = self.last if self.last is not None else self.below
         return (
@@ -89,7 +89,7 @@ class Range:
         )
 
     def choose(self, a: np.ndarray) -> np.ndarray:
-        """Return which values lie in the range, shape of a."""
+        """Return which values lie in the range, same shape as a."""
         chosen = np.ones(np.shape(a), dtype=bool)
         if self.first is not None:
             chosen &= a >= self.first
@@ -108,27 +108,27 @@ def worst(verdicts: Iterable[str]) -> str:
 
 
 def by_share(share: float, loose: float) -> str:
-    """Judge «for all»: it holds for every one, or loosely for the share `loose` of them."""
+    """Judge «for all»: it holds if all do, and loosely from the fraction `loose` on."""
     return HOLDS if share == 1.0 else LOOSELY if share >= loose else FAILS
 
 
 def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
-    """Tell whether «for all» fails, or does not, whatever is not known; not if nothing is. Both are of shape (n,)."""
+    """Tell whether «for all» is decided whatever the unknown values are; False if none is known. Shapes (n,)."""
     if not known.any():
         return False
     return share_is_decided(int((right & known).sum()), int((right | ~known).sum()), len(right), loose)
 
 
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
-    """Tell the same from bounds on how many are right."""
+    """The same from bounds on the number of true values."""
     worst_case, best_case = (by_share(right / count, loose) for right in (least, most))
     return (worst_case == FAILS) == (best_case == FAILS)
 
 
 def known_share(right: np.ndarray, known: np.ndarray, loose: float, unknown: str) -> float:
-    """Return the share of what is known that is right, for `by_share`; both are of shape (n,).
+    """Return the true fraction of the known values, for `by_share`; both arrays have shape (n,).
 
-    Raises NotTestableError, with `unknown` as its reason, if what is not known decides.
+    Raises NotTestableError, with `unknown` as its reason, if the unknown values decide.
     """
     if not is_decided(right, known, loose):
         raise NotTestableError(unknown)
@@ -136,12 +136,12 @@ def known_share(right: np.ndarray, known: np.ndarray, loose: float, unknown: str
 
 
 def shares_text(shares: Mapping[str, float]) -> str:
-    """Return shares as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
+    """Return fractions as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
     return ", ".join(f"{100 * share:.1f} % ({name})" for name, share in shares.items())
 
 
 def by_value(value: float, claimed: float, tolerance: float, loose: float) -> str:
-    """Judge a number: it holds within `tolerance` of what is claimed, loosely within `loose`; fails if not finite."""
+    """Judge a number: it holds within `tolerance` of the claimed value, loosely within `loose`; fails if not finite."""
     distance = abs(value - claimed)
     if not math.isfinite(distance):
         return FAILS
@@ -149,11 +149,11 @@ def by_value(value: float, claimed: float, tolerance: float, loose: float) -> st
 
 
 def by_interval(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
-    """Judge a number that is only known to lie in (low, high]: what holds there for every value of the interval.
+    """Judge a number known to lie in (low, high], by a verdict that is right for the whole interval.
 
-    Raises NotTestableError where only part of the interval is within what is claimed: the grid of a is too coarse.
+    Raises NotTestableError if only part of the interval agrees with the claim: the grid of a is too coarse.
     """
-    # Decimals of a grid and of a claim may differ in their last bit.
+    # Decimals of a grid and of a claim may differ in the last bit.
     tolerance, loose = tolerance * (1.0 + 1e-9), loose * (1.0 + 1e-9)
     nearest = max(low - claimed, claimed - high, 0.0)
     farthest = max(abs(low - claimed), abs(high - claimed))
@@ -167,12 +167,12 @@ def by_interval(low: float, high: float, claimed: float, tolerance: float, loose
 
 
 def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
-    """Return where the chosen values of a grid lie, neighbours of the grid joined: «at a = 0.0025 to 0.02, 0.0475».
+    """Return in words where the chosen values of a grid lie, joining neighbours: «at a = 0.0025 to 0.02, 0.0475».
 
-    More than MOST_SPANS of them are counted: «at 44 of the 80 values of a from 0.1025 to 0.3».
+    More than MOST_SPANS spans are counted: «at 44 of the 80 values of a from 0.1025 to 0.3».
 
     a : ascending, shape (n,)
-    chosen : which of them, shape (n,)
+    chosen : mask, shape (n,)
     """
     parts = []
     index = np.flatnonzero(chosen)

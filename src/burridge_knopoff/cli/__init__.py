@@ -1,6 +1,6 @@
-"""`bk`: a module of this room for each command, with DESCRIPTION, EXAMPLES, `add_options` and `run`.
+"""`bk`: one module for each command, with DESCRIPTION, EXAMPLES, `add_options` and `run`.
 
-Only the module of the command that is called is imported: a study starts `bk simulate` once for each of its points.
+Only the module of the called command is imported, since a study starts `bk simulate` once for every point.
 """
 
 from __future__ import annotations
@@ -13,35 +13,35 @@ from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
 
-# One run is one thread; the linear-algebra library would start, and keep busy, one for every core.
+# A run uses one thread. The linear-algebra library would otherwise start a busy thread on every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from burridge_knopoff.version import __version__
 
-DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model)."
+DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on a rough surface (the Burridge-Knopoff model)."
 
-#: {name of a command: what it does, in a line}
+#: {name of a command: its description in a line}
 COMMANDS = {
     "simulate": "run one simulation",
-    "exponents": "Lyapunov exponents of one run, and whether synchrony attracts",
-    "orbit": "the synchronized orbit, or the periodic orbit that a state comes to, and its multipliers",
-    "attractors": "all attractors that sampled initial states reach",
-    "basins": "which attractor each state of a plane reaches",
-    "show": "what is in a point file or a summary, in words and as a picture",
-    "check": "look for points of a study that are missing, corrupt, stale or failed",
-    "prune": "delete results that are not part of a study any more",
-    "completion": "print what completes commands and options in a shell",
+    "exponents": "Lyapunov exponents of one run, and whether synchrony is stable",
+    "orbit": "the synchronized orbit, or the periodic orbit reached from a state, and its multipliers",
+    "attractors": "find the attractors reached from sampled initial states",
+    "basins": "map the attractor reached from each state in a plane",
+    "show": "describe and plot a point file or a summary",
+    "check": "find points of a study that are missing, corrupt, stale or failed",
+    "prune": "delete results that no longer belong to a study",
+    "completion": "print the completion of commands and options for a shell",
 }
 
-#: Options that name a file to write: whether it can be written is known before the work.
+#: Options that name an output file; they are checked before the work starts.
 WRITTEN = ("out", "attractors_out", "plot")
 
-#: Exit code of a program whose reader has had enough, as `head` has.
+#: Exit code if the reader of the output has closed it, as `head` does.
 READER_GONE = 141
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that answers bad input with one line and exit code 2."""
+    """A parser that answers wrong input with one line and exit code 2."""
 
     def error(self, message: str) -> None:  # type: ignore[override]
         self.exit(2, f"{self.prog}: {message}\n")
@@ -50,7 +50,7 @@ class _Parser(argparse.ArgumentParser):
 def build_parser(only: str | None = None) -> argparse.ArgumentParser:
     """Return the parser of `bk`.
 
-    only : the command whose options are wanted; without it those of all
+    only : parse the options of this command only; all commands by default
     """
     look = {"formatter_class": argparse.RawDescriptionHelpFormatter, "allow_abbrev": False}
     parser = _Parser(prog="bk", description=DESCRIPTION, **look)  # type: ignore[arg-type]
@@ -66,14 +66,14 @@ def build_parser(only: str | None = None) -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `bk`; return its exit code: 0, or 2 for bad input (one line on stderr)."""
+    """Run `bk`; return its exit code: 0, or 2 for wrong input (one line on stderr)."""
     from burridge_knopoff.cli.options import check_out, join_signed
 
     if sys.stdout is None:
-        # Closed: the first file that is opened would take its place.
+        # A standard stream is closed: the next file opened would take its place.
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # Names of files may have letters that a terminal does not know.
+        # File names may contain characters that the terminal cannot encode.
         sys.stdout.reconfigure(errors="backslashreplace")
     given = join_signed(sys.argv[1:] if arguments is None else arguments)
     parser = build_parser(next((word for word in given if not word.startswith("-")), ""))
@@ -82,7 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     names = [word.partition("=")[0] for word in given if word.startswith("--")]
     for name in names:
         if names.count(name) > 1 and name != "--number":
-            parser.error(f"{name}: given {names.count(name)} times; once is allowed")
+            parser.error(f"{name}: got it {names.count(name)} times, expected once")
     try:
         for name in WRITTEN:
             if (path := getattr(options, name, None)) is not None:
@@ -94,14 +94,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
         words = f"{error}"
-        # Errors of files name them, in words of ours.
+        # Errors about files already name the file.
         if isinstance(error, OSError) and error.errno is not None and error.filename is None:
             words = f"standard output: cannot be written: {error.strerror}"
             _write_no_more()
         print(f"bk {options.command}: {words}", file=sys.stderr)
         return 2
     except MemoryError:
-        print(f"bk {options.command}: not enough memory for what is to be kept or computed", file=sys.stderr)
+        print(f"bk {options.command}: not enough memory for the numbers to keep or compute", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         from burridge_knopoff.study.job_log import INTERRUPTED
@@ -112,7 +112,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _write_no_more() -> None:
-    """Let what is left to print go nowhere: it must not be written when Python ends."""
+    """Discard the output that is left, so that Python does not write it at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

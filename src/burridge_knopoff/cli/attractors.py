@@ -21,8 +21,8 @@ from burridge_knopoff.cli.options import (
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 
-DESCRIPTION = """Look for all attractors of a model from initial states drawn in a box, and say what each is.
-What no drawn state reaches is not found; docs/attractors.md tells how the search works."""
+DESCRIPTION = """Find the attractors of a model from initial states sampled in a box, and describe each.
+An attractor that no sampled state reaches is not found; docs/attractors.md explains the search."""
 
 EXAMPLES = """  bk attractors --law linearized --a 0.08 --samples 100 --fraction-width 0.05 --out attractors.nc
   bk attractors --law nonlinear --a 0.05 --samples 20 --fraction-width 0.1 --lifetime 1000 --initial plus
@@ -32,15 +32,15 @@ EXAMPLES = """  bk attractors --law linearized --a 0.08 --samples 100 --fraction
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of a search."""
     add_model(parser)
-    add_state(parser, "drawn states only")
+    add_state(parser, "sampled states only")
     add_search(parser, "fraction_width")
-    parser.add_argument("--out", metavar="FILE", help="write them as netCDF as well, in the form of attractors.nc")
+    parser.add_argument("--out", metavar="FILE", help="also write them as netCDF, in the form of attractors.nc")
 
 
 def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> None:
-    """Add the settings of a search and of kinds of motion, and the convention of start.
+    """Add the settings of the search and of kinds of motion, and the choice of `start`.
 
-    more : settings of the search besides the usual ones; defaults : other ones than theirs
+    more : additional settings of the search; defaults : values that replace the settings' own defaults
     """
     search = parser.add_argument_group("search")
     add(search, Settings, "start")
@@ -52,12 +52,12 @@ def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> 
 
 
 def search_of(options: argparse.Namespace) -> SearchSettings:
-    """Return the settings of a search; raises ValueError as they do."""
+    """Return the settings of a search; raises ValueError for values out of range."""
     return settings_of(SearchSettings, options, position=options.position_box, velocity=options.velocity_box)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Look for attractors, and print a line for each."""
+    """Search for attractors, and print a line for each."""
     from burridge_knopoff.dataset.summary import write_summary
     from burridge_knopoff.show.attractors import attractor_table, called
     from burridge_knopoff.summaries.multistability import coexisting_attractors
@@ -74,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
     print("\n".join(attractor_table(found, {f"of {drawn} states (95 % interval)": column} if drawn else {})))
     if drawn:
         lost = int(found["undetermined_count"].sum())
-        why = f": they come to none of these by tau = {search.label_limit:g}, or still drift" if lost else ""
+        why = f": they reach none of these by tau = {search.label_limit:g}, or still drift" if lost else ""
         print(f"\nundetermined: {lost} of {drawn} states{why}")
     if state is not None:
         reached = found.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)

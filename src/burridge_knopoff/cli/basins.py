@@ -1,4 +1,4 @@
-"""`bk basins`: a map of basins of attraction of one model."""
+"""`bk basins`: a basin map of one model."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.values import shown
 
-DESCRIPTION = """Map which attractor each state of a plane of initial states reaches, over U_1(0) and U_N(0).
-The initial state gives all other positions and velocities. Attractors are looked for first, as by `bk attractors`."""
+DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0).
+The initial state gives the other positions and velocities. Attractors are searched for first, as by `bk attractors`."""
 
 EXAMPLES = """  bk basins --law linearized --a 0.08 --pixels 32 --out basins.nc --attractors-out attractors.nc
   bk basins --law linearized --a 0.08 --pixels 16 --first-position -1,0 --last-position -1,0 --samples 40
@@ -35,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     plane = parser.add_argument_group("map")
-    # Pixels and samples as in basin_map, for a look, and not as in a study.
+    # Fewer pixels and samples than in a study, as in `basin_map`.
     add(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
     add_search(parser, samples=100)
     out = parser.add_argument_group("files")
@@ -43,12 +43,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     out.add_argument(
         "--attractors-out",
         metavar="FILE",
-        help="write the attractors too; `bk show --plot` finds them as attractors.nc beside the map",
+        help="also write the attractors; `bk show --plot` finds them as attractors.nc beside the map",
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Make a map, and print the share of each attractor."""
+    """Compute a map, and print the fraction of each attractor."""
     import burridge_knopoff
     from burridge_knopoff.dataset.summary import write_summary
     from burridge_knopoff.show.attractors import attractor_table

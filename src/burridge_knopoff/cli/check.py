@@ -1,12 +1,12 @@
-"""`bk check`: is a study what its config and the current sources would make?"""
+"""`bk check`: compare the results of a study with its config and the current sources."""
 
 from __future__ import annotations
 
 import argparse
 
-DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, other files
-whose job has begun and that are not there, and results that are not part of them. Exit code: 0 nothing is wrong, 1
-something is missing, corrupt or stale, 3 runs have failed but nothing else is wrong."""
+DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, missing files
+of jobs that have started, and files that do not belong to the study. Exit code: 0 if nothing is wrong, 1 if something
+is missing, corrupt or stale, 3 if runs have failed but nothing else is wrong."""
 
 EXAMPLES = """  bk check results/paper
   bk check --paths results/*
@@ -16,11 +16,11 @@ EXAMPLES = """  bk check results/paper
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of a check."""
     parser.add_argument("results", metavar="FOLDER", nargs="+", help="results of a study: results/<study>")
-    parser.add_argument("--paths", action="store_true", help="print only the paths of the files to be remade")
+    parser.add_argument("--paths", action="store_true", help="print only the paths of the files to remake")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Check studies, and print what is found."""
+    """Check studies, and print the findings."""
     from burridge_knopoff.check.study import check_study
 
     codes = set()

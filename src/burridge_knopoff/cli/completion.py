@@ -1,11 +1,11 @@
-"""`bk completion`: what completes commands and options in a shell."""
+"""`bk completion`: completion of commands and options in a shell."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
 
-DESCRIPTION = """Print what completes the commands and options of bk in a shell, by shtab. It is switched on by
+DESCRIPTION = """Print a script that completes the commands and options of bk in a shell, by shtab. To switch it on:
   bash        source <(bk completion bash)
   zsh         bk completion zsh > a file _bk in a folder of fpath
   fish        bk completion fish | source"""
@@ -22,7 +22,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what the shell is to read."""
+    """Print the script for the shell."""
     import shtab
 
     from burridge_knopoff.cli import build_parser
@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _options(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
-    """Yield the options of a parser and of all commands below it."""
+    """Yield the options of a parser and of all its commands."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for command in action.choices.values():

@@ -1,4 +1,4 @@
-"""`bk exponents`: Lyapunov exponents of a run, and the transverse exponent of the synchronous motion beside it."""
+"""`bk exponents`: Lyapunov exponents of a run, and the transverse exponent of the nearby symmetric motion."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.formatting import plain, with_error
 
-DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and tell its kind. In a chain that is
-its own mirror image also the transverse exponent: mirror blocks near each other synchronize where it is negative."""
+DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and classify the motion. For a chain
+that is its own mirror image, also compute the transverse exponent: if negative, nearby mirror blocks synchronize."""
 
 EXAMPLES = """  bk exponents --law linearized --a 0.08 --initial plus
   bk exponents --law nonlinear --a 0.22 --transient 3000 --window 20000 --lyapunov-exponents 6 --out chaos.nc
@@ -27,11 +27,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add(run, Settings, "start", "transient", "window", "batches", "event_window")
     add(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
     add(parser.add_argument_group("kinds of motion"), MotionSettings)
-    parser.add_argument("--out", metavar="FILE", help="write the run as a point file as well (netCDF)")
+    parser.add_argument("--out", metavar="FILE", help="also write the run as a point file (netCDF)")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run, and print the exponents."""
+    """Run the simulation, and print the exponents."""
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, WINDOW, transverse_exponent
     from burridge_knopoff.motion.kind import motion_of_run, words_of
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     if model.chain.is_mirror_symmetric:
-        # Refused before the run, and not after it.
+        # Refuse it before the run, not after.
         WINDOW.form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
     print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         value, error = transverse_exponent(model, start, max(options.transient, ALIGNMENT), options.window)
-        print(f"transverse exponent of the symmetric motion beside it: {plain(with_error(value, error))}")
+        print(f"transverse exponent of the nearby symmetric motion: {plain(with_error(value, error))}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")

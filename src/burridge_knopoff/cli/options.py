@@ -1,4 +1,4 @@
-"""Options: made from the fields of settings, and what the texts of a command line become."""
+"""Options: made from the fields of settings, and converted from the texts of a command line."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from burridge_knopoff.values import shown
 
 _T = TypeVar("_T")
 
-#: A group of options, or a parser.
+#: An argument group or a parser.
 Group = argparse._ActionsContainer
 
 
 def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Callable[[str], Any]:
-    """Return a function of the text of an option: what it is read as, or its refusal, which says what is allowed."""
+    """Return a converter for the text of an option, which refuses a text that does not match with these words."""
 
     def value(text: str) -> Any:
         with contextlib.suppress(ValueError):
@@ -40,7 +40,7 @@ def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Calla
     return value
 
 
-# Python also takes 1_0 for ten, and the digits of every script.
+# Python's own conversion also accepts 1_0 for ten, and digits of every script.
 number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
 how_many = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
 count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
@@ -59,7 +59,7 @@ def _strength(text: str) -> str | float | tuple[float, ...]:
     return values[0] if len(values) == 1 else values
 
 
-#: How the text of an option is read, by the range of its setting; any other is a word.
+#: The converter for each range of a setting; for other ranges the text is kept.
 _READERS: dict[type, Callable[[str], Any]] = {
     Number: number,
     Whole: count,
@@ -68,7 +68,7 @@ _READERS: dict[type, Callable[[str], Any]] = {
     Either: _strength,
 }
 
-#: What stands for the value of an option in the help, if not its name.
+#: Names of option values in the help, if not the name of the option.
 _METAVARS = {
     "coupling": "K1,K2,...",
     "pulling": "D1,D2,...",
@@ -79,7 +79,7 @@ _METAVARS = {
 
 
 def join_signed(arguments: Sequence[str]) -> list[str]:
-    """Write `--position -1,2` as `--position=-1,2`: argparse would take numbers or a formula for an option."""
+    """Write `--position -1,2` as `--position=-1,2`, since argparse takes a negative number or formula for an option."""
     joined: list[str] = []
     for argument in arguments:
         option = re.fullmatch("--[a-z-]+", joined[-1]) if joined else None
@@ -91,10 +91,10 @@ def join_signed(arguments: Sequence[str]) -> list[str]:
 
 
 def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any) -> None:
-    """Add settings of a class as options: those named, or all.
+    """Add settings of a class as options: the named ones, or all.
 
-    suffix : to be added to their names
-    defaults : other ones than those of the settings
+    suffix : appended to their names
+    defaults : values that replace the settings' own defaults
     """
     for name in names or fields_of(kind):
         field, key = fields_of(kind)[name], name + suffix
@@ -113,18 +113,18 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
 
 
 def _complete(option: argparse.Action, words: Iterable[str]) -> None:
-    """Let a shell complete the value of an option; what it may be is left to its range, whose refusals say more."""
+    """Let a shell complete the value of an option. The range checks it, since its messages say more than argparse's."""
     option.words = tuple(words)  # type: ignore[attr-defined]
 
 
 def settings_of(kind: type[_T], options: argparse.Namespace, **others: Any) -> _T:
-    """Return settings of a class with what was given for them, besides others; raises ValueError as the class does."""
+    """Return settings of a class from the options given and from `others`; raises ValueError as the class does."""
     given = {name: value for name, value in vars(options).items() if name in fields_of(kind)}
     return kind(**{**given, **others})
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """Add the options that describe a model, without its number of blocks."""
+    """Add the options of a model, except its number of blocks."""
     model = parser.add_argument_group("model")
     laws = model.add_mutually_exclusive_group(required=True)
     _complete(laws.add_argument("--law", metavar="LAW", help=f"friction law: {' | '.join(LAWS)}"), LAWS)
@@ -135,7 +135,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=NUMBER",
-        help="a number of the law; as often as it has some",
+        help="a number of the law; may be repeated",
     )
     model.add_argument(
         "--law-name",
@@ -149,9 +149,9 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
-    """Add the options that describe an initial state, and the number of blocks.
+    """Add the options of an initial state, and the number of blocks.
 
-    usual : what it is where none is given, for the help
+    usual : the default state, for the help
     """
     state = parser.add_argument_group("initial state")
     initial = state.add_argument(
@@ -162,16 +162,16 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
         f"{OWN} for numbers)",
     )
     _complete(initial, PAPER_STATES)
-    state.add_argument("--blocks", type=count, help="number of blocks N (default: as many as positions)")
+    state.add_argument("--blocks", type=count, help="number of blocks N (default: the number of positions)")
     add(state, InitialState, "position", "velocity")
 
 
 def state_of(options: argparse.Namespace) -> InitialState | None:
-    """Return the initial state that the options describe, None if they describe none.
+    """Return the initial state given by the options, or None if they give none.
 
-    Where only positions or only velocities are given, the others are those of the paper's states.
+    If only positions or only velocities are given, the others are those of the paper's states.
 
-    Raises ValueError as `initial_state` does, and where a name of the paper's would stand for other numbers.
+    Raises ValueError as `initial_state` does, and if one of the paper's names is given other numbers.
     """
     name, given = options.initial, (options.position, options.velocity)
     if name is None:
@@ -180,7 +180,7 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
         usual = PAPER_STATES["minus"]
         if None in given and len(given[0] or given[1]) != len(usual.position):
             missing = "position" if given[0] is None else "velocity"
-            raise ValueError(f"{missing}: missing; needed for other than three blocks: numbers, one a block")
+            raise ValueError(f"{missing}: missing, expected numbers, one a block, unless there are three blocks")
         name, given = OWN, (given[0] or usual.position, given[1] or usual.velocity)
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
@@ -190,17 +190,17 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
 
 
 def simulated_law(options: argparse.Namespace) -> Law:
-    """Return the law that the options describe; raises ValueError as `law_of` does."""
+    """Return the law given by the options; raises ValueError as `law_of` does."""
     numbers = dict(options.number)
     if len(numbers) < len(options.number):
-        raise ValueError(f"--number: {' '.join(name for name, _ in options.number)}: each name once")
+        raise ValueError(f"--number: got {' '.join(name for name, _ in options.number)}, expected each name once")
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
     name = options.law_name or (options.law if options.formula is None else "formula")
     return law_of(name, options.a, {**kind, **numbers})
 
 
 def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
-    """Return the model that the options describe, of as many blocks as a state has if they do not say.
+    """Return the model given by the options; by default with as many blocks as the state.
 
     Raises ValueError as `Chain`, `law_of` and `Model` do.
     """
@@ -212,7 +212,7 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
 
 
 def check_out(path: str) -> None:
-    """Raise OSError, one line, if a file could not be written: better before the work than after."""
+    """Raise OSError, one line, if a file cannot be written: before the work, not after it."""
     folder = Path(path).parent
     if not folder.exists():
         raise OSError(f"{path}: cannot be written: there is no folder {folder}")
@@ -220,14 +220,14 @@ def check_out(path: str) -> None:
 
 
 def command_of(options: argparse.Namespace) -> str:
-    """Return the command that was given, without the files that it was to write: what a file says that made it."""
+    """Return the command without its output files, as the files record it."""
     files, words = ("--out", "--attractors-out"), ["bk", *options.given]
     told = [word for before, word in pairwise(words) if before not in files and not word.startswith(files)]
     return shlex.join(["bk", *told])
 
 
 def said_of(model: Model) -> str:
-    """Return a model in a line."""
+    """Describe a model in a line."""
     numbers: Mapping[str, float] = model.law.numbers
     told = "".join(f", {name} = {value:g}" for name, value in numbers.items())
     return f"{model.law.name} law{told}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"

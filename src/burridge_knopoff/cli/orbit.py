@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.model import Model
     from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 
-DESCRIPTION = """Compute the synchronized orbit, stable or not, of a chain that is its own mirror image; or, from an
-initial state, the periodic orbit that its motion comes to, of any chain. An orbit is stable where all multipliers but
-that of the flow are below 1 in modulus."""
+DESCRIPTION = """Compute the synchronized orbit, stable or unstable, of a chain that is its own mirror image; or, for
+any chain, the periodic orbit that the motion from an initial state settles on. An orbit is stable if all multipliers
+except that of the flow have modulus below 1."""
 
 EXAMPLES = """  bk orbit --law linearized --a 0.08
   bk orbit --law linearized --a 0.08 --initial plus
@@ -27,7 +27,7 @@ EXAMPLES = """  bk orbit --law linearized --a 0.08
 
 SETTLING = Number(0.0, LONGEST)
 
-# Multipliers below this are those of blocks that stop.
+# Smaller multipliers are zero up to rounding: those of blocks that stop.
 ZERO = 1e-7
 
 
@@ -45,12 +45,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="number of stops and starts printed (default: %(default)s)",
     )
     motion.add_argument(
-        "--settling", type=number, default=3000.0, help="time that it is left to settle first (default: %(default)g)"
+        "--settling", type=number, default=3000.0, help="time to let the motion settle first (default: %(default)g)"
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find an orbit, and print its period, its multipliers, and its stops and starts."""
+    """Find an orbit, and print its period, multipliers, stops and starts."""
     settling = SETTLING.form(options.settling, "settling")
     state = state_of(options)
     model = model_of(options, state)
@@ -72,7 +72,7 @@ def _reached(model: Model, state: InitialState, start: str, settling: float) -> 
 
 
 def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
-    """Return an orbit in lines, at most so many of its events among them."""
+    """Describe an orbit in lines, with at most `most` of its events."""
     from burridge_knopoff.periodic_orbits.floquet import multipliers
     from burridge_knopoff.show.formatting import table
     from burridge_knopoff.study.formatting import counted
@@ -86,9 +86,9 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
         f"multipliers  1 (the flow), {_complex(found.whole)}; the others are 0",
     ]
     if len(found.breaking):
-        lines.append(f"             of perturbations that part mirror blocks: {_complex(found.breaking**found.power)}")
+        lines.append(f"             mirror-breaking perturbations: {_complex(found.breaking**found.power)}")
     lines += [
-        f"stops        {' '.join(map(str, orbit.stop_counts))} of each block in a period",
+        f"stops        {' '.join(map(str, orbit.stop_counts))} (each block, in a period)",
         f"residual     {orbit.residual:.1e} after a return",
         "",
     ]
@@ -98,7 +98,7 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
 
 
 def _complex(values: np.ndarray) -> str:
-    """Return multipliers in words: conjugate pairs as one, without those that are 0."""
+    """Format multipliers: conjugate pairs as one, without those that are 0."""
     shown = [value for value in values.tolist() if abs(value) > ZERO and value.imag >= 0.0]
     words = [f"{value.real:.6g} +- {value.imag:.6g}i" if value.imag else f"{value.real:.6g}" for value in shown]
     return ", ".join(words) or "0"

@@ -1,12 +1,12 @@
-"""`bk prune`: delete results that are not part of a study any more."""
+"""`bk prune`: delete results that no longer belong to a study."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-DESCRIPTION = """Delete the files of studies that belong to a law, an initial state, a value of a or a stage that the
-config of the last run does not have, with their logs and benchmarks, and say which. Files of any other name stay."""
+DESCRIPTION = """Delete files of a law, an initial state, a value of a or a stage that the config of the last run lacks,
+with their logs and benchmarks, and list them. Files with any other name stay."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper
@@ -14,13 +14,13 @@ EXAMPLES = """  bk prune --dry-run results/paper
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of what is to be deleted."""
+    """Add the options of a deletion."""
     parser.add_argument("results", metavar="FOLDER", nargs="+", help="results of a study: results/<study>")
-    parser.add_argument("-n", "--dry-run", action="store_true", help="only say what would be deleted")
+    parser.add_argument("-n", "--dry-run", action="store_true", help="only list what would be deleted")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Delete what is left over, and print it."""
+    """Delete leftover files, and print how many."""
     from burridge_knopoff.check.leftovers import delete, leftovers
     from burridge_knopoff.check.study import changed
     from burridge_knopoff.study.formatting import counted

@@ -1,11 +1,11 @@
-"""`bk show`: what is in a file of results."""
+"""`bk show`: describe a file of results."""
 
 from __future__ import annotations
 
 import argparse
 
-DESCRIPTION = """Say what is in a point file or a summary: model, motion and numbers of a run; question, dimensions and
-numbers of a summary. With --plot as a picture too: J, section points and velocities of a run; a summary's figure."""
+DESCRIPTION = """Describe a point file (model, motion and numbers of the run) or a summary (question, dimensions and
+numbers). --plot also draws a picture: J, section points and velocities of a run, or the figure of a summary."""
 
 EXAMPLES = """  bk show plus.nc
   bk show plus.nc --plot plus.png
@@ -14,13 +14,13 @@ EXAMPLES = """  bk show plus.nc
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of what is to be shown."""
-    parser.add_argument("file", metavar="FILE", help="a netCDF file that this software has written")
+    """Add the options of a description."""
+    parser.add_argument("file", metavar="FILE", help="netCDF file written by this software")
     parser.add_argument("--plot", metavar="PICTURE", help="picture to write: .png, .pdf or .svg")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what is in a file, and draw it."""
+    """Print a description of a file, and draw it."""
     from burridge_knopoff.show.result import open_result
 
     if options.plot is not None:
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
         from burridge_knopoff.show.point import point_lines as lines_of
     else:
         from burridge_knopoff.show.summary import summary_lines as lines_of
-    # Before anything is said of the file: what cannot be drawn is refused in one line.
+    # Refuse a file that cannot be drawn before printing anything about it.
     drawn = [] if options.plot is None else ["", write_picture(result, options.plot)]
     print("\n".join([*lines_of(result), *drawn]))
     return 0

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 DESCRIPTION = """Run one simulation and write it as a netCDF point file.
 All quantities are dimensionless: times in 1/omega, U = k X / F(0), as in the paper.
-Exit code: 3 if the run ended at a limit or diverged; its file is written all the same."""
+Exit code: 3 if the run hit a limit or diverged; its file is written all the same."""
 
 EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.nc
   bk simulate --law nonlinear --a 0.08 --initial minus --transient 0 --window 100 --events all --out start.nc
@@ -28,7 +28,7 @@ EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.
   bk simulate --formula "1 - c*tanh(a*u/c)" --number c=0.1 --a 0.5 --out own.nc
 """
 
-#: Settings that may ask for a longer time than there is: which one it is, in words.
+#: Settings that may ask for a longer time than the run or the window has.
 _PARTS = {"trajectory": "run", "event_window": "window"}
 
 
@@ -39,13 +39,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     run = parser.add_argument_group("run")
     add(run, Settings, "start", "solver", "step", "transient", "window", "batches")
     add(run, Settings, "lyapunov_exponents", "lyapunov_alignment", "section")
-    kept = parser.add_argument_group("what is kept")
+    kept = parser.add_argument_group("output")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
     add(kept, Settings, "sampling", "events", "event_window", "trajectory", "trajectory_sampling")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run a simulation, write its file, and say in a line what came out."""
+    """Run a simulation, write its file, and print the outcome in a line."""
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.running import simulation
 
@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def outcome(trajectory: Trajectory) -> str:
-    """Return in a line what came out of a run that completed."""
+    """Describe the outcome of a completed run in a line."""
     words = f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}"
     for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
         if not math.isnan(error):

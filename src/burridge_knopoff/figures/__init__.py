@@ -1,1 +1,1 @@
-"""Figures: each module takes datasets and returns one matplotlib Figure."""
+"""Figures: each module turns datasets into one matplotlib Figure."""

@@ -1,4 +1,4 @@
-"""The agreement of each friction law with the first one against a."""
+"""The agreement of each friction law with the first law, versus a."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ CATEGORY = "Friction laws"
 INPUTS = ("agreement",)
 CONDITION = "has_several_laws"
 CAPTION = """\
-Each law compared with the first one of the study, for each initial state, against a: the difference of ⟨J⟩ with both
-tolerances, the Wasserstein distance between the section points W', and the time until which both laws have the same
-order of events. What is 0, or below 10⁻¹⁵ and 10⁻⁷ in the first two, lies at the foot. Shaded where the two disagree,
-in ⟨J⟩ or in the kind of motion; open symbols where that is not known: ⟨J⟩ differs by about the tolerance, or a kind of
-motion is not clear.
+Each law compared with the first law of the study, for each initial state, versus a: the difference of ⟨J⟩ with both
+tolerances, the Wasserstein distance between the section points W', and the time up to which both laws have the same
+order of events. Values of 0, and values below 10⁻¹⁵ (first row) or 10⁻⁷ (second row), are drawn at the lower edge.
+Shaded: the laws disagree in ⟨J⟩ or in the kind of motion. Open symbols: undecided, since the difference of ⟨J⟩ is close
+to the tolerance or a kind of motion is undetermined.
 """
 
-# Smaller differences of ⟨J⟩ and distances of section points set the scale of nothing: they are drawn here, as is 0.
+# Smaller differences of ⟨J⟩ and of section points, including 0, are drawn here, so that they do not set the scale.
 FLOORS = (1e-15, 1e-7)
 
 POINT: dict[str, Any] = {"marker": "o", "markersize": 2.2, "color": color(0)}
@@ -55,16 +55,16 @@ LABELS = (
 
 @styled
 def draw(agreement: xarray.Dataset) -> Figure:
-    """Draw, for each initial state, |Δ⟨J⟩| against both tolerances, the section distance, and the common event order.
+    """Draw, for each initial state, |Δ⟨J⟩| with both tolerances, the section distance, and the common event order.
 
-    Three rows for each law that is compared with the first one. Shaded: the two disagree, in ⟨J⟩ (by more than the
-    tolerance and the errors together) or in the kind of motion. Open symbols: it is not known whether they do.
+    Each law other than the first has three rows. Shaded: it disagrees with the first law, in ⟨J⟩ (by more than the
+    tolerance and the errors together) or in the kind of motion. Open symbols: undecided.
     """
     states, others = agreement["initial"].values, agreement["other_law"].values
     first = agreement["law"].values[0]
     if not len(others):
         figure, (panel,) = new_figure(page_width(1), 1.5)
-        say_nothing(panel, f"the {first} law is the only one: there is nothing to compare")
+        say_nothing(panel, f"{first} is the only law: nothing to compare")
         return figure
     figure, table = panel_table(1.7, len(states), "$a$", LABELS * len(others))
     panels = list(table.flat)
@@ -81,7 +81,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
     if (agreement["agrees"] == Answer.NO).any():
         handles.append(shade_entry("the laws disagree"))
     if (agreement["agrees"] == Answer.UNDETERMINED).any():
-        handles.append(Line2D([], [], **POINT, **UNKNOWN, linestyle="", label="not known"))
+        handles.append(Line2D([], [], **POINT, **UNKNOWN, linestyle="", label="undecided"))
     legend_below(figure, handles)
     label_panels(panels, titles)
     return figure
@@ -118,4 +118,4 @@ def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, unknown: np.nda
     panel.plot(a, values, "-", linewidth=0.8, **POINT, **look)
     panel.plot(a, values.where(unknown), "", **POINT, **UNKNOWN)
     if not values.notnull().any():
-        say(panel, "not known at any $a$")
+        say(panel, "unknown at every $a$")

@@ -1,4 +1,4 @@
-"""The basin fractions against a, and how sweeps of a move between the branches."""
+"""The basin fractions versus a, and the branches followed in sweeps of a."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ TITLE = "Basin fractions and sweeps"
 CATEGORY = "Attractors"
 INPUTS = ("attractors",)
 CAPTION = """\
-Above: the fraction of sampled initial states that reach each branch of attractors against a, with 95 % Wilson
-intervals; crosses are states whose attractor is undetermined. Below: ⟨J⟩ of the attractors that are followed as a is
-raised or lowered.
+Above: the fraction of sampled initial states that reach each branch of attractors, versus a, with 95 % Wilson
+intervals; crosses show the fraction of undetermined states. Below: ⟨J⟩ of the attractor followed while a is raised or
+lowered in small steps.
 """
 
 
 @styled
 def draw(attractors: xarray.Dataset) -> Figure:
-    """Draw, for each law, the fraction of sampled states that reach each branch, and ⟨J⟩ along sweeps up and down in a.
+    """Draw, for each law, the fraction of sampled states that reach each branch, and ⟨J⟩ in sweeps up and down in a.
 
-    Both sides of a branch are counted together, and so are all branches of small basins; bands are 95 % Wilson
-    intervals.
+    Both mirror images of a branch are counted together, and so are all branches with small basins. Bands are 95 %
+    Wilson intervals.
     """
     laws = attractors["law"].values
     figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
@@ -62,7 +62,7 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         there = np.isfinite(interval[:, 0])
         panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=name)
         panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
-        # A band has no width where neither neighbour is there.
+        # A band has no width at an isolated value.
         alone = there & ~np.append(there[1:], False) & ~np.append(False, there[:-1])
         panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
     panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
@@ -70,10 +70,10 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
     if not attractors["sweep_mean_distance"].notnull().any():
-        # With its axis, whose numbers are those of the panel above as well.
+        # Keep the axis: its numbers are also those of the panel above.
         say(panel, "no attractor to follow")
         return
-    # Gray: the colours are those of branches.
+    # Grey, since colours stand for branches.
     styles = {"upward": ("black", ">", 3.6, "-"), "downward": ("0.5", "<", 2.2, "--")}
     for direction, (color, marker, size, dashes) in styles.items():
         for number in range(attractors.sizes["sweep"]):

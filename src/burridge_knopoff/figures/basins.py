@@ -1,4 +1,4 @@
-"""Maps of the basins of attraction."""
+"""The basins of attraction in a plane of initial states."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ CATEGORY = "Attractors"
 INPUTS = ("basins", "attractors")
 FROM_STUDY = ("marked_states",)
 CAPTION = """\
-Maps over the initial positions U_1(0) and U_N(0) of the end blocks, each pixel in the colour of the branch that is
-reached; the mirror image of a branch in a lighter shade, undetermined in black. The initial states of the study that
-lie in this plane are numbered.
+Basin maps over the initial positions U_1(0) and U_N(0) of the end blocks. Each pixel has the colour of the branch that
+is reached: a lighter shade for the mirror image of a branch, black for undetermined. Numbers mark the study's initial
+states in this plane.
 """
 
 COLUMNS = 2
@@ -30,9 +30,9 @@ COLUMNS = 2
 
 @styled
 def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict[str, tuple[float, float]]) -> Figure:
-    """Draw each map in the colours of the branches reached, mirror images in a lighter shade, undetermined in black.
+    """Draw each map in the colours of the branches reached: mirror images in a lighter shade, undetermined in black.
 
-    marked_states : U_1(0) and U_N(0) of initial states that lie in the plane of the maps, by name
+    marked_states : U_1(0) and U_N(0), by name, of the initial states in the plane of the maps
     """
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
@@ -80,5 +80,5 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
 
 
 def _number(index: int) -> dict[str, Any]:
-    """Return the look of the number of an initial state."""
+    """Return the marker of an initial state, its number."""
     return {"marker": f"${index + 1}$", "color": "black", "markersize": 4.5, "markeredgewidth": 0.3, "linestyle": ""}

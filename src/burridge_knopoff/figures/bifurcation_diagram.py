@@ -1,4 +1,4 @@
-"""Bifurcation diagrams: section points W' against a, the paper's Figs. 4a and 4b."""
+"""The bifurcation diagrams: section points W' versus a, as in the paper's Figs. 4a and 4b."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ CATEGORY = "Synchronization"
 PAPER = "Figs. 4a, 4b"
 INPUTS = ("bifurcation_diagram",)
 CAPTION = """\
-Section points W' at W = 0 against a, for each law and initial state; upward crossings above 0, downward crossings
-below. W is the sum of the positions relative to uniform sliding, or one of them if the config's `section` says so;
-what it is stands in `bifurcation_diagram.nc`. Crossings slower than 10⁻⁹ are not shown: they are
-uniform sliding itself, by rounding.
+Section points W' on the section W = 0 versus a, for each law and initial state; upward crossings above 0, downward
+crossings below. W is the sum of the positions relative to uniform sliding, or the position of one block if the config's
+`section` says so (see `bifurcation_diagram.nc`). Crossings slower than 10⁻⁹ are left out: they are uniform sliding with
+rounding errors.
 """
 
-# Values of a beyond which points are so small that a cloud of many can be told apart; those of few are to be seen.
+# With more values of a than this, points are drawn small, to resolve dense clouds; with fewer, large, to be visible.
 FEW = 30
 
 _DIRECTIONS = (1, -1)
@@ -45,10 +45,10 @@ _LABELS = dict(zip(DIRECTION["flag_values"].tolist(), DIRECTION["flag_meanings"]
 def draw(
     bifurcation: xarray.Dataset, attractors: xarray.Dataset | None = None, refined: xarray.Dataset | None = None
 ) -> Figure:
-    """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state.
+    """Draw W' at W = 0 versus a: a row of panels for each law, a column for each initial state.
 
-    attractors, refined : which branch each initial state reaches, and the sections of all attractors between the values
-        of the grid
+    attractors, refined : the branch that each initial state reaches, and the sections of all attractors between the
+        values of the grid
     """
     laws, initial = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
     figure, table = panel_table(2.6, len(initial), "$a$", ["$W$′ at $W=0$" for _ in laws])
@@ -64,7 +64,7 @@ def draw(
             own = section_points(bifurcation, law, state, direction)
             a, velocity = np.hstack([_last(*own), between[:, direction * between[1] > 0.0]])
             real = np.abs(velocity) > ROUNDING
-            # A cloud of 10^5 points is a picture, not 10^5 shapes: kept as pixels inside the PDF.
+            # A cloud of 10^5 points is stored as an image in the PDF, not as 10^5 shapes.
             panel.plot(
                 a[real],
                 velocity[real],
@@ -77,7 +77,7 @@ def draw(
             )
         show_all(panel, grid)
         if not panel.get_lines()[0].get_xdata().size:
-            # Of uniform sliding rounding alone crosses.
+            # In uniform sliding, only rounding crosses the section.
             slow = section_points(bifurcation, law, state, _DIRECTIONS[0])[0].size
             say(panel, STAYS if slow else NEVER_UPWARD)
         titles.append(f"{state}, {law} law")
@@ -96,7 +96,7 @@ def draw(
 
 
 def _last(a: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the last section points of each run, about as many as are kept of an attractor: no column stands out.
+    """Return the last section points of each run, about as many as an attractor has, so that columns look alike.
 
     a : ascending
     """
@@ -108,7 +108,7 @@ def _last(a: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _between(attractors: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
     """Return a and W' of the section points between the values of the grid, shape (2, points).
 
-    attractors : of one law and initial state; refined : of the same law
+    attractors : for one law and initial state; refined : for the same law
     """
     about = attractors.attrs
     reached = attractors["initial_branch"].sel(contact=about["contact"], start=about["start"])

@@ -1,4 +1,4 @@
-"""The bifurcation diagrams with the sections of attractors at values of a between those of the grid."""
+"""The bifurcation diagrams, with attractors at additional values of a between those of the grid."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ TITLE = "Bifurcation diagrams, refined"
 CATEGORY = "Attractors"
 INPUTS = ("bifurcation_diagram", "attractors", "refined")
 CAPTION = """\
-Section points W' at W = 0 against a, for each law and initial state; upward crossings above 0, downward crossings
-below. At values of a in between, where some attractor changes: the section of the attractor that the initial state
-reaches at the nearest value of the grid at which it is the same branch.
+Section points W' on the section W = 0 versus a, for each law and initial state; upward crossings above 0, downward
+crossings below. At additional values of a, where some attractor changes, the points are those of the branch that the
+initial state reaches at the nearest value of the grid.
 """
 
 
 def draw(bifurcation: xarray.Dataset, attractors: xarray.Dataset, refined: xarray.Dataset) -> Figure:
-    """Draw W' at W = 0 against a: a row of panels for each law, a column for each initial state."""
+    """Draw W' at W = 0 versus a: a row of panels for each law, a column for each initial state."""
     return of_runs.draw(bifurcation, attractors, refined)

@@ -1,4 +1,4 @@
-"""Bifurcations of the attractors, marked on ⟨J⟩ of periodic orbits versus a."""
+"""The bifurcations of the branches of attractors, on ⟨J⟩ of periodic orbits versus a."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ TITLE = "Bifurcations of the attractors"
 CATEGORY = "Attractors"
 INPUTS = ("attractors", "bifurcations")
 CAPTION = """\
-Above: ⟨J⟩ of periodic orbits against a for each law, in the colours of the branches of attractors that they belong to:
-solid where they are stable, dashed where they are unstable, a little beyond a bifurcation. Grey points: all
-attractors. Middle: the bifurcations, one row for each kind, in the colour of the branch that begins, ends or changes.
-Crises and undetermined changes are only known to lie in a range of a, the width of the bar. Below, where the study
-covers it: the road from one period to chaos, enlarged, with the bifurcations as symbols on the orbits and the stops of
-all blocks in a period.
+Above: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
+dashed where unstable and followed a little beyond a bifurcation. Grey points: all attractors. Middle: the ends and
+changes of branches, a row for each type, in the colour of the branch that begins, ends or changes. Crises and
+undetermined changes are only known to lie in a range of a, the width of the bar. Below, if the study covers it: the
+route from period one to chaos, enlarged, with a symbol for each bifurcation and the number of stops of each block in a
+period.
 """
 
-# Marker and name of each kind of bifurcation that is located.
+# Marker and name of each type of bifurcation that is located.
 MARKS = {
     BifurcationKind.GRAZING: ("v", "grazing"),
     BifurcationKind.FOLD: ("s", "fold"),
@@ -45,23 +45,23 @@ MARKS = {
     BifurcationKind.PITCHFORK: ("P", "pitchfork"),
 }
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
-# Rows of the panels of bifurcations.
+# Rows of the middle panels.
 ROWS = {
     **{kind: name for kind, (_, name) in MARKS.items()},
     BifurcationKind.CRISIS: "crisis",
     BifurcationKind.UNDETERMINED: "unknown",
 }
 
-#: Ranges of a and ⟨J⟩ of the panels below.
+#: Ranges of a and ⟨J⟩ in the lower panels.
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
 
-# Stretches of stable orbits at least this long in a have their stops beside them there.
+# Stable orbits that extend at least this far in a are labelled with their stops there.
 NAMED = 0.01
 
 
 @styled
 def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and below it the bifurcations by kind."""
+    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and the bifurcations by type, for each law."""
     laws = [str(law) for law in attractors["law"].values]
     rows = 2 + _covers_road(attractors, bifurcations)
     heights = [3.0, 1.3, 2.6][:rows]
@@ -91,13 +91,13 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     figure.align_ylabels()
     _legend(figure, bifurcations, colors, branch_names(attractors), rows > 2)
     label_panels(
-        panels.flat, [f"{law} law{end}" for end in ("", ": bifurcations", ": road to chaos")[:rows] for law in laws]
+        panels.flat, [f"{law} law{end}" for end in ("", ": bifurcations", ": route to chaos")[:rows] for law in laws]
     )
     return figure
 
 
 def _covers_road(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
-    """Tell whether the values of a reach beyond the road, and orbits of every law lie on it."""
+    """Tell whether the values of a reach beyond the route to chaos, and orbits of every law lie on it."""
     a, mean, law = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "law"))
     inside = (a > ROAD[0][0]) & (a < ROAD[0][1]) & (mean > ROAD[1][0]) & (mean < ROAD[1][1])
     return bool(attractors["a"].values[-1] >= ROAD[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
@@ -118,16 +118,16 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[in
         color = colors.get(int(branch[chosen[0]]), OTHER_COLOR)
         ends = np.flatnonzero(np.diff(stable[chosen])) + 1
         for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
-            # An unstable piece is drawn from the stable orbit before it to the one after it.
+            # An unstable piece is drawn from the stable orbit before it to the stable orbit after it.
             piece = chosen[first:last] if stable[chosen[first]] else chosen[max(first - 1, 0) : last + 1]
             style, width = ("-", 1.3) if stable[chosen[first]] else ("--", 0.7)
             panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
 
 
 def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
-    """Draw each bifurcation into the row of its kind: a line where it is located, else a bar over its range of a."""
+    """Draw each bifurcation into the row of its type: a line where it is located, else its range of a."""
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
-    # What begins is above the bifurcation, all else below.
+    # Branches that begin are drawn above, all others below.
     branch = np.where(
         bifurcations["change"] == Change.BEGINNING, bifurcations["to_branch"], bifurcations["from_branch"]
     )
@@ -142,7 +142,7 @@ def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: d
 
 
 def _marks(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
-    """Draw a symbol at each bifurcation that is located."""
+    """Draw a symbol at each located bifurcation."""
     own, kind = bifurcations["law"].values == law, bifurcations["kind"].values
     a, mean = bifurcations["a"].values, bifurcations["mean_distance"].values
     for one, (marker, _) in MARKS.items():
@@ -151,7 +151,7 @@ def _marks(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
 
 
 def _stops(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
-    """Write how often each block stops in a period beside the longer segments of stable orbits."""
+    """Write the number of stops of each block in a period beside the longer pieces of stable orbits."""
     own = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
     number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
     for one in np.unique(number[own]):
@@ -168,7 +168,7 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
 def _legend(
     figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str], marked: bool
 ) -> None:
-    """Put a legend of what is drawn below all panels; marked : whether there are symbols of bifurcations."""
+    """Put a legend below all panels; marked : whether there are symbols of bifurcations."""
     drawn = {int(number): colors.get(int(number), OTHER_COLOR) for number in bifurcations["orbit_branch"].values}
     stable = bifurcations["orbit_stable"].values
     located = bifurcations["kind"].values[np.isfinite(bifurcations["mean_distance"].values)]

@@ -16,21 +16,21 @@ OTHER_COLOR = "#999999"
 OTHERS = "other branches"
 UNDETERMINED_COLOR = "#000000"
 
-# The synchronized attractor has the first, branch 1 the second and so on, as long as they last.
+# The synchronized attractor has the first colour, branch 1 the second, and so on while colours last.
 COLORS = ("#0072B2", "#D55E00", "#999933", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#332288")
 
-# Of the branches that share a colour those in one map are told apart by its lightness.
+# Branches that share a colour in one map are distinguished by its lightness.
 OTHER_SHADES = (OTHER_COLOR, "#666666", "#cccccc", "#444444")
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch: its own for those that most states reach over all a, grey for the others.
+    """Return the colour of each branch: its own for the branches that most states reach over all a, else grey.
 
-    The number of a branch decides its colour, so that files of one model agree; where two would have the same, the
-    lower one keeps it, and the other one takes the next that is free.
+    The branch number decides the colour, so that files of one model agree. If two branches would have the same colour,
+    the lower number keeps it and the other branch takes the next free colour.
     """
     branch, reached = (attractors[name].values for name in ("branch", "basin_count"))
-    # Where no states are drawn, and of equal basins, the one found at more values of a comes first.
+    # Without sampled states, or for equal basins, the branch found at more values of a comes first.
     present = {int(n): branch == n for n in np.unique(branch) if n > 0}
     sizes = {n: (int(reached[where].sum()), int(where.any(axis=-1).sum())) for n, where in present.items()}
     ranked = sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n))
@@ -45,24 +45,24 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
 
 
 def map_colors(attractors: xarray.Dataset, shown: Collection[int]) -> dict[int, str]:
-    """Return the colours of the branches in maps, where those that share one have different shades of it."""
+    """Return the colours of the branches in maps; branches that share a colour have different shades of it."""
     colors, shades = branch_colors(attractors), cycle(OTHER_SHADES)
     return {n: next(shades) if colors[n] == OTHER_COLOR else colors[n] for n in sorted(shown) if n >= 0}
 
 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:
-    """Return the colours of branches by their names, for a legend; the one that several share comes last."""
+    """Return the colours of branches by name, for a legend; the shared colour comes last."""
     own = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_COLOR}
     return own | ({OTHERS: OTHER_COLOR} if len(own) < len(colors) else {})
 
 
 def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> Iterator[tuple[str, str, np.ndarray]]:
-    """Yield name, colour and basin fraction of each branch of one law, all those that share a colour as one, at last.
+    """Yield name, colour and basin fraction of each branch of one law; branches that share a colour come last, as one.
 
-    The fraction has the ends of its 95 % Wilson interval beside it, shape (a, 3), NaN where there is no such attractor.
-    Both sides of a branch count together.
+    The fraction comes with the ends of its 95 % Wilson interval, shape (a, 3); NaN where the attractor does not exist.
+    Both mirror images of a branch are counted together.
 
-    colors : of all branches, as of `branch_colors`
+    colors : of all branches, from `branch_colors`
     """
     names, samples = branch_names(attractors), attractors["sample_count"].values.tolist()
     branch, count = attractors["branch"].values, attractors["basin_count"].values
@@ -79,7 +79,7 @@ def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> It
 
 
 def undetermined_share(attractors: xarray.Dataset) -> np.ndarray:
-    """Return the share of the sampled states whose attractor is undetermined, shape (a,); NaN where there are none."""
+    """Return the fraction of sampled states whose attractor is undetermined, shape (a,); NaN without samples."""
     with np.errstate(invalid="ignore"):
         share = attractors["undetermined_count"].values / attractors["sample_count"].values
     return np.where(share > 0.0, share, np.nan)

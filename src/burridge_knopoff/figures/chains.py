@@ -1,4 +1,4 @@
-"""The mirror synchrony of longer chains."""
+"""The synchronization of mirror blocks in longer chains."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ TITLE = "Longer chains"
 CATEGORY = "Longer chains"
 INPUTS = ("chains",)
 CAPTION = """\
-The fraction of sampled states, drawn anew at each a, that end in mirror synchrony, for each number of blocks N, with
-confidence intervals; open circles count undetermined states as well; squares mark where synchrony is stable.
+The fraction of sampled initial states, drawn anew at each a, that end in mirror synchrony, for each number of blocks N,
+with confidence intervals. Open circles include undetermined states. Squares mark values of a with stable synchrony.
 """
 
 COLUMNS = 3
 ROW_HEIGHT = 1.45
 
-# Curves of the laws at the same a are drawn this share of a step apart.
+# Points of different laws at the same a are drawn apart by this fraction of a step.
 SHIFT = 0.15
 
 
@@ -31,9 +31,9 @@ SHIFT = 0.15
 def draw(chains: xarray.Dataset) -> Figure:
     """Draw the synchronized fraction against a, a panel for each number of blocks.
 
-    Bars: confidence intervals, undetermined states counted either way; open circles: the fraction with all of those
-    counted as synchronized. Squares at the top: some symmetric motion has a transverse exponent that is negative beyond
-    its error, so that synchrony is stable.
+    Bars are confidence intervals that count undetermined states either way; open circles count all of these as
+    synchronized. Squares at the top: some symmetric motion has a transverse exponent that is negative beyond its error,
+    so that synchrony is stable.
     """
     blocks = chains["blocks"].values
     rows = math.ceil(len(blocks) / COLUMNS)
@@ -51,7 +51,7 @@ def draw(chains: xarray.Dataset) -> Figure:
     for panel in grid[:, 0]:
         panel.set_ylabel("fraction")
     handles, labels = legend_entries(panels[: len(blocks)])
-    # Points with bars come last of themselves.
+    # Points with error bars are drawn last anyway.
     order = sorted(range(len(labels)), key=lambda k: not labels[k].startswith("synchronized"))
     legend_below(figure, [handles[k] for k in order])
     label_panels(panels[: len(blocks)], [f"$N={count}$" for count in blocks])
@@ -80,7 +80,7 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         stable = below.any("symmetric_state").values
         panel.plot(
             a[stable], np.full(stable.sum(), 1.1 + 0.05 * index), "s", markersize=2.0, color=color(index),
-            label=f"synchrony stable{name}",
+            label=f"stable synchrony{name}",
         )  # fmt: skip
     panel.set_ylim(-0.05, 1.15 + 0.05 * chain.sizes["law"])
     panel.set_yticks([0.0, 0.5, 1.0])

@@ -1,14 +1,15 @@
-"""What each figure says of itself: rules, `snakemake --report` and the report of a study read it without drawing.
+"""Descriptions of the figures, which rules, `snakemake --report` and the report of a study read without drawing.
 
-A module of this folder that assigns CAPTION is a figure. The first line of its docstring says what it shows, with an
-article and not a proper name first, so that it may follow "Draw". It has a function `draw` and, as plain constants:
+A module of this folder that assigns CAPTION is a figure. The first line of its docstring says what it shows and starts
+with an article rather than a proper name, so that it can follow "Draw". The module has a function `draw` and these
+plain constants:
 
-TITLE, CATEGORY : in words; PAPER : figures of the paper that it shows again, as "Fig. 2"
+TITLE, CATEGORY : for a reader; PAPER : figures of the paper that it reproduces, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
 INPUTS : names of the summaries that `draw` takes, in order; or `runs` alone, the point files of single runs by state
-FROM_STUDY : names of properties of `Study` that it takes besides
-CONDITION : property of `Study` without which there is no such figure
-FILE : name of the picture if it is not that of the module
+FROM_STUDY : names of properties of `Study` that it takes as well
+CONDITION : property of `Study` that decides whether the figure exists
+FILE : name of the picture, if it is not that of the module
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Description:
-    """What the figure of a module says of itself."""
+    """The description of a figure, from its module."""
 
     name: str
     subject: str
@@ -43,7 +44,7 @@ class Description:
 
     @property
     def of_runs(self) -> bool:
-        """Whether it shows single runs and no summary."""
+        """Whether it shows single runs rather than summaries."""
         return self.inputs == ("runs",)
 
     @property
@@ -52,12 +53,12 @@ class Description:
         return "figure_of_runs" if self.of_runs else "figure_of_summaries"
 
     def caption_of(self, wildcards: Mapping[str, str]) -> str:
-        """Return the caption of one picture, in one paragraph, with what the paper has of it."""
+        """Return the caption of a picture as one paragraph, with a reference to the paper's figure."""
         paper = f" Compare the paper's {self.paper}." if self.paper else ""
         return _filled(f"{' '.join(self.caption.split())}{paper}", wildcards)
 
     def title_of(self, wildcards: Mapping[str, str]) -> str:
-        """Return the title of one picture."""
+        """Return the title of a picture."""
         return _filled(self.title, wildcards)
 
 
@@ -67,16 +68,16 @@ def _filled(text: str, wildcards: Mapping[str, str]) -> str:
 
 @cache
 def figure_descriptions() -> tuple[Description, ...]:
-    """Return all figures, those of the paper first, then by name."""
+    """Return all figures: those of the paper first, then by name."""
     found = [_described(path) for path in Path(__file__).parent.glob("*.py")]
     figures = [description for description in found if description is not None]
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
 def study_figures(study: Study, of_chains: Collection[str]) -> list[Description]:
-    """Return the figures of a study, each as the study has it.
+    """Return the figures of a study.
 
-    of_chains : summaries of longer chains that there can be, besides those of the study's stages
+    of_chains : available summaries of longer chains, besides those of the study's stages
     """
     figures = []
     for figure in figure_descriptions():
@@ -88,14 +89,14 @@ def study_figures(study: Study, of_chains: Collection[str]) -> list[Description]
 
 
 def picture_names(states: Collection[str]) -> set[str]:
-    """Return the names of all pictures, without suffix, of a study that has some initial states."""
+    """Return the names, without suffix, of all pictures of a study with the given initial states."""
     return {_filled(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
 
 
 def described_picture(file: str) -> tuple[str, str]:
-    """Return title and caption of a picture by the name of its file.
+    """Return title and caption of a picture from its file name.
 
-    Raises ValueError if no figure makes it.
+    Raises ValueError if no figure has that name.
     """
     for figure in figure_descriptions():
         head, wildcard, _ = figure.file.partition("{initial}")

@@ -1,4 +1,4 @@
-"""The distance J(τ) between the end blocks in single runs: the paper's Figs. 5a and 5b."""
+"""The distance J(τ) between the end blocks in single runs, as in the paper's Figs. 5a and 5b."""
 
 from __future__ import annotations
 
@@ -10,28 +10,29 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import color, label_panels, panel_table, say, styled, to_decades
 
-TITLE = "J against time"
+TITLE = "J versus time"
 CATEGORY = "Runs"
 PAPER = "Figs. 5a, 5b"
 INPUTS = ("runs",)
 CAPTION = """\
-The phase-space distance J between the end blocks against time τ in single runs from each initial state, on a linear
-scale and on a logarithmic one, which leaves out what is 0 or rounding, below 10⁻¹⁵. Where the first relaxation, before
-a hundredth of the run, is more than five times what follows, the linear scale is cut there, and J(0) is given.
+The phase-space distance J between the end blocks versus time τ in single runs from each initial state, on a linear and
+on a logarithmic scale; the latter leaves out values below 10⁻¹⁵, which are rounding. If the initial relaxation, in the
+first hundredth of the run, is more than five times higher than the rest, the linear scale cuts it off and the panel
+gives J(0).
 """
 
-# Below this J is rounding.
+# Smaller J is rounding.
 FLOOR = 1e-15
-# A first relaxation more than so many times what follows is cut.
+# An initial relaxation this many times higher than the rest is cut off.
 CUT = 5.0
 
 
 @styled
 def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
-    """Draw J(τ), a panel for each {initial state: point file}, with the same run on a logarithmic scale below.
+    """Draw J(τ): a panel for each {initial state: point file}, and below it the same run on a logarithmic scale.
 
-    A linear panel is cut where the first relaxation is far above what follows; a run that ended early leaves the rest
-    of its panel empty.
+    A linear panel is cut where the initial relaxation is far above the rest. The panel of a run that ended early stays
+    empty beyond its end.
     """
     figure, table = panel_table(1.8, len(runs), r"$\tau$", [r"$J(\tau)$"] * 2, share_y=False)
     titles = []
@@ -48,7 +49,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
         for panel in (linear, logarithmic):
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
             if not distance.any():
-                say(panel, "$J$ is 0 at all times")
+                say(panel, "$J = 0$ at all times")
         titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")
     table[0, 0].legend(loc="upper right", handlelength=1.2)
     label_panels(table.flat, titles + [f"{title}, logarithmic" for title in runs])
@@ -56,7 +57,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
 
 
 def linear_top(distance: np.ndarray) -> float | None:
-    """Return the upper end of a linear axis for J, without a first relaxation far above the rest; None if all is 0."""
+    """Return the upper end of a linear axis for J, which cuts off a high initial relaxation; None if all J are 0."""
     finite = np.isfinite(distance)
     if not distance[finite].any():
         return None

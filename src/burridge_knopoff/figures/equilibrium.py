@@ -1,4 +1,4 @@
-"""Uniform sliding: the eigenvalues of its perturbations, and how fast these grow."""
+"""The uniform sliding state: eigenvalues and growth rates of its perturbations."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ TITLE = "Uniform sliding"
 CATEGORY = "Model"
 INPUTS = ("equilibrium",)
 CAPTION = """\
-(a) The eigenvalues λ of its stability matrix for all a of the study, for each law. (b) The largest real part, which is
-the growth rate of perturbations, against a, and what the tangent dynamics of the simulation shows; dotted: a/2, that of
-the paper's chain under the linearized law.
+(a) The eigenvalues λ of the stability matrix of uniform sliding at all a of the study, for each law. (b) The largest
+real part, which is the growth rate of perturbations, versus a. Markers: growth rates of the simulated tangent flow.
+Dotted: a/2, the value of the paper's chain with the linearized law.
 """
 
-# Of the first and of the last law: where points lie on each other both are seen.
+# Of the first and last law: both are visible where points coincide.
 WIDTHS = (2.2, 1.0)
 
 
 @styled
 def draw(equilibrium: xarray.Dataset) -> Figure:
-    """Draw the eigenvalues in the complex plane at all a, and the largest real part against a, for each law.
+    """Draw the eigenvalues in the complex plane at all a, and the largest real part versus a, for each law.
 
     Lines on the right are eigenvalues of the Jacobian; markers are growth rates of the simulated tangent flow.
     """
@@ -38,7 +38,7 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
         one = equilibrium.sel(law=law)
         eigenvalue = one["eigenvalue"]
         real, imaginary = (eigenvalue.sel(part=part).values for part in ("real", "imaginary"))
-        # Not joined: eigenvalues that collide cannot be told apart.
+        # No lines: the order of eigenvalues is lost where they collide.
         plane.plot(real.ravel(), imaginary.ravel(), "o", color=color(n), markersize=width, markeredgewidth=0)
         plane.plot(real[-1], imaginary[-1], marker(n), color=color(n), markersize=4)
         growth.plot(a, real.max(axis=1), color=color(n), linewidth=1.0, marker=lone_marker(a), markersize=6.0)
@@ -71,5 +71,5 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
 
 
 def _gray(**look: Any) -> Line2D:
-    """Return the entry of a legend for what all laws have in common."""
+    """Return a legend entry for a style that all laws share."""
     return Line2D([], [], color="0.3", markersize=3.5, **look)

@@ -1,4 +1,4 @@
-"""The friction laws of a study, the paper's Fig. 2 among them, and the least friction that slipping blocks felt."""
+"""The friction laws of a study, as in the paper's Fig. 2, and the least friction on slipping blocks."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ PAPER = "Fig. 2"
 INPUTS = ("mean_distance",)
 FROM_STUDY = ("law_descriptions", "shown_a")
 CAPTION = """\
-(a) The friction Φ of each law, as a share of the static friction, against the velocity U' of a block, at the values of
-a that stand beside the curves, up to the velocity that runs at the larger a reach; a stuck block (U' = 0, grey) is held
-by any friction up to 1. (b) The least friction on a slipping block in each run that completed, against a; symbols mark
-the initial state.
+(a) The friction Φ of each law, as a fraction of the static friction, versus the velocity U' of a block, at the values
+of a beside the curves, up to the velocity that runs reach at the larger a. A stuck block (U' = 0, grey) is held by
+friction of up to 1. (b) The least friction on a slipping block in each completed run, versus a; symbols mark the
+initial state.
 """
 
-# Velocities that runs may reach; all are drawn if the friction tells nothing.
+# Velocities that runs may reach; the whole range is drawn if the friction does not tell the velocity.
 SPEEDS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 4001)])
 
-# Lines, and letters of each, that a law may take in the legend.
+# Lines of a law in the legend, and letters in a line.
 LINES = 3
 LETTERS = 100
 
@@ -40,16 +40,16 @@ LETTERS = 100
 def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[str, Any]], shown_a: float) -> Figure:
     """Draw Φ of each law at two values of a, and the least friction on a slipping block in each run.
 
-    law_descriptions : the laws of the study as its config has them, a colour each
-    shown_a : value of a of the single runs; the other one is the largest of the runs
+    law_descriptions : the laws of the study as in its config, each with its own colour
+    shown_a : value of a of the single runs; the other value is the largest of the runs
     """
     laws = [law_of(name, shown_a, description) for name, description in law_descriptions.items()]
     a_values = sorted({shown_a, float(mean_distance["a"].max())})
     figure, (left, right) = new_figure(PAGE, 2.9 + 0.17 * len(laws), columns=2)
-    # A run that did not complete may have left every scale.
+    # A run that did not complete may have diverged.
     least_friction = mean_distance["least_friction"].where(mean_distance["status"] == Status.COMPLETED)
     last = least_friction.sel(a=a_values[-1]).min("initial")
-    # Where the friction has fallen to the least of the runs.
+    # The velocity at which the friction falls to the least value in the runs.
     reached = [SPEEDS[(law.at(a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws]
     fastest = 1.1 * max(reached) or 3.0
     speed = np.linspace(0.0, fastest, 301)
@@ -82,7 +82,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
 
 
 def _symbol(state: int, values: int = 1) -> dict[str, Any]:
-    """Return the symbol of an initial state, on some of so many values only."""
+    """Return the symbol of an initial state, drawn at some of `values` points only."""
     every = max(1, values // 8)
     hollow = {"markerfacecolor": "white"} if state % 2 else {}
     return {
@@ -96,5 +96,5 @@ def _symbol(state: int, values: int = 1) -> dict[str, Any]:
 
 def _entry(law: Law) -> str:
     lines = wrap(f"{law.name}: {law.words}", LETTERS, max_lines=LINES, placeholder=" …")
-    # Symbols in italics, as on the axes.
+    # Symbols in italics, as in the axis labels.
     return "\n".join(re.sub(r"\b(\w?aU|[a-zUση])\b", r"$\1$", line) for line in lines)

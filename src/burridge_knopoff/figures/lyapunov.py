@@ -1,4 +1,4 @@
-"""The Lyapunov exponents and the kinds of motion against a."""
+"""The Lyapunov exponents and kinds of motion versus a."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ TITLE = "Lyapunov exponents"
 CATEGORY = "Synchronization"
 INPUTS = ("lyapunov", "agreement")
 CAPTION = """\
-The largest Lyapunov exponents against a, with bars of three times their error, which is that of the batches and of
-growth by a power of time, for each law and initial state. What lies below the frame, among it −∞, is not shown. The
-strips at the top show the kind of motion: by the exponents and the section points, or, where these leave it open, that
-of the attractor that the run has come to; white is undetermined.
+The largest Lyapunov exponents versus a, with bars of three times their error, for each law and initial state. The error
+includes the scatter of the batches and algebraic growth of perturbations. Values below the frame, including −∞, are not
+shown. The strips at the top show the kind of motion, from the exponents and section points of the run; where these do
+not decide, from the attractor that the run has reached. White: undetermined.
 """
 
-# The least that the frame reaches down to, so that exponents near 0 are seen as such.
+# The frame reaches down at least this far, so that exponents near 0 look near 0.
 LEAST_DEPTH = 0.01
 
-# Where the curves end and the strip begins, in units of the panel's height.
+# Height at which the curves end and the strip begins, as a fraction of the panel.
 CURVES, STRIP = 0.9, 0.93
 
 
 @styled
 def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
-    """Draw the largest exponents against a with three times their error, the kind of motion as a strip above them.
+    """Draw the largest exponents versus a with three times their error, and the kind of motion in a strip above them.
 
     A panel for each law and initial state.
     """
@@ -88,10 +88,10 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
 
 
 def frame(lyapunov: xarray.Dataset) -> tuple[float, float]:
-    """Return what the frame of the curves reaches down and up to.
+    """Return the lower and upper end of the axis of the curves.
 
-    It has all ends of bars above 0, and below 0 twice the depth of the largest exponents and of nine tenths of the
-    second ones: these two tell kinds of motion apart, and very negative ones would take their room.
+    Above 0 it includes all bars. Below 0 it reaches twice as deep as the largest exponents and nine tenths of the
+    second largest. These two decide the kind of motion; very negative exponents would hide them.
     """
     exponent = lyapunov["lyapunov_exponent"].values
     error = 3.0 * lyapunov["lyapunov_error"].fillna(0.0).values

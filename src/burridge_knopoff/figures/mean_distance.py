@@ -1,4 +1,4 @@
-"""⟨J⟩ against a for each initial state and law, the paper's Figs. 3a and 3b; attractors may stand behind it."""
+"""The mean distance ⟨J⟩ versus a for each initial state and law, as in the paper's Figs. 3a and 3b."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from burridge_knopoff.figures.style import (
     styled,
 )
 
-TITLE = "⟨J⟩ against a"
+TITLE = "⟨J⟩ versus a"
 CATEGORY = "Synchronization"
 PAPER = "Figs. 3a, 3b"
 INPUTS = ("mean_distance",)
 CAPTION = """\
-The time average ⟨J⟩ of the phase-space distance between the end blocks against a, for each law: runs from each initial
-state (black, bars of three standard errors).
+The time average ⟨J⟩ of the phase-space distance between the end blocks versus a, for each law: runs from each initial
+state (black, with bars of three standard errors).
 """
 
-# Each initial state has a marker; colours are left to the branches.
+# Markers distinguish initial states, since colours stand for branches.
 MARKERS = "ovs^Dphx"
 
 
 @styled
 def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None) -> Figure:
-    """Draw ⟨J⟩(a) of the runs over the branches of attractors, and which branch each initial state reaches.
+    """Draw ⟨J⟩(a) of the runs over the branches of attractors, and the branch that each initial state reaches.
 
-    A column for each law. Above: coloured points are attractors, black curves are the runs with three standard errors;
-    gaps are runs that did not complete. Below: a row for each initial state under each convention of contact and start,
-    in the colour of the branch that it reaches; white is undetermined. Without attractors there are the runs only.
+    A column for each law. Above: coloured points are attractors, black curves are runs with three standard errors; gaps
+    are runs that did not complete. Below: a row for each initial state and convention of contact and start, in the
+    colour of the branch that it reaches; white is undetermined. Without attractors, only the runs are drawn.
     """
     laws = mean_distance["law"].values
     strips = [] if attractors is None else [0.13 * attractors["initial_branch"].isel(law=0, a=0).size + 0.2]

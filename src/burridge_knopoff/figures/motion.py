@@ -1,4 +1,4 @@
-"""Velocities and positions of the blocks at the end of a run, and its section: the paper's Figs. 6 and 7."""
+"""The velocities and positions of the blocks at the end of a run, and its section, as in the paper's Figs. 6 and 7."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ PAPER = "Figs. 6, 7"
 FILE = "motion_{initial}"
 INPUTS = ("runs",)
 CAPTION = """\
-The run from the state {initial}. (a) Velocities U_i' and (b) positions U_i − vτ of all blocks against time τ at its
-end. (c) W' at each upward crossing of the section W = 0 in the window against W' at the crossing before, W being the
-sum of the positions relative to uniform sliding: a point for each crossing in a period if the motion is periodic,
-curves if it is quasiperiodic. (d) The same W' against the time of the crossing.
+The run from the state {initial}. (a) Velocities U_i' and (b) positions U_i − vτ of all blocks versus time τ at the end
+of the run. (c) The return map of the section W = 0, where W is the sum of the positions relative to uniform sliding: W'
+at each upward crossing in the window versus W' at the previous one. Periodic motion gives a point for each crossing in
+a period, quasiperiodic motion gives curves. (d) The same W' versus the time of the crossing.
 """
 
-# Later blocks lie above earlier ones and are thinner or broken, so that blocks in synchrony are all seen.
+# Later blocks are drawn above earlier ones with thinner or dashed lines, so that synchronized blocks are all visible.
 DASHES = ("-", (0, (5, 2)), (0, (1.2, 2.2)), "-.")
 WIDTHS = (2.2, 1.1, 1.4, 1.0)
-# A legend of more blocks than these would take the room of the curves.
+# A legend of more blocks than this would cover the curves.
 MOST_NAMED = 12
 
-# Their number has no divisor in common with that of the dashes: all pairs come up before one comes again.
+# Coprime with the number of dashes, so that no pair of width and dash repeats before all have been used.
 SHADES = ("#7FB2DA", "#D55E00", "#000000", "#009E73", "#CC79A7", "#E69F00", "#0072B2")
 
-# Section points of a run that are drawn larger.
+# With fewer section points than this, they are drawn larger.
 FEW = 50
 
 
 @styled
 def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
-    """Draw U_i'(τ) and U_i(τ) − vτ of every block over the kept last part of the one run, and its section W = 0."""
+    """Draw U_i'(τ) and U_i(τ) − vτ of every block in the recorded last part of a run, and its section W = 0."""
     (point,) = runs.values()
     figure = Figure(figsize=(PAGE, 6.4), layout="constrained")
     places: Any = [["velocity", "velocity"], ["position", "position"], ["section", "times"]]
@@ -66,7 +66,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
 
 
 def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
-    """Draw velocity or position of every block over the kept last part of a run into a panel."""
+    """Draw the velocity or position of every block in the recorded last part of a run."""
     time = point["trajectory_time"].values
     for index, block in enumerate(point["block"].values):
         panel.plot(
@@ -80,7 +80,7 @@ def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
 
 
 def draw_section(panel: Axes, point: xarray.Dataset) -> None:
-    """Draw W' at each upward crossing of W = 0 against the one before into a panel."""
+    """Draw W' at each upward crossing of W = 0 versus W' at the previous one."""
     _, upward = _upward(point)
     if len(upward) < 2:
         say_nothing(panel, "$W$ crosses 0 upward\nless than twice in the window")
@@ -102,7 +102,7 @@ def _section_times(panel: Axes, point: xarray.Dataset) -> None:
 
 
 def _upward(point: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return times and W' of the upward crossings that are not rounding."""
+    """Return times and W' of the upward crossings that are faster than rounding."""
     velocity = point["crossing_velocity"].values
     chosen = (point["crossing_direction"].values > 0) & (np.abs(velocity) > ROUNDING)
     return point["crossing_time"].values[chosen], velocity[chosen]
@@ -114,7 +114,7 @@ def _look(velocity: np.ndarray) -> dict[str, Any]:
 
 
 def _limits(velocity: np.ndarray) -> tuple[float, float]:
-    """Return the ends of an axis: points of a closed orbit differ by rounding, which is no range to be shown."""
+    """Return the ends of an axis. Points of a periodic orbit differ by rounding, which must not set the range."""
     middle = 0.5 * (velocity.min() + velocity.max())
     half = 0.55 * max(np.ptp(velocity), 0.02 * np.abs(velocity).max())
     return middle - half, middle + half

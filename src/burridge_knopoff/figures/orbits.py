@@ -1,4 +1,4 @@
-"""The synchronized orbit against a: its multipliers, what takes its place beyond a_c, and how alike the laws are."""
+"""The synchronized orbit versus a: its multipliers, the orbits beyond a_c, and the differences of the laws."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ CATEGORY = "Synchronization"
 INPUTS = ("orbits", "mean_distance")
 CONDITION = "has_synchronized_orbit"
 CAPTION = """\
-(a) Its Floquet multipliers; synchrony is lost, or gained, where the modulus of the transverse multiplier μ passes 1
-(dots). (b) ⟨J⟩ of the stable and unstable orbits around that a_c, with the runs of the study that lie there, if any.
-(c) The distance of the end blocks on the orbit that branches off grows as a power of the distance from a_c. (d) How far
-each law differs from the first one in μ and in the period T at the same a; black: the paper's two laws at the same
-slope of friction at the driver velocity. Values of 0 are left out.
+(a) Floquet multipliers of the synchronized orbit. Synchrony is lost, or gained, where the modulus of the transverse
+multiplier μ crosses 1 (dots). (b) ⟨J⟩ of the stable and unstable orbits around this a_c, with the study's runs in that
+range. (c) The distance between the end blocks on the orbit that branches off grows as a power of |a − a_c|.
+(d) Difference between each law and the first law in μ and in the period T at the same a; black: the paper's two laws at
+the same slope of friction at the driver velocity. Values of 0 are left out.
 """
 
-# What the second panel shows: from this share of a_c on, up to the last orbit that branches off.
+# Range of the second panel: from this fraction of a_c to the last orbit that branches off.
 NEAR = 0.93
 
 
 @styled
 def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
-    """Draw multipliers, ⟨J⟩ around a_c, the amplitude law beyond it, and how each law differs from the first one.
+    """Draw multipliers, ⟨J⟩ around a_c, the amplitude law beyond it, and the difference of each law from the first.
 
-    orbits : the summary of the synchronized orbits; runs : that of the mean distance, drawn beside the orbits
+    orbits : the summary of synchronized orbits; runs : that of the mean distance, drawn beside the orbits
     """
     figure, panels = new_figure(PAGE, 5.6, rows=2, columns=2, share_rows=False, share_columns=False)
     if not np.isfinite(orbits["critical_a"]).any():
         for panel in panels:
-            say_nothing(panel, "no synchronized orbit found")
+            say_nothing(panel, "no synchronized orbit")
         return figure
     for index, law in enumerate(orbits["law"].values):
         one = orbits.sel(law=law)
@@ -129,7 +129,7 @@ def symmetric_curve(one: xarray.Dataset) -> np.ndarray:
 
 
 def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: str) -> None:
-    """Draw ⟨J⟩ of the stable and the unstable orbits, and of the runs of a study nearby."""
+    """Draw ⟨J⟩ of the stable and unstable orbits, and of the study's runs nearby."""
     critical = one["critical_a"].item()
     offset, distance, stable = _dense_branch(one)
     if not np.isfinite(critical):
@@ -150,7 +150,7 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
 
 
 def _attracts(one: xarray.Dataset, *, below: bool) -> bool:
-    """Tell whether synchrony attracts on a side of a_c, by the nearest value of a; else as where it is lost there."""
+    """Tell whether synchrony is stable on a side of a_c: at the nearest value of a, or else from the loss there."""
     a, modulus = one["a"].values, np.abs(one["transverse_multiplier"].values)
     side = np.isfinite(modulus) & ((a < one["critical_a"].item()) == below)
     if not side.any():
@@ -159,14 +159,14 @@ def _attracts(one: xarray.Dataset, *, below: bool) -> bool:
 
 
 def _run_look(state: int) -> dict[str, Any]:
-    """Return the marker of an initial state: those of the first are open, so that what lies inside is seen."""
+    """Return the marker of an initial state: open for the first, so that markers inside it are visible."""
     return {"marker": marker(state), "markersize": 3 if state else 4.5, "markerfacecolor": "none"}
 
 
 def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return a − a_c, ⟨J⟩ and stability along the asymmetric orbits, between those that are known as well.
+    """Return a − a_c, ⟨J⟩ and stability along the asymmetric orbits, interpolated between the known orbits.
 
-    (a − a_c)/d² and ⟨J⟩/d are smooth in the asymmetry d, and nearly constant: they are what is interpolated.
+    The interpolated quantities (a − a_c)/d² and ⟨J⟩/d are smooth and nearly constant in the asymmetry d.
     """
     known = np.isfinite(one["branch_offset"].values)
     if not known.any():
@@ -190,14 +190,14 @@ def _draw_amplitude(panel: Axes, one: xarray.Dataset, hue: str, marker: str) -> 
 
 
 def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
-    """Draw how far each law is from the first at the same a, and the paper's laws at the same slope of the friction."""
+    """Draw the difference of each law from the first at the same a, and of the paper's laws at the same slope."""
     laws = orbits["law"].values
     if len(laws) < 2:
-        say_nothing(panel, "the only law: there is nothing to compare")
+        say_nothing(panel, "only one law: nothing to compare")
         return
     a, orbit = orbits["a"].values, orbits["transverse_multiplier"]
     if not (orbit - orbit.sel(law=laws[0])).sel(law=laws[1:]).notnull().any():
-        say_nothing(panel, f"no other law has an orbit where the {laws[0]} law has one")
+        say_nothing(panel, f"no other law has an orbit at the values of $a$ of the {laws[0]} law")
         return
     curves: Any = (
         ("transverse_multiplier", "effective_multiplier_difference", r"\mu", ("--", "-")),
@@ -220,6 +220,6 @@ def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
 
 
 def _positive(values: np.ndarray) -> np.ndarray:
-    """Return moduli, with those that a logarithmic axis cannot show left out."""
+    """Return moduli, with NaN for zeros, which a logarithmic axis cannot show."""
     modulus = np.abs(values)
     return np.where(modulus > 0.0, modulus, np.nan)

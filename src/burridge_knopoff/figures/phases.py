@@ -27,26 +27,26 @@ TITLE = "Phases of the end blocks"
 CATEGORY = "Attractors"
 INPUTS = ("phases",)
 CAPTION = """\
-Above: the fraction of states that synchronize, by the amplitude A and the difference of phase at which the end blocks
-oscillate about uniform sliding, all others sliding uniformly, under the first law; at up to four of the values of a at
-which any do. Left of the dashed line no block stops in the course of such an oscillation: the end blocks do from
-A = v/ω on. Below: the mean of the same fraction over the amplitudes left of that line, against the difference of phase,
-for each law and up to three amplitudes of the inner blocks, which oscillate at phases drawn at random.
+Above: the fraction of states that synchronize, under the first law. The end blocks start to oscillate about uniform
+sliding with amplitude A and the given phase difference; the other blocks slide uniformly. Up to four values of a at
+which some states synchronize are shown. To the left of the dashed line, A = v/ω, no block stops during such an
+oscillation. Below: the mean of this fraction over the amplitudes left of the line, versus phase difference, for each
+law and up to three amplitudes of the inner blocks, whose phases are random.
 """
 
-#: Columns of panels, and amplitudes of the inner blocks, at most.
+#: Largest number of columns of panels, and of amplitudes of the inner blocks.
 SHOWN = 4
 SHARES = 3
 
 
 @styled
 def draw(phases: xarray.Dataset) -> Figure:
-    """Draw the fraction that synchronizes over amplitude and difference of phase, and its mean at small amplitudes.
+    """Draw the synchronized fraction over amplitude and phase difference, and its mean at small amplitudes.
 
-    A column for each a that is shown. Amplitudes and differences are given equal steps above, whatever their distance.
+    A column for each a shown. Amplitudes and phase differences are drawn at equal distances.
     """
     phases = phases.sortby(["amplitude", "phase_difference"])
-    # Where synchrony does not attract all panels would be white.
+    # Where synchrony does not attract, all panels would be white.
     others = [name for name in phases["synchronized_fraction"].dims if name != "a"]
     some = np.flatnonzero((phases["synchronized_fraction"] > 0.0).any(others).values)
     values = some if len(some) else np.arange(phases.sizes["a"])
@@ -67,7 +67,7 @@ def draw(phases: xarray.Dataset) -> Figure:
 
 
 def _fractions(panel: Axes, phases: xarray.Dataset) -> AxesImage:
-    """Draw a map of the fractions of one law, inner amplitude and a into a panel."""
+    """Draw a map of the fractions for one law, inner amplitude and a."""
     amplitude, difference = phases["amplitude"].values, phases["phase_difference"].values
     image = panel.imshow(
         phases["synchronized_fraction"].transpose("phase_difference", "amplitude").values,
@@ -88,7 +88,7 @@ def _fractions(panel: Axes, phases: xarray.Dataset) -> AxesImage:
 
 
 def _means(panel: Axes, phases: xarray.Dataset) -> None:
-    """Draw the mean fraction at the amplitudes at which no block stops, for each law and inner amplitude."""
+    """Draw the mean fraction over the amplitudes at which no block stops, for each law and inner amplitude."""
     difference = phases["phase_difference"].values
     for k, share in enumerate(phases["inner_share"].values):
         one = phases.sel(inner_share=share)
@@ -103,5 +103,5 @@ def _means(panel: Axes, phases: xarray.Dataset) -> None:
 
 
 def _spread(count: int, most: int) -> list[int]:
-    """Return so many of the numbers below `count` at most, from the first to the last."""
+    """Return at most `most` of the numbers below `count`, evenly spread from the first to the last."""
     return sorted({round((count - 1) * k / (most - 1)) for k in range(most)})

@@ -1,4 +1,4 @@
-"""The rotation number of branch 1 against a, with the plateaux at which it is locked."""
+"""The rotation number of branch 1 versus a, with the plateaux of phase locking."""
 
 from __future__ import annotations
 
@@ -16,20 +16,19 @@ TITLE = "Rotation number"
 CATEGORY = "Attractors"
 INPUTS = ("rotation",)
 CAPTION = """\
-How often the end blocks oscillate against each other for one oscillation of the middle block, on branch 1, the motion
-without synchrony. By symmetry both end blocks have one frequency whether or not the motion is locked. On a torus this
-ratio changes with a; where the motion is locked, a closed orbit, it is a ratio of whole numbers and stays the same: a
-plateau, the widest of which have their ratio beside them. Above each panel: the share of a that is locked, by the
-values of the grid.
+The number of oscillations of the end blocks against each other per oscillation of the middle block, on branch 1, the
+unsynchronized motion. By symmetry both end blocks have the same frequency, locked or not. On a torus this ratio varies
+with a. On a phase-locked, periodic orbit it is a rational number and stays constant, which gives a plateau; the widest
+plateaux are labelled with their ratio. Above each panel: the fraction of the values of a that are locked.
 """
 
-# Plateaux that have their ratio written beside them, the widest ones, at most.
+# The widest plateaux, up to this number, are labelled with their ratio.
 NAMED = 4
 
 
 @styled
 def draw(rotation: xarray.Dataset) -> Figure:
-    """Draw the rotation number against a for each law, closed orbits and tori in the colours of their kinds."""
+    """Draw the rotation number versus a for each law; periodic orbits and tori in the colours of their kinds."""
     laws = [str(law) for law in rotation["law"].values]
     figure, panels = new_figure(page_width(len(laws)), 3.2, columns=len(laws))
     titles = []

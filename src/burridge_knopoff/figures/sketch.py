@@ -1,4 +1,4 @@
-"""The chain of blocks, its springs and its driver: the paper's Fig. 1, drawn from the model."""
+"""The chain of blocks, its springs and its driver, as in the paper's Fig. 1, drawn from the model."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ PAPER = "Fig. 1"
 INPUTS = ()
 FROM_STUDY = ("chain_description",)
 CAPTION = """\
-The chain of the study. Springs join neighbouring blocks to each other (blue, strength above) and blocks to a driver
-that moves at the speed v (red, strength D_i beside); dry friction holds a block up to its static friction F. U_i is the
-position of block i. Strengths are in units of the spring constant k, friction in units of F(0), which it is where none
-is given. Of a long chain the first two blocks and the last are drawn.
+The chain of the study. Springs join neighbouring blocks (blue, strength above) and join blocks to a driver that moves
+with velocity v (red, strength D_i beside). Dry friction holds a block up to its static friction F. U_i is the position
+of block i. Strengths are in units of the spring constant k. Friction is in units of F(0), which is its value if none is
+given. Of a long chain, only the first two blocks and the last are drawn.
 """
 
-#: Blocks of a chain that is drawn whole, at most.
+#: Longer chains are drawn in part.
 WHOLE = 6
 
-# Places in units of half the distance between two blocks.
+# Coordinates in units of half the distance between two blocks.
 SIDE, TOP, STEP = 0.8, 2.3, 2.2
 
 
 @styled
 def draw(chain_description: Mapping[str, Any]) -> Figure:
-    """Draw the chain that is described as `Chain` takes it: blocks, springs with their strengths, driver and ground."""
+    """Draw a chain given as arguments of `Chain`: blocks, springs with their strengths, driver and ground."""
     chain = Chain(**chain_description)
     count = chain.blocks
     shown = list(range(count)) if count <= WHOLE else [0, 1, count - 1]
-    # Where blocks are left out there is room for dots.
+    # Leave room for dots in place of the missing blocks.
     place = {block: STEP * (k + (count > WHOLE and k == 2)) for k, block in enumerate(shown)}
     left, right = -1.5, max(place.values()) + 1.7
     figure = Figure(figsize=(min(PAGE, 0.75 * (right - left) + 0.4), 2.4), layout="constrained")
@@ -66,7 +66,7 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
         _spring(panel, (start, SIDE / 2), (end, SIDE / 2), color(0))
         panel.text(0.5 * (start + end), 0.62, f"${chain.after[one]:g}$", ha="center", color=color(0))
     if chain.ends == "ring":
-        words = f"a spring of strength ${chain.after[-1]:g}$ joins block {count} to block 1"
+        words = f"a spring of strength ${chain.after[-1]:g}$ couples block {count} to block 1"
         panel.text(0.5 * (left + right), -0.75, words, ha="center", va="top", color=color(0))
     panel.set(
         xlim=(left - 0.05, right + 0.05),
@@ -88,6 +88,6 @@ def _spring(panel: Axes, start: tuple[float, float], end: tuple[float, float], h
 
 
 def _arrow(panel: Axes, x: float, y: float, words: str) -> None:
-    """Draw an arrow to the right with a symbol at its beginning."""
+    """Draw an arrow to the right, with a symbol at its start."""
     panel.annotate("", (x + 0.6, y), (x, y), arrowprops={"arrowstyle": "->", "linewidth": 0.8})
     panel.text(x, y, words, ha="right", va="center")

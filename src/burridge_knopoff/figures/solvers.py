@@ -1,4 +1,4 @@
-"""The results of independent solvers: ⟨J⟩ that each gives, and how many steps each takes."""
+"""The results of independent solvers: ⟨J⟩ and the number of steps of each."""
 
 from __future__ import annotations
 
@@ -24,31 +24,32 @@ TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
-Every solver of each law at a few values of a: ⟨J⟩ with its standard error, its difference from that of the study's own
-solver with the standard error of that difference as a short line, and the number of steps in a unit of time. What is 0,
-or below 10⁻¹⁵, lies at the foot of the second row.
+Every solver of each law at a few values of a: ⟨J⟩ with its standard error; the difference from ⟨J⟩ of the study's
+solver, with the standard error of the difference as a short line; and the number of steps per unit time. Differences of
+0 or below 10⁻¹⁵ are drawn at the lower edge.
 """
 
-#: Steps in a unit of time of the paper's own numerical solution.
+#: Steps per unit time in the paper's own numerical solution.
 PAPER_STEPS = 1e6
 
 MARKERS = ("o", "s", "^")
 FILLINGS = ("full", "none", "left", "top", "right", "bottom")
 
-# Width, in places of a, over which the points at one a are spread.
+# Width, in distances between values of a, over which the points at one a are spread.
 SPREAD = 0.8
 
 
-# Differences below this are rounding; 0 is drawn here.
+# Smaller differences are rounding; they, and 0, are drawn here.
 FLOOR = 1e-15
 
 
 @styled
 def draw(solvers: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩, how far it is from that of the study's solver, and the steps per unit time, of every solver at each a.
+    """Draw ⟨J⟩, its difference from that of the study's solver, and steps per unit time, for every solver at each a.
 
-    A column for each law. The points at one a are set apart: first by initial state, then by solver. Short lines in the
-    middle row are the standard errors of the differences, as of independent runs; differences of 0 lie at its foot.
+    A column for each law. The points at one a are spread out, first by initial state, then by solver. Short lines in
+    the middle row are standard errors of the differences between independent runs; differences of 0 are at the lower
+    edge.
     """
     laws, states = solvers["law"].values, solvers["initial"].values
     figure, panels = new_figure(page_width(len(laws)), 6.2, rows=3, columns=len(laws))
@@ -91,7 +92,7 @@ def draw(solvers: xarray.Dataset) -> Figure:
 
 
 def _look(solver: int, initial: int, hue: str | None = None) -> dict[str, Any]:
-    """Return the look of a point: colour and shape tell the solver, the filling the initial state."""
+    """Return the marker of a point: colour and shape show the solver, the filling shows the initial state."""
     look = {
         "color": color(solver) if hue is None else hue,
         "marker": MARKERS[solver],

@@ -1,4 +1,4 @@
-"""Stick-slip cycles against a: how long they last, how often the blocks move, whether the end blocks move in step."""
+"""The stick-slip cycles versus a: cycle times, frequencies, and the correlation of the end blocks."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ CATEGORY = "Runs"
 INPUTS = ("stick_slip",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
-Cycles of the first, the middle and the last block against a, for each initial state under the law of the figures of
-single runs: the time between two stops, with its standard error; in chains of more than two blocks the frequency of the
-end blocks over that of the middle block, by the peaks of the spectra of their velocities (bars: how finely the spectra
-resolve) and by their stops; the correlation of the velocities of the end blocks; and the share of time for which each
-block sticks. The band and the dotted lines are what the paper states for its
-three blocks: a cycle of two to three units of time, and half the frequency of the middle block.
+Stick-slip cycles of the first, middle and last block versus a, for each initial state, under the law of the figures of
+single runs. From top to bottom: the time between two stops, with its standard error; in chains of more than two blocks,
+the frequency of the end blocks divided by that of the middle block, from the peaks of the velocity spectra (bars:
+resolution of the spectra) and from the stops; the correlation of the velocities of the end blocks; and the fraction of
+time for which each block sticks. The band and the dotted lines are the paper's statements for its three blocks: a cycle
+of two to three units of time, and half the frequency of the middle block.
 """
 
-#: What the paper states: one stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
-#: half the frequency of the middle one.
+#: The paper's statements: a stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
+#: half the frequency of the middle block.
 PAPER_CYCLE = (2.0, 3.0)
 PAPER_RATIO = 0.5
 
-# The end blocks often coincide: the later one is drawn smaller, inside the marker of the earlier one.
+# The end blocks often coincide: the later one is drawn smaller, inside the marker of the first.
 SIZES = (4.4, 2.8, 1.6)
 MARKERS = ("o", "s", "o")
 
@@ -42,21 +42,21 @@ MARKERS = ("o", "s", "o")
 def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
 
-    A column for each initial state. Of the blocks the first, the middle and the last one are shown; ratios are those of
-    the end blocks to the middle one, which two blocks do not have; one block has no correlation either. Gaps are
-    blocks that do not stop, and runs that did not complete.
+    A column for each initial state, with the first, middle and last block. Frequency ratios are those of the end blocks
+    to the middle block, which needs three blocks; the correlation needs two. Gaps are blocks that do not stop and runs
+    that did not complete.
     """
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
     shown = sorted({1, middle, count})
-    # Two blocks have none in the middle.
+    # Two blocks have no middle block.
     over_middle = [f"{what} frequency\nover that of block {middle}" for what in ("velocity", "stop")]
     together_label = f"correlation of\n$U_1$′ with $U_{{{count}}}$′"
     labels = [
         "time between stops",
         *(over_middle if count > 2 else []),
         *([together_label] if count > 1 else []),
-        "share of time stuck",
+        "fraction of time stuck",
     ]
     figure, panels = new_figure(PAGE, 0.4 + 1.65 * len(labels), rows=len(labels), columns=len(states))
     for column, initial in enumerate(states):
@@ -101,15 +101,15 @@ def _points(panel: Axes, n: int, values: xarray.DataArray, errors: xarray.DataAr
 
 
 def _say_why(panel: Axes, run: xarray.Dataset, name: str, words: str) -> None:
-    """Say why a panel has no points of that variable, if it has none."""
+    """State the reason in a panel that has no points of a variable."""
     if run[name].isnull().all():
         say(panel, "no run completed" if run["stick_fraction"].isnull().all() else words)
 
 
 def _ratios(panels: Sequence[Axes], n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
-    """Draw the frequency of the velocity of an end block over that of the middle one, and the same of their stops."""
+    """Draw the frequency ratio of an end block to the middle block, from velocities and from stops."""
     velocities, stops = panels
-    # Both are within the resolution of the spectrum.
+    # Both errors are resolutions of the spectrum.
     ratio = end["velocity_frequency"] / middle["velocity_frequency"]
     shares = [(one["velocity_frequency_error"] / one["velocity_frequency"]).values for one in (end, middle)]
     _points(velocities, n, ratio, ratio * np.hypot(shares[0], shares[1]))

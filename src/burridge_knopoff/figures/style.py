@@ -1,4 +1,4 @@
-"""The common look of the figures, and how they are written."""
+"""The common look of the figures, and writing them to files."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ Arguments = ParamSpec("Arguments")
 #: Width of two journal columns, in inches.
 PAGE = 7.0
 
-# Of the cells of which something is true.
+# Colour of shaded cells.
 SHADE = "0.9"
 
-# Panels side by side, at most, where there is one for each initial state.
+# Largest number of panels side by side, where each initial state has a panel.
 ACROSS = 3
 
-# Okabe and Ito's colours: told apart by colour-blind readers, and by their lightness in print.
+# Okabe and Ito's colours: distinct for colour-blind readers, and by lightness in print.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
 DASHES: tuple[Any, ...] = (
@@ -40,7 +40,7 @@ DASHES: tuple[Any, ...] = (
 )  # fmt: skip
 MARKERS = ("o", "x", "s", "^", "D", "v", "+")
 
-# Letters of the titles that fit into an inch, as a rule.
+# Typical number of letters of a title in an inch.
 LETTERS = 17
 
 STYLE: Any = {
@@ -64,7 +64,7 @@ STYLE: Any = {
 
 
 def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
-    """Let a function draw its figure in the common look, whatever the caller's own settings are."""
+    """Decorate a function to draw its figure in the common look, whatever the caller's own settings."""
 
     @wraps(draw)
     def wrapper(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
@@ -77,8 +77,8 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 def new_figure(
     width: float, height: float, rows: int = 1, columns: int = 1, share_rows: bool = True, share_columns: bool = True
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure of that size in inches and its panels, row by row; columns share x, rows share y, if asked."""
-    # So wide that the last number below a panel stays apart from the first below the next.
+    """Return a figure of a size in inches and its panels, row by row; columns may share x, and rows may share y."""
+    # Wide enough that the last tick label of a panel stays apart from the first of the next panel.
     figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=0.04))
     axes = figure.subplots(
         rows,
@@ -92,17 +92,17 @@ def new_figure(
 
 
 def page_width(columns: int) -> float:
-    """Return the width, in inches, of a figure of so many columns of panels: a page for two, in proportion for more."""
+    """Return the width in inches of a figure with `columns` columns: a page for two, in proportion for more."""
     return PAGE * max(1.0, columns / 2)
 
 
 def panel_table(
     height: float, columns: int, x: str, ys: Sequence[str], share_y: bool = True
 ) -> tuple[Figure, np.ndarray]:
-    """Return a figure and its panels, shape (len(ys), columns): a row that is too long for a line goes on in the next.
+    """Return a figure and its panels, shape (len(ys), columns); a row that does not fit continues in the next line.
 
     height : of a panel in inches, with its title
-    x, ys : labels of the axes: the same below all columns, another one for each row
+    x, ys : axis labels: one for all columns, and one for each row
     """
     across = min(columns, ACROSS)
     lines = -(-columns // across)
@@ -127,16 +127,16 @@ def panel_table(
 
 
 def begin_at_zero(panel: Axes) -> None:
-    """Let the scale of a row of panels reach from just below 0 to just above its largest value."""
+    """Scale the y axis of a row of panels from just below 0 to just above its largest value."""
     tops = [each.dataLim.y1 for each in panel.get_shared_y_axes().get_siblings(panel)]
     top = max(filter(np.isfinite, tops), default=0.0)
-    # Where all is 0, rounding sets the scale of nothing.
+    # Without this, rounding would set the scale where all values are 0.
     top = top if top > 1e-9 else 0.01
     panel.set_ylim(-0.03 * top, 1.1 * top)
 
 
 def to_decades(panel: Axes) -> None:
-    """Let the logarithmic scale of a row of panels reach from a power of ten to another: no other number is on it."""
+    """Scale the logarithmic y axis of a row of panels between powers of ten, so that only these have tick labels."""
     rows = [each.dataLim for each in panel.get_shared_y_axes().get_siblings(panel)]
     low, high = min(row.minposy for row in rows), max(row.y1 for row in rows)
     if 0.0 < low <= high < np.inf:
@@ -145,7 +145,7 @@ def to_decades(panel: Axes) -> None:
 
 
 def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
-    """Write (a), (b), … and what each panel shows above it, in as many lines as it takes; no letter above one panel."""
+    """Write (a), (b), … and a title above each panel, in as many lines as needed; no letter for a single panel."""
     panels = list(axes)
     for number, (panel, title) in enumerate(zip(panels, titles, strict=True)):
         letter = "(" + chr(ord("a") + number % 26) * (number // 26 + 1) + ") " if len(panels) > 1 else ""
@@ -156,7 +156,7 @@ def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
 
 
 def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
-    """Return the handles and labels of what some panel shows a point of, each label once."""
+    """Return the handles and labels of everything with a point in some panel, each label once."""
     entries: dict[str, Artist] = {}
     for panel in panels:
         (left, right), (bottom, top) = panel.get_xlim(), panel.get_ylim()
@@ -169,10 +169,10 @@ def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
 
 
 def legend_below(figure: Figure | SubFigure, handles: Sequence[Artist]) -> None:
-    """Put a legend below all panels, in as few rows as fit into the width of the figure, all of about one length."""
+    """Put a legend below all panels, in as few rows as fit into the width of the figure, of about equal length."""
     for rows in range(1, len(handles) + 1):
         columns = -(-len(handles) // rows)
-        # Columns are filled one after the other; rows are what is read.
+        # Matplotlib fills columns; the legend is read by rows.
         in_rows = [handle for first in range(columns) for handle in handles[first::columns]]
         legend = figure.legend(handles=in_rows, loc="outside lower center", ncols=columns)
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
@@ -181,7 +181,7 @@ def legend_below(figure: Figure | SubFigure, handles: Sequence[Artist]) -> None:
 
 
 def _wrapped(title: str, letters: int) -> str:
-    """Return a title in lines of so many letters; a formula, of which half is commands, is not broken."""
+    """Break a title into lines of a length; a formula, which is half commands, is not broken."""
     lines = [""]
     length = 0
     for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", title):
@@ -195,9 +195,9 @@ def _wrapped(title: str, letters: int) -> str:
 
 
 def cells(values: np.ndarray) -> np.ndarray:
-    """Return the edges between ascending values, shape (n + 1,): each value's cell is what lies nearest to it.
+    """Return the edges of the cells of ascending values, shape (n + 1,): a cell is what lies nearest to its value.
 
-    Nothing is known beyond the first and the last value: there the cells end.
+    The first and last cell end at their value, since nothing is known beyond it.
     """
     if len(values) == 1:
         half = 0.1 * abs(values[0]) or 0.5
@@ -207,14 +207,14 @@ def cells(values: np.ndarray) -> np.ndarray:
 
 
 def show_all(panel: Axes, values: np.ndarray) -> None:
-    """Let the horizontal axis of a panel show the cells of all of ascending values, and a little more."""
+    """Extend the horizontal axis of a panel over the cells of all values, and a little more."""
     first, last = cells(values)[[0, -1]]
     margin = 0.02 * (last - first)
     panel.set_xlim(first - margin, last + margin)
 
 
 def shade(panel: Axes, values: np.ndarray, where: np.ndarray) -> None:
-    """Shade the cells of those of ascending values of which something is true; the panel shows the cells of all."""
+    """Shade the cells of the ascending values at which `where` is true; the panel shows all cells."""
     edges = cells(values)
     show_all(panel, values)
     for k in np.flatnonzero(where):
@@ -222,55 +222,55 @@ def shade(panel: Axes, values: np.ndarray, where: np.ndarray) -> None:
 
 
 def shade_entry(words: str) -> Patch:
-    """Return the entry of a legend that says of what `shade` tells."""
+    """Return the legend entry for `shade`."""
     return Patch(facecolor=SHADE, edgecolor="0.6", label=words)
 
 
 def color(index: int) -> str:
-    """Return the colour of the curve of that number."""
+    """Return the colour of a curve by its number."""
     return COLORS[index % len(COLORS)]
 
 
 def dashes(index: int) -> Any:
-    """Return the style of the line of that number."""
+    """Return the line style of a curve by its number."""
     return DASHES[index % len(DASHES)]
 
 
 def lone_marker(values: np.ndarray) -> str:
-    """Return the marker of a curve over these values: none, unless it has one point, where a line shows nothing."""
+    """Return the marker of a curve: none, unless it has a single point, which a line would not show."""
     return "o" if len(values) == 1 else ""
 
 
 def marker(index: int) -> str:
-    """Return the marker of the curve of that number."""
+    """Return the marker of a curve by its number."""
     return MARKERS[index % len(MARKERS)]
 
 
 def say(panel: Axes, words: str) -> None:
-    """Write into the middle of a panel."""
+    """Write words into the middle of a panel."""
     panel.text(0.5, 0.5, words, ha="center", transform=panel.transAxes)
 
 
 def say_nothing(panel: Axes, reason: str) -> None:
-    """Leave a panel empty but for the reason why."""
+    """Leave a panel empty except for the reason."""
     say(panel, reason)
     panel.set_axis_off()
 
 
 def write_figure(figure: Figure, *paths: str | Path, seals: Mapping[str, Mapping[str, Any]] | None = None) -> None:
-    """Write a figure in the format of each path, .pdf, .png or .svg; the same figure gives the same bytes.
+    """Write a figure in the format of each path (.pdf, .png or .svg); the same figure gives the same bytes.
 
-    seals : {path: what the file is}, if it is a file of a study
+    seals : {path: description of the file}, if it belongs to a study
     """
     for path in map(Path, paths):
-        # `savefig` would draw twice, the first time for the layout alone, which a drawing begins with anyway.
+        # `savefig` would draw twice, first for the layout alone, which any drawing starts with.
         canvas = get_registered_canvas_class(path.suffix[1:])
-        # Without this, PDF files record the time of day.
+        # Without this, PDF files record the time.
         metadata = {"CreationDate": None} if path.suffix == ".pdf" else None
         with mpl.rc_context(STYLE):
             figure.dpi = STYLE["savefig.dpi"]
             draw = getattr(canvas(figure), f"print_{path.suffix[1:]}")
             write = partial(draw, metadata=metadata)
             write_sealed(path, write, seals[str(path)]) if seals else write_whole(path, write)
-        # The places of all axes are those of the first file: to find them takes as long as drawing.
+        # Keep the layout found for the first file: finding it takes as long as drawing.
         figure.set_layout_engine("none")

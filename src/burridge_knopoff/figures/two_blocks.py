@@ -1,4 +1,4 @@
-"""Two blocks under each law: their ⟨J⟩ against a from each initial state, and for which states the laws disagree."""
+"""The mean distance ⟨J⟩ of two blocks under each law versus a, and the states for which the laws disagree."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
-⟨J⟩ of the attractor reached by two blocks, versus a, under each law, from each sampled initial state, and below it for
-which of these states the laws disagree, in ⟨J⟩ or in the kind of motion: each other law compared with the first one.
-(a, b) The train model, pulled at its first block only, of which the paper speaks. (c, d) Both blocks are pulled, which
-is not the paper's chain. Where symbols coincide, the laws have the same motions, but a marked state leads to different
-ones.
+⟨J⟩ of the attractor reached by two blocks, versus a, under each law and from each sampled initial state. Below: the
+states for which the laws disagree in ⟨J⟩ or in the kind of motion; each law is compared with the first. (a, b) The
+train model, pulled at its first block only, which the paper refers to. (c, d) Both blocks are pulled, which is not the
+paper's chain. If symbols coincide at a marked state, the laws have the same motions there, but the state leads to
+different ones.
 """
 
-# Of the states for which the laws disagree, or may.
-ANSWERS = {Answer.NO: ("0.25", "the laws disagree"), Answer.UNDETERMINED: (SHADE, "not known")}
+# Colour and label of states for which the laws disagree, or may disagree.
+ANSWERS = {Answer.NO: ("0.25", "the laws disagree"), Answer.UNDETERMINED: (SHADE, "undecided")}
 
 
 TITLES = {
@@ -49,9 +49,9 @@ TITLES = {
 
 @styled
 def draw(two_blocks: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ under all laws from each state over a strip for each state, dark where any law disagrees with the first.
+    """Draw ⟨J⟩ under all laws from each state, over a strip for each state, dark where a law disagrees with the first.
 
-    Two panels for each chain of two blocks.
+    Each chain of two blocks has two panels.
     """
     strip = 0.4 + 0.1 * two_blocks.sizes["state"]
     figure = Figure(figsize=(PAGE, 0.6 + len(CHAINS) * (2.1 + strip)), layout="constrained")
@@ -67,7 +67,7 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
 
 
 def draw_panels(upper: Axes, lower: Axes, two_blocks: xarray.Dataset) -> list[Artist]:
-    """Draw one chain of two blocks into two panels, and return the entries of its legend."""
+    """Draw one chain of two blocks into two panels, and return its legend entries."""
     a = two_blocks["a"].values
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
@@ -79,11 +79,11 @@ def draw_panels(upper: Axes, lower: Axes, two_blocks: xarray.Dataset) -> list[Ar
     upper.set_ylabel(r"$\langle J\rangle$")
     show_all(upper, a)
     if two_blocks["mean_distance"].isnull().all():
-        say(upper, "no motion that a state ends on is known")
+        say(upper, "no known attractor was reached")
     agrees = two_blocks["agrees"].transpose("other_law", "state", "a").values
     states = agrees.shape[1]
     picture, handles = np.ones((states, len(a), 3)), legend_entries([upper])[0]
-    # What is known to differ hides what is not known.
+    # Draw known disagreement over undecided cases.
     for answer, (shade, words) in reversed(ANSWERS.items()):
         there = (agrees == answer).any(axis=0)
         picture[there] = to_rgb(shade)

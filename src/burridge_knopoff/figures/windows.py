@@ -1,4 +1,4 @@
-"""The attractors at all values of a, refined where something changes: ⟨J⟩ and the kind of motion on each branch."""
+"""The attractors at all values of a, including those added where something changes: ⟨J⟩ and kind of motion."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 
-TITLE = "Windows of a"
+TITLE = "Windows in a"
 CATEGORY = "Attractors"
 INPUTS = ("refined",)
 CAPTION = """\
-The attractors at all values of a: those of the grid, and those put in between neighbours at which something differs,
-down to the resolution of the study. Above: ⟨J⟩, in the colour of the kind of motion. Below: the kind of motion on each
-branch.
+The attractors at all values of a: those of the grid, and those added between neighbouring values where the attractors
+differ, down to the resolution of the study. Above: ⟨J⟩, in the colour of the kind of motion. Below: the kind of motion
+on each branch.
 """
 
 
 @styled
 def draw(refined: xarray.Dataset) -> Figure:
-    """Draw, for each law, ⟨J⟩ of all attractors and a bar of the kinds of motion for each branch."""
+    """Draw, for each law, ⟨J⟩ of all attractors and a bar with the kinds of motion for each branch."""
     laws = refined["law"].values
     names = branch_names(refined)
     strip = 0.16 * len(names) + 0.2
@@ -65,9 +65,9 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
 def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
     """Draw each value of a as a bar, halfway to the next on the branch; where the branch ends, to the next of all.
 
-    Between values of the grid only branches that change are looked for: the others go on.
+    Between values of the grid, only branches that change are searched for: the others continue.
     """
-    # The other law may have more values.
+    # Other laws may have more values.
     refined = refined.isel(value=refined["a"].notnull().values)
     every, edges = refined["a"].values, cells(refined["a"].values)
     grid = every[refined["in_grid"].values == 1]
@@ -85,7 +85,7 @@ def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
             0.8,
             left,
             color=colors,
-            # The shortest branches are thinner than a hair.
+            # The shortest branches would be thinner than a hairline.
             edgecolor=colors,
             linewidth=0.4,
         )

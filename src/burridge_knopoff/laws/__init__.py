@@ -1,4 +1,4 @@
-"""Friction laws: one file each, and laws by formula."""
+"""Friction laws: the built-in ones, one file each, and laws given by a formula."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from burridge_knopoff.values import refusal
 
 __all__ = ["LAWS", "FormulaLaw", "Law", "law_of"]
 
-#: The laws that are built in, by name.
+#: The built-in laws by name.
 LAWS: Mapping[str, type[Law]] = {
     "linearized": Linearized,
     "nonlinear": Nonlinear,
@@ -28,13 +28,13 @@ LAWS: Mapping[str, type[Law]] = {
 def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) -> Law:
     """Return a friction law by its name, at one a.
 
-    description : `formula` and its numbers for a law by formula; for a law that is built in its numbers, and its own
-        name as `law` if it goes by another one
+    description : for a law by formula, `formula` and its numbers; for a built-in law, its numbers, and `law`, the name
+        of the built-in law, if `name` is another one
 
-    Raises ValueError if there is no such law, or if the law refuses its numbers.
+    Raises ValueError if there is no such law, or if it refuses its numbers.
 
-    Built in are linearized and nonlinear (the paper's), carlson_langer, exponential and stribeck; the module of each in
-    `burridge_knopoff.laws` has its formula and its source.
+    Built-in laws are linearized and nonlinear (the paper's), carlson_langer, exponential and stribeck. Their modules in
+    `burridge_knopoff.laws` give formula and source.
 
     >>> from burridge_knopoff import law_of
     >>> law_of("carlson_langer", 0.5, {"sigma": 0.02})

@@ -1,4 +1,4 @@
-"""Laws made of others: on the straight line between two of them, and the mirror image of one at a speed."""
+"""Laws made of others: the linear interpolation between two laws, and the mirror image of a law at a speed."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from burridge_knopoff.laws.law import FormulaLaw, Law
 
 
 class MadeLaw(FormulaLaw):
-    """A law whose formula holds those of others, and may be longer than one that is given."""
+    """A law whose formula is composed of other formulas, and may be longer than one that a user gives."""
 
     longest = 100_000
 
 
 def blend(first: Law, second: Law, share: float) -> MadeLaw:
-    """Return the law (1 − share) Φ₁ + share Φ₂ of two laws at the same a.
+    """Return the law (1 − share) Φ₁ + share Φ₂ for two laws at the same a.
 
-    share : 0 is the first law, 1 the second
+    share : 0 gives the first law, 1 the second
 
     Raises ValueError for laws at different a, and as `Law` does.
     """
@@ -27,15 +27,15 @@ def blend(first: Law, second: Law, share: float) -> MadeLaw:
 
 
 def mirrored(law: Law, speed: float) -> MadeLaw:
-    """Return the law 2 Φ(speed) − Φ, which has the same friction at that speed and the slope reversed.
+    """Return the law 2 Φ(speed) − Φ, with the same friction at that speed and the opposite slope.
 
-    Raises ValueError where that is no friction law, see `Law`.
+    Raises ValueError if the result is not a friction law, see `Law`.
     """
     return MadeLaw(law.a, f"{2.0 * float(law(speed))!r} - ({_with_numbers(law)})", name="mirrored")
 
 
 def _with_numbers(law: Law) -> str:
-    """Return the formula of a law with its numbers in the place of their names."""
+    """Return the formula of a law with the values of its numbers in place of their names."""
 
     def number(name: re.Match[str]) -> str:
         return f"({law.numbers[name[0]]!r})" if name[0] in law.numbers else name[0]

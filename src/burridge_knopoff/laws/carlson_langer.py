@@ -1,7 +1,7 @@
-"""The law of the earthquake literature: static friction drops by σ at the start of a slip, then falls with speed.
+"""The law of the earthquake literature: static friction drops by σ when a slip starts, then weakens with speed.
 
 Reference: J. M. Carlson, J. S. Langer and B. E. Shaw, "Dynamics of earthquake faults", Rev. Mod. Phys. 66 (1994) 657,
-whose 2α is a here.
+where 2α stands for a.
 """
 
 from types import MappingProxyType

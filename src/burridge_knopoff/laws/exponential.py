@@ -1,10 +1,10 @@
-"""Exponential weakening: friction falls towards 0 and never changes its sign."""
+"""Exponential weakening: friction decays to 0 and stays positive."""
 
 from burridge_knopoff.laws.law import Law
 
 
 class Exponential(Law):
-    """Φ = exp(−aU'), whose slope at the start is that of the paper's laws."""
+    """Φ = exp(−aU'), with the same slope at U' = 0 as the paper's laws."""
 
     formula = "exp(-a*u)"
     text = "Φ = exp(−aU′)"

@@ -1,4 +1,4 @@
-"""Friction laws written as a formula: parsed by Python's own parser, turned into a tape, and never run as code."""
+"""Friction laws written as a formula, which Python's parser reads and a tape evaluates; it never runs as code."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from burridge_knopoff.values import cut
 FUNCTIONS = ("sqrt", "exp", "log", "tanh")
 SYNTAX = "numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
 
-# A formula stands in commands and files: one line, and no letters that only look like ours.
+# A formula occurs in commands and files: one line of ASCII, since other letters may look the same.
 _ALLOWED = re.compile(r"[-+*/().\w ]+", re.ASCII)
 
 
 class FormulaError(ValueError):
-    """A formula that is no friction law; the message says why."""
+    """A formula that is not a friction law; the message gives the reason."""
 
 
 def names_of(formula: str) -> set[str]:
-    """Return the names in a formula, but for those of functions."""
+    """Return the names in a formula, without those of functions."""
     return set(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
 
 
 def tape_of(formula: str, values: Mapping[str, float]) -> Tape:
     """Return the tape of a formula in the speed u.
 
-    values : numbers for all other names, among them `a`
-    Raises FormulaError for what is not allowed in a formula, and for names without a value.
+    values : numbers for all other names, including `a`
+    Raises FormulaError for syntax that is not allowed in a formula, and for names without a value.
     """
     if not _ALLOWED.fullmatch(formula):
         raise FormulaError(f"not a formula: {SYNTAX}")
@@ -42,7 +42,7 @@ def tape_of(formula: str, values: Mapping[str, float]) -> Tape:
     try:
         return builder.tape(_Reader(builder, {"u": SPEED} | {key: number(x) for key, x in values.items()}).read(tree))
     except (OverflowError, ZeroDivisionError):
-        raise FormulaError("a part of it that does not depend on u is not finite") from None
+        raise FormulaError("a part that does not depend on u is not finite") from None
 
 
 class _Reader:
@@ -64,7 +64,7 @@ class _Reader:
                 return self.names[name]
             case ast.Name(id=name):
                 raise FormulaError(
-                    f"{cut(name)}: unknown name without a number; u is the slip speed U', a the parameter"
+                    f"{cut(name)}: unknown name without a number; u is the slip speed U', a the friction parameter"
                 )
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.read(operand)
@@ -82,7 +82,7 @@ class _Reader:
                 return self._power(self.read(left), self.read(right))
             case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
                 return self._function(name, self.read(argument))
-        raise FormulaError(f"{ast.unparse(node)[:40]} cannot stand in a formula: {SYNTAX}")
+        raise FormulaError(f"{ast.unparse(node)[:40]} is not allowed in a formula: {SYNTAX}")
 
     def _power(self, base: Term, exponent: Term) -> Term:
         if exponent.is_number:

@@ -1,4 +1,4 @@
-"""A Stribeck law: friction weakens with speed, as a film of lubricant builds up, and then strengthens by viscosity.
+"""A Stribeck law: friction weakens with speed as a lubricant film builds up, then strengthens by viscosity.
 
 Reference: B. Armstrong-Hélouvry, P. Dupont and C. Canudas de Wit, "A survey of models, analysis tools and compensation
 methods for the control of machines with friction", Automatica 30 (1994) 1083-1138.
@@ -12,7 +12,7 @@ from burridge_knopoff.laws.law import Law
 class Stribeck(Law):
     """Φ = 1 − σ(1 − exp(−aU'/σ)) + ηaU'.
 
-    `sigma` is σ, by how much friction falls at most; `eta` is η, the viscosity as a share of the slope at the start.
+    `sigma` is σ, the largest drop in friction; `eta` is η, the viscosity as a fraction of the initial slope.
     For η < 1 friction is least at U' = (σ/a) ln(1/η).
     """
 

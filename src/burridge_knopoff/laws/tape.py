@@ -1,7 +1,7 @@
-"""A friction law as a tape: a few operations on the slip speed from which its value, slope and Taylor series follow.
+"""A friction law as a tape: operations on the slip speed that yield its value, slope and Taylor series.
 
 Register 0 is the speed u = |U'|; operation r fills register r + 1 from earlier ones. The kernel runs the operations on
-truncated Taylor series; here they run on numbers, and on intervals, which show whether the law is analytic.
+truncated Taylor series. Here they run on numbers, and on intervals, which prove that the law is analytic.
 
 Reference for derivatives by operations on a tape: A. Griewank and A. Walther, "Evaluating Derivatives" (SIAM 2008).
 """
@@ -18,11 +18,11 @@ import numpy as np
 
 from burridge_knopoff.values import read_only
 
-#: What an operation makes of its registers p and q: α p + β q + γ, α p q, α / p, p^α, α exp p, α log p.
+#: The result of an operation on its registers p and q: α p + β q + γ, α p q, α / p, p^α, α exp p, α log p.
 CODES = ("linear", "multiply", "reciprocal", "power", "exp", "log")
 LINEAR, MULTIPLY, RECIPROCAL, POWER, EXP, LOG = range(len(CODES))
 
-# Halvings after which an interval that is not known to be free of singularities counts as one that has some.
+# An interval that is not free of singularities after this many halvings counts as having one.
 DEEPEST = 12
 
 
@@ -40,7 +40,7 @@ class Operation:
 
 @dataclass(frozen=True)
 class Term:
-    """A value on the tape under construction: scale · register + shift; a number where register is −1."""
+    """A value on a tape being built: scale · register + shift; a constant if register is −1."""
 
     register: int
     scale: float
@@ -61,7 +61,7 @@ SPEED = Term(0, 1.0, 0.0)
 
 
 class Builder:
-    """Collects operations; equal ones are made once, and sums and multiples wait until they are needed."""
+    """Collects operations. Equal operations are stored once; sums and multiples only when they are needed."""
 
     def __init__(self) -> None:
         self.operations: list[Operation] = []
@@ -72,7 +72,7 @@ class Builder:
         return Term(self.operations.index(operation) + 1, 1.0, 0.0)
 
     def register(self, term: Term) -> int:
-        """Return the register that holds a term, filled by one more operation if need be."""
+        """Return the register that holds a term, adding an operation if necessary."""
         if not term.is_number and (term.scale, term.shift) == (1.0, 0.0):
             return term.register
         first = max(term.register, 0)
@@ -101,7 +101,7 @@ class Builder:
         return number(1.0 / p.shift) if p.is_number else self._make(Operation(RECIPROCAL, self.register(p)))
 
     def power(self, p: Term, exponent: float) -> Term:
-        """Return p to a constant power; whole ones by multiplication, so that p may be 0."""
+        """Return p to a constant power; whole powers by multiplication, so that p may be 0."""
         if p.is_number:
             return number(float(p.shift**exponent))
         if exponent != int(exponent) or abs(exponent) > 64:
@@ -124,13 +124,13 @@ class Builder:
         return number(math.log(p.shift)) if p.is_number else self._make(Operation(LOG, self.register(p)))
 
     def tanh(self, p: Term) -> Term:
-        """Return tanh p as 2/(1 + exp(−2p)) − 1, which does not overflow where p is large."""
+        """Return tanh p as 2/(1 + exp(−2p)) − 1, which does not overflow for large p."""
         falling = self.exp(self.multiply(number(-2.0), p))
         half = self.reciprocal(self.add(number(1.0), falling))
         return self.add(self.multiply(number(2.0), half), number(-1.0))
 
     def tape(self, value: Term) -> Tape:
-        """Return the tape of a value and of its slope, the derivative by the speed."""
+        """Return the tape of a value and of its slope, the derivative with respect to the speed."""
         last = self.register(value)
         slopes = [number(1.0)]
         for register, operation in enumerate(list(self.operations[:last]), 1):
@@ -138,7 +138,7 @@ class Builder:
         return Tape(self.operations, last, self.register(slopes[last]))
 
     def _slope(self, operation: Operation, value: Term, slopes: Sequence[Term]) -> Term:
-        """Return the derivative of an operation's value, given those of the registers before it."""
+        """Return the derivative of the value of an operation, given those of the registers before it."""
         first, alpha = slopes[operation.first], number(operation.alpha)
         p = Term(operation.first, 1.0, 0.0)
         if operation.code == LINEAR:
@@ -158,7 +158,7 @@ class Builder:
 
 @dataclass(frozen=True)
 class Tape:
-    """Operations, the register that holds the friction Φ, and the one that holds its slope dΦ/du."""
+    """The operations, and the registers that hold the friction Φ and its slope dΦ/du."""
 
     operations: Sequence[Operation]
     value: int
@@ -166,7 +166,7 @@ class Tape:
 
     @property
     def is_linear(self) -> bool:
-        """Whether the friction is a straight line in the speed."""
+        """Whether the friction is linear in the speed."""
         return all(operation.code == LINEAR for operation in self.operations[: self.value])
 
     @cached_property
@@ -180,7 +180,7 @@ class Tape:
     def run(self, speed: Any, functions: Any = np) -> tuple[Any, Any]:
         """Return Φ and dΦ/du at a speed, in the arithmetic of the speed.
 
-        functions : what has its `exp` and `log`: numpy for arrays, mpmath for its numbers
+        functions : module with `exp` and `log`: numpy for arrays, mpmath for its numbers
         """
         registers = [speed]
         for item in self.operations:
@@ -202,7 +202,7 @@ class Tape:
     def is_analytic(self, low: float, high: float, depth: int = 0) -> bool:
         """Tell whether the friction is analytic and finite for all speeds from low to high.
 
-        Intervals of the registers are bounded, and halved where bounds do not exclude a singularity.
+        Bounds the registers over an interval, and halves it where the bounds do not exclude a singularity.
         """
         if self._is_bounded(low, high):
             return True
@@ -232,7 +232,7 @@ def _linear_ends(item: Operation, p: Sequence[float], q: Sequence[float]) -> lis
 
 def _product_ends(item: Operation, p: Sequence[float], q: Sequence[float]) -> list[float]:
     products = [x * y for x in p for y in q]
-    # A square is not negative, whatever the signs of its factor.
+    # A square is not negative, whatever the sign of its base.
     return [max(0.0, product) for product in products] if item.first == item.second else products
 
 

@@ -1,1 +1,1 @@
-"""What a person calls from Python: models or words, plain numbers, and settings by name; all else takes typed ones."""
+"""The functions for users in Python, which accept models or names, plain numbers, and settings by name."""

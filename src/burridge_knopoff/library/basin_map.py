@@ -1,4 +1,4 @@
-"""A map of basins of attraction in one call, for notebooks: what a study makes with `attractors` and `basins`."""
+"""A basin map in one call, for notebooks; a study makes it with `attractors` and `basins`."""
 
 from __future__ import annotations
 
@@ -37,23 +37,22 @@ def basin_map(
     motion: MotionSettings = MOTION,
     **search: Unpack[SearchOptions],
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
-    """Return a map of basins and its attractors, in the form of `basins.nc` and `attractors.nc`, for one model.
+    """Return a basin map of one model and its attractors, in the form of `basins.nc` and `attractors.nc`.
 
-    law : a Model, which has its own a, chain, v and contact; or a law at this a, as `simulate`
-        takes it
-    initial : gives all but U_1(0) and U_N(0), in any form that `simulate` takes; minus has three blocks
-    chain : without one the paper's springs, as many blocks as the initial state has; v, contact : as `simulate` takes
-        them
+    law : a Model, with its own a, chain, v and contact; or a law at this a, in any form that `simulate` takes
+    initial : the other positions and velocities, besides U_1(0) and U_N(0), in any form that `simulate` takes; minus
+        has three blocks
+    chain : by default the paper's springs, with as many blocks as the initial state; v, contact : as for `simulate`
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
-    samples, seed : initial states from which attractors are looked for; an attractor that none of them reaches stays
-        unknown, and its basin undetermined (−1)
-    threads : of the labelling; they change no label
-    search : other settings of `SearchSettings` by name; motion : how kinds of motion are told apart
+    samples, seed : initial states of the search for attractors; an attractor that none of them reaches stays unknown,
+        and its basin undetermined (−1)
+    threads : number of threads for the labels; they do not depend on it
+    search : other settings of `SearchSettings` by name; motion : how kinds of motion are classified
 
-    The map `branch` of the first Dataset has the shape (1, pixels, pixels), U_N(0) along the rows. The uncertainty
-    exponent is NaN: no pairs of states are followed. Raises ValueError, one line, for anything that is not allowed, and
-    where no attractor is found.
+    The map `branch` of the first Dataset has shape (1, pixels, pixels), with U_N(0) along the rows. The uncertainty
+    exponent is NaN, since no pairs of states are followed. Raises ValueError, one line, for a wrong argument, and if no
+    attractor is found.
 
     >>> from burridge_knopoff import basin_map
     >>> search = {"samples": 12, "transient": 500, "window": 500}
@@ -68,7 +67,7 @@ def basin_map(
 
     state = given_state(initial)
     model = given_model(law, a, len(state.position), chain, v, contact)
-    # A map shows the shares of the basins itself.
+    # The map shows the basin fractions itself.
     options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
     settings = settings_of(SearchSettings, None, options)
     plane = BasinSettings(

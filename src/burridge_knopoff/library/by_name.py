@@ -1,4 +1,4 @@
-"""Settings by name: what type checkers and editors know of them, and what a notebook completes."""
+"""Settings by name, for type checkers, editors and completion in notebooks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _T = TypeVar("_T")
 
 
 class RunSettings(TypedDict, total=False):
-    """The settings of a run by name: the fields of `Settings`, where ranges, defaults and meanings stand."""
+    """The settings of a run by name: the fields of `Settings`, which has ranges, defaults and descriptions."""
 
     start: str
     solver: str
@@ -35,7 +35,7 @@ class RunSettings(TypedDict, total=False):
 
 
 class SearchOptions(TypedDict, total=False):
-    """Settings of a search by name: fields of `SearchSettings`, where their ranges, defaults and meanings stand."""
+    """Settings of a search by name: fields of `SearchSettings`, which has ranges, defaults and descriptions."""
 
     fraction_width: float
     position: Sequence[float]
@@ -49,14 +49,14 @@ class SearchOptions(TypedDict, total=False):
 
 
 class AttractorOptions(SearchOptions, total=False):
-    """The rest of them as well: how many initial states are drawn, and their seed."""
+    """The remaining settings as well: the number of sampled initial states, and their seed."""
 
     samples: int
     seed: int
 
 
 def shows(kind: type) -> Callable[[_F], _F]:
-    """Return a decorator that shows the settings of a class in the signature of a function, in place of its `**`."""
+    """Return a decorator that shows the settings of a class in the signature of a function instead of its `**`."""
 
     def decorate(function: _F) -> _F:
         own = inspect.signature(function)
@@ -75,11 +75,11 @@ def shows(kind: type) -> Callable[[_F], _F]:
 
 
 def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any]) -> _T:
-    """Return settings of a class with some of them given by name; raises ValueError, one line, for other names."""
+    """Return settings of a class, some of them given by name; raises ValueError, one line, for other names."""
     if settings is not None:
         instance_of(settings, kind, "settings")
     known = fields_of(kind)
     for name in by_name:
         if name not in known:
-            raise ValueError(f"{name}: not a setting: {' | '.join(sorted(known))}")
+            raise ValueError(f"{name}: not a setting, expected {' | '.join(sorted(known))}")
     return kind(**by_name) if settings is None else replace(settings, **by_name)  # type: ignore[type-var]

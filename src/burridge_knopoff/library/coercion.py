@@ -17,10 +17,10 @@ from burridge_knopoff.values import refusal, shown
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray
 
-#: A law: one, the name of one that is built in, or {"formula": …} or {"law": …} with its numbers, as in a config.
+#: A law: a `Law`, the name of a built-in law, or {"formula": …} or {"law": …} with its numbers, as in a config.
 GivenLaw = Law | str | Mapping[str, Any]
 
-#: The name of a state that is given by numbers alone.
+#: The name of a state given by numbers alone.
 OWN = "own"
 
 _KEYS = Keys({"name": Field(STATE_NAME, "name of the state", OWN), **fields_of(InitialState)})
@@ -30,7 +30,7 @@ _FORMS = f"{' | '.join(PAPER_STATES)}, InitialState, {{'position': …, 'velocit
 def given_state(given: Initial) -> InitialState:
     """Return an initial state from any of its forms.
 
-    Raises ValueError, one line, for anything else, and for other numbers under the name of one of the paper's states.
+    Raises ValueError, one line, for anything else, and if one of the paper's names is given other numbers.
     """
     state = given if isinstance(given, InitialState) else _state(given)
     if PAPER_STATES.get(state.name, state) != state:
@@ -53,9 +53,9 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
 
 
 def _plain(values: Any) -> Any:
-    """Return a sequence or an array of any kind as a list, anything else as it is."""
+    """Return a sequence or an array of any kind as a list, anything else unchanged."""
     if hasattr(values, "__array__"):
-        # What is masked becomes None, which no range takes.
+        # Masked values become None, which every range refuses.
         return np.asanyarray(values).tolist()
     return list(values) if isinstance(values, Iterable) and not isinstance(values, str | Mapping) else values
 
@@ -63,10 +63,10 @@ def _plain(values: Any) -> Any:
 def given_model(
     law: Model | GivenLaw, a: float | None, blocks: int, chain: Chain | None, v: float | None, contact: str | None
 ) -> Model:
-    """Return a model that is given as one, or as a law with what else belongs to it.
+    """Return a model, or make one of a law and the other arguments.
 
-    blocks : of the paper's springs if there is no chain
-    Raises ValueError, one line, for anything that is not allowed, and for what a model has already.
+    blocks : number of blocks if there is no chain
+    Raises ValueError, one line, for a wrong argument, and for arguments that repeat what the model has.
     """
     if isinstance(law, Model):
         if any(own is not None for own in (a, chain, v, contact)):

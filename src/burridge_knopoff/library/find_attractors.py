@@ -33,22 +33,21 @@ def find_attractors(
     contact: str | None = None,
     **by_name: Unpack[AttractorOptions],
 ) -> tuple[list[Attractor], np.ndarray]:
-    """Return the attractors of a model, and the index among them that each initial state reaches.
+    """Return the attractors of a model, and the index of the attractor that each initial state reaches.
 
-    law, a, chain, v, contact : as `simulate` takes them; a `Model` stands in the place of law and a, and settings may
-        follow it
-    settings : how attractors are searched for, and how many initial states are drawn; by_name : some of them, or all,
-        by name (see `SearchSettings`)
-    motion : how kinds of motion are told apart
-    starts : initial states besides those that are drawn, each in any form that `simulate` takes
+    law, a, chain, v, contact : as for `simulate`; a `Model` takes the place of law and a, and settings may follow it
+    settings : of the search, with the number of sampled states; by_name : some or all of them by name (see
+        `SearchSettings`)
+    motion : how kinds of motion are classified
+    starts : initial states besides the sampled ones, each in any form that `simulate` takes
     start : moving or tested, see `Model.begin`
 
-    The indices have shape (samples + len(starts),), those of the drawn states first; −1 where a state reaches nothing
-    that settles. An attractor that no state reaches is not found, nor is a motion on which no block ever stops:
-    attractors are known by the states at the stops of the outermost block that stops regularly. Raises ValueError, one
-    line, for anything that is not allowed.
+    The indices have shape (samples + len(starts),), sampled states first; −1 if a state does not settle on a known
+    attractor. An attractor that no state reaches is not found. Neither is a motion without stops, since attractors are
+    identified by the states at the stops of the outermost block that stops regularly. Raises ValueError, one line, for
+    a wrong argument.
 
-    Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
+    Times are in units of 1/ω. docs/attractors.md shows the search as a diagram.
 
     >>> from burridge_knopoff import find_attractors
     >>> search = {"samples": 12, "transient": 500, "window": 500}
@@ -69,7 +68,7 @@ def find_attractors(
     if isinstance(starts, str) or not isinstance(starts, Iterable):
         raise refusal("starts", starts, "a list of initial states")
     states = [given_state(state) for state in starts]
-    # Without states and chain it is the paper's.
+    # Without states and chain, the paper's chain.
     blocks = len(states[0].position) if states else 3
     model = given_model(law, a, blocks, chain, v, contact)
     return attractors.find_attractors(

@@ -1,4 +1,4 @@
-"""The results of a study as one tree of datasets, read as they are asked for."""
+"""The results of a study as one tree of datasets, read on demand."""
 
 from __future__ import annotations
 
@@ -17,30 +17,30 @@ from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.values import refusal
 
-# HDF5 is not safe for threads, and xarray's own lock does not cover all that opening reads.
+# HDF5 is not thread-safe, and xarray's own lock does not cover everything that opening a file reads.
 _ONE_AT_A_TIME = Lock()
 
-#: What is one number a point.
+#: Variables with one number a point.
 NUMBERS = tuple(name for name, item in POINT_VARIABLES.items() if not item.dimensions and not item.coordinate)
 
 
 def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
-    """Return all points and summaries of a study as one tree; arrays are read from the files when they are asked for.
+    """Return all points and summaries of a study as one tree; arrays are read from the files on demand.
 
     results : folder of a study, results/<study>
-    points : whether point files are opened, all of them (some milliseconds each); without them there is no grid either
+    points : whether to open all point files (some milliseconds each); without them there is no grid either
 
-    `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file, and
-    `tree["grid"]` has what is one number a point over (law, initial, a): NaN, or −1 among whole numbers, where a point
-    is not there. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. What the study had
-    once and has no more, as summaries of a stage that is left out now, is not opened. Other sources than those of now
-    may have made the files: `bk check` tells.
+    `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file. `tree["grid"]`
+    has all variables with one number a point, over (law, initial, a): NaN, or −1 for whole numbers, where a point is
+    missing. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. Leftover files, such as
+    summaries of a stage that is now left out, are not opened. The files may have been made by other sources than the
+    current ones: `bk check` tells.
 
     The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
-    Several threads may open studies, one after the other; while one opens, others must not read: HDF5 would crash.
+    Several threads may open studies, one after the other. While one opens, others must not read: HDF5 would crash.
 
-    Raises ValueError, one line, if the folder holds no study of this version, or a file that is damaged or not of the
-    study; the line has the command that remakes the file.
+    Raises ValueError, one line, if the folder holds no study of this version, or a file that is damaged or belongs to
+    another study; the line has the command that remakes the file.
 
     >>> from burridge_knopoff import open_study
     >>> study = open_study("results/paper")
@@ -83,7 +83,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
 
 
 def _absent(name: str) -> Any:
-    """Return what stands for the number of a point that is not there."""
+    """Return the placeholder for the number of a missing point."""
     kind = np.dtype(POINT_VARIABLES[name].dtype)
     return kind.type(np.nan if kind.kind == "f" else -1)
 

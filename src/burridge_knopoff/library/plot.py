@@ -1,4 +1,4 @@
-"""A run as a picture for notebooks."""
+"""A picture of a run, for notebooks."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 
 def plot_run(run: Trajectory) -> Figure:
-    """Return a figure of J(τ), with the averaging window shaded, above the velocities U_i'(τ) that were kept."""
-    # A run without a picture does not pay for matplotlib.
+    """Return a figure of J(τ), with the averaging window shaded, above the recorded velocities U_i'(τ)."""
+    # Imported here, so that a run without a picture does not load matplotlib.
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 4.5), layout="constrained")
@@ -26,7 +26,7 @@ def plot_run(run: Trajectory) -> Figure:
     for block, values in enumerate(np.transpose(run.velocity), 1):
         velocity.plot(run.trajectory_time, values, linewidth=1.0, label=f"block {block}")
     velocity.set(xlabel=r"$\tau$", ylabel=r"$U_i'(\tau)$")
-    # More names than these would take the room of the curves.
+    # A legend of more blocks would cover the curves.
     if run.model.blocks <= 8:
         figure.legend(loc="outside lower center", ncols=run.model.blocks + 1)
     law = run.model.law

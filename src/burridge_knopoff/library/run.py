@@ -1,4 +1,4 @@
-"""A trajectory as a notebook shows it, and as xarray knows it."""
+"""A trajectory for notebooks and xarray."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Run(Trajectory):
     """
 
     def plot(self) -> Figure:
-        """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run, as a notebook shows it."""
+        """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run."""
         return plot_run(self)
 
     def to_dataset(self) -> xarray.Dataset:

@@ -60,15 +60,14 @@ def simulate(
 ) -> Run:
     """Run one simulation: `simulate(law, a, initial)` or `simulate(model, initial)`.
 
-    law, a : a law and its friction parameter: the name of a law that is built in (a is 0.08 if none is given), a
-        `Law` (its own a), or {"formula": "1 - c*a*u", "c": 0.5}; or in the place of both a `Model`, which has its own
-        chain, v and contact
-    initial : minus (if none is given) or plus (the paper's, three blocks), an `InitialState`,
-        {"position": …, "velocity": …} or (position, velocity): U(0) and U'(0), each of shape (blocks,); or an
-        `ChainState`, as `final` of another run: the run continues from there, and its times count on
-    settings : of the run; by_name : some of them, or all, by name (see `Settings`)
-    chain : without one the paper's springs, as many blocks as the initial state has
-    v, contact : see `Model`, whose defaults they are if none is given
+    law, a : the name of a built-in law and the friction parameter (0.08 by default), a `Law` (with its own a), or
+        {"formula": "1 - c*a*u", "c": 0.5}; or instead of both a `Model`, with its own chain, v and contact
+    initial : minus (default) or plus (the paper's, three blocks), an `InitialState`, {"position": …, "velocity": …} or
+        (position, velocity): U(0) and U'(0), each of shape (blocks,); or a `ChainState`, such as `final` of another
+        run: the run continues from there on the same clock
+    settings : of the run; by_name : some or all of them by name (see `Settings`)
+    chain : by default the paper's springs, with as many blocks as the initial state
+    v, contact : see `Model`, which has the defaults
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
     ValueError, one line, for anything that the model or the solver does not allow. docs/model.md derives the equations

@@ -1,4 +1,4 @@
-"""Runs along a, as many at once as there are cores."""
+"""Runs along a, one on each core."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from burridge_knopoff.values import shown
 if TYPE_CHECKING:
     import xarray
 
-#: Dimensions of what every run has as much of.
+#: Dimensions of the same size in every run.
 _EVERYWHERE = {"batch", "exponent"}
 
 
@@ -40,17 +40,16 @@ def sweep(
     cores: int | None = None,
     **by_name: Unpack[RunSettings],
 ) -> xarray.Dataset:
-    """Run a simulation at each of some a, and return what is one number a run, a batch or an exponent, over a.
+    """Run a simulation at each of several a, and return the numbers of a run, a batch or an exponent, over a.
 
-    law : a `Model`, at any a, with its own chain, v and contact, or a law as
-        `simulate` takes it
+    law : a `Model`, at any a, with its own chain, v and contact; or a law in any form that `simulate` takes
     a : friction parameters, shape (n,); `a` of the Dataset, in the same order
     initial, settings, chain, v, contact, by_name : see `simulate`
-    cores : runs at once, as many as this machine has cores if none is given; they change no number
+    cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
     The variables are those of a point file (docs/data.md) with `a` as the first dimension, among them `mean_distance`,
-    `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 where a run is complete. Raises ValueError, one
-    line, for anything that is not allowed; what is not allowed at one a only is named with it.
+    `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for a completed run. Raises ValueError, one
+    line, for a wrong argument; an error at one a names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
@@ -83,7 +82,7 @@ def sweep(
         except (ValueError, MemoryError) as error:
             raise type(error)(f"a = {model.a!r}: {error}") from error
 
-    # The kernel lets go of Python's lock while it runs: threads use all cores.
+    # The kernel releases Python's global lock while it runs: threads use all cores.
     with ThreadPoolExecutor(cores or _cores()) as pool:
         try:
             found = list(pool.map(one, models))
@@ -98,7 +97,7 @@ def sweep(
 
 
 def _numbers(point: xarray.Dataset) -> xarray.Dataset:
-    """Return a run without what it has more or less of than others, and what tells its initial state."""
+    """Return a run without the dimensions that vary between runs, and without the description of its initial state."""
     kept = [name for name, item in point.data_vars.items() if set(item.dims) <= _EVERYWHERE]
     return point[kept].drop_vars("block", errors="ignore")
 

@@ -1,1 +1,1 @@
-"""What moves: chain, friction law, driver and contact, and the states that they can be in."""
+"""The mechanical model: chain, friction law, driver and contact; initial states and states at an instant."""

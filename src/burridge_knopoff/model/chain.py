@@ -1,4 +1,4 @@
-"""The chain: blocks coupled by springs to their neighbours and to the driver, held by static friction."""
+"""The chain: blocks held by static friction and coupled by springs to their neighbours and to the driver."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MAXIMUM_BLOCKS = 1024
 ENDS = ("open", "ring")
 NEIGHBOURS = "neighbours"
 
-#: A strength or a threshold: one number for all, or one each.
+#: Spring constants or thresholds: one number for all, or a list with one number each.
 Numbers = float | Sequence[float]
 _STRENGTH = Number(1e-6, 1e6)
 _STRENGTHS = Either((_STRENGTH, Several(_STRENGTH)))
@@ -28,17 +28,17 @@ _PULLING = Number(1e-6, 1e6, or_zero=True)
 @settings
 @dataclass(frozen=True)
 class Chain:
-    """N blocks of equal mass in a row, or in a ring.
+    """N blocks of equal mass in a row or in a ring.
 
-    There are N − 1 springs with open ends, and N in a ring, whose last spring joins the last block to the first. A
-    block slips against threshold · Φ.
+    A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A
+    slipping block feels the friction threshold · Φ.
 
-    The spring force on block i is s_i = D_i vτ − (K U)_i with K the graph Laplacian of the springs plus diag(D), so
-    that K·1 = D. With the defaults N = 3 is the paper's chain (Eq. 2). The train model that the paper cites is pulled
-    at its first block only: `Chain(2, pulling=(1.0, 0.0))`. One block hangs on one spring to the driver.
+    The spring force on block i is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian of the springs plus diag(D),
+    so that K·1 = D. The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
+    pulled at its first block only: `Chain(2, pulling=(1.0, 0.0))`. A single block hangs on one spring to the driver.
 
-    Raises ValueError for a number of blocks, of springs, or a strength that is not allowed, and if no block is pulled:
-    K has no inverse then.
+    Raises ValueError for a number of blocks, a number of springs or a strength out of range, and if no block is pulled,
+    since K is then singular.
 
     Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
     in units of F(0).
@@ -52,15 +52,15 @@ class Chain:
     """
 
     blocks: Annotated[int, Whole(1, MAXIMUM_BLOCKS), "number of blocks N"] = 3
-    coupling: Annotated[Numbers, _STRENGTHS, "springs between neighbours, one number or one each"] = 1.0
+    coupling: Annotated[Numbers, _STRENGTHS, "springs between neighbours: one number for all, or one a spring"] = 1.0
     pulling: Annotated[
         Numbers | str,
         Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
-        "springs to the driver, one number or one a block, 0 where there is none; neighbours: as many as a block has, "
-        "as in the paper, and 1 for one block",
+        "springs to the driver: one number for all, or one a block (0: no spring); neighbours: the number of the "
+        "block's neighbours, as in the paper (1 for a single block)",
     ] = NEIGHBOURS
-    threshold: Annotated[Numbers, _STRENGTHS, "static friction, one number or one a block"] = 1.0
-    ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is the neighbour of the first"] = "open"
+    threshold: Annotated[Numbers, _STRENGTHS, "static friction: one number for all, or one a block"] = 1.0
+    ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is coupled to the first"] = "open"
 
     def __post_init__(self) -> None:
         check_fields(self, "chain.")
@@ -72,14 +72,16 @@ class Chain:
         ):
             value = getattr(self, key)
             if isinstance(value, tuple) and len(value) != count:
-                raise ValueError(f"chain.{key}: {len(value)} numbers for {count} {of}: one number, or one each")
+                raise ValueError(
+                    f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one for each of the {of}"
+                )
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
         if not isinstance(self.pulling, str) and not np.any(self.pulling):
             raise ValueError(f"chain.pulling: got {self.pulling!r}, expected a number above 0 for one block or more")
 
     def is_like(self, other: Chain) -> bool:
-        """Tell whether springs and static friction are those of another chain, however they were given."""
+        """Tell whether another chain has the same springs and static friction, in whatever form they were given."""
         names = ("stiffness", "driving", "thresholds")
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
 
@@ -90,7 +92,7 @@ class Chain:
 
     @cached_property
     def before(self) -> np.ndarray:
-        """Strength of the spring to the block before each one, shape (blocks,); 0 at an open end."""
+        """Strength of the spring to the previous block, shape (blocks,); 0 at an open end."""
         strengths = np.zeros(self.blocks)
         springs = self.blocks - (self.ends == "open")
         strengths[:springs] = self.coupling
@@ -98,7 +100,7 @@ class Chain:
 
     @cached_property
     def after(self) -> np.ndarray:
-        """Strength of the spring to the block after each one, shape (blocks,); 0 at an open end."""
+        """Strength of the spring to the next block, shape (blocks,); 0 at an open end."""
         return read_only(np.roll(self.before, -1))
 
     @cached_property
@@ -111,7 +113,7 @@ class Chain:
 
     @property
     def diagonal(self) -> np.ndarray:
-        """Diagonal of K: the strengths of all springs at each block, shape (blocks,)."""
+        """Diagonal of K: the total strength of the springs at each block, shape (blocks,)."""
         return self.before + self.after + self.driving
 
     @property
@@ -125,16 +127,16 @@ class Chain:
 
     @property
     def is_mirror_symmetric(self) -> bool:
-        """Whether the chain is its own mirror image: only then can end blocks, and mirror blocks, move as one.
+        """Whether the chain is its own mirror image, so that mirror blocks can move synchronously.
 
-        One block has no mirror block.
+        False for a single block, which has no mirror block.
         """
         pairs = (self.driving, self.driving), (self.thresholds, self.thresholds), (self.before, self.after)
         return self.blocks > 1 and all(bool((one == other[::-1]).all()) for one, other in pairs)
 
     @property
     def _period(self) -> int:
-        """The least number of blocks after which springs and thresholds of a ring repeat."""
+        """The smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
         values = np.array([self.before, self.driving, self.thresholds])
         return next(
             shift for shift in range(1, self.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1))
@@ -142,7 +144,7 @@ class Chain:
 
     @property
     def is_uniform(self) -> bool:
-        """Whether one number gives each of coupling, pulling and threshold, and the ends are open."""
+        """Whether coupling, pulling and threshold are each a single number and the ends are open."""
         return (
             self.ends == "open"
             and isinstance(self.coupling, float)
@@ -152,12 +154,12 @@ class Chain:
 
     @property
     def highest_frequency(self) -> float:
-        """An angular frequency that no mode of slipping blocks exceeds, by Gershgorin's bound on eigenvalues of K."""
+        """Upper bound on the angular frequencies of slipping blocks: Gershgorin's bound on the eigenvalues of K."""
         return math.sqrt(float((self.diagonal + self.before + self.after).max()))
 
     @property
     def damping_limit(self) -> float:
-        """The a below which every mode of slipping blocks oscillates under Φ = 1 − aU', if the chain is uniform."""
+        """The a below which every mode of slipping blocks is underdamped for Φ = 1 − aU'; for a uniform chain."""
         return 2.0 * math.sqrt(self.driving.min()) / float(self.thresholds[0])
 
     def force(self, position: np.ndarray) -> np.ndarray:
@@ -169,29 +171,29 @@ class Chain:
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).
 
-        Uniform sliding is U_i = vτ + e_i where Φ(v) is that friction.
+        Uniform sliding is U_i = vτ + e_i if `friction` is Φ(v).
         """
         load = self._solve(self.thresholds.copy())
         if self.ends == "ring":
-            # The corners of K are a matrix of rank one more: Sherman and Morrison's formula.
+            # The corners of K are a rank-one update: the Sherman-Morrison formula.
             corner = np.zeros(self.blocks)
             corner[0] += 1.0
             corner[-1] += 1.0
             other = self._solve(corner)
             strength = self.before[0]
             load += strength * other * (load[0] + load[-1]) / (1.0 - strength * (other[0] + other[-1]))
-            # Periodic to the bit, as the ring is: then a state that repeats along it stays so.
+            # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
             load = np.tile(load[: self._period], self.blocks // self._period)
         if self.is_mirror_symmetric:
-            # Mirror-symmetric to the bit, as the chain is.
+            # Make it mirror-symmetric to the bit, like the chain.
             load = 0.5 * (load + load[::-1])
         return -friction * load
 
     def _solve(self, load: np.ndarray) -> np.ndarray:
-        """Return the solution for the tridiagonal part of K; in a ring with its corner strength added at both ends.
+        """Solve for the tridiagonal part of K; for a ring, the strength of its corner is added to both ends.
 
-        By elimination: LAPACK's last bit depends on where in memory its arguments lie, and all numbers of a study would
-        change with the folder that it is run from.
+        By elimination, not by LAPACK: the last bit of LAPACK's result depends on the memory addresses of its arguments,
+        so that all numbers of a study would change with the folder it runs in.
         """
         pivot = self.diagonal
         strength = self.after

@@ -1,11 +1,11 @@
-"""Fields: settings with their ranges, defaults and descriptions, from which all else about them is made.
+"""Fields: settings with a range, a default and a description.
 
 A setting is a field of a dataclass whose type is annotated with a range and a description:
 
     step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
 
-That line is all that Python, the options of `bk simulate`, the config of a study and the tables of config/README.md
-know of it. The class is decorated with `settings`, so that `help` shows readers the plain type.
+This line alone defines the setting for Python, the options of `bk simulate`, the config of a study and the tables of
+config/README.md. The decorator `settings` makes `help` show the plain type.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 from burridge_knopoff.model.ranges import Range
 from burridge_knopoff.values import joined
 
-#: The default of a field that needs a value, and of one that follows from others if it is left out.
+#: Default of a required field, and of an optional field whose value is derived from others.
 REQUIRED, FOLLOWS = object(), object()
 
 
 @dataclass(eq=False, repr=False)
 class Field:
-    """A setting: its range, what it means, and its default."""
+    """A setting: its range, description and default."""
 
     range: Range
     description: str
@@ -34,10 +34,10 @@ class Field:
 
 @dataclass(eq=False, repr=False)
 class Keys(Range):
-    """Fields by name: a mapping without others; its form has all defaults, in the order of the fields."""
+    """A mapping with known keys, each a field; its form has all defaults, in the order of the fields."""
 
     fields: Mapping[str, Field]
-    #: What else is to be said of them.
+    #: Appended to the description of the keys.
     words: str = ""
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
@@ -50,7 +50,7 @@ class Keys(Range):
         for name, field in self.fields.items():
             given = value.get(name, field.default)
             if given is REQUIRED:
-                raise ValueError(f"{joined(key, name)}: missing; needed: {field.description}")
+                raise ValueError(f"{joined(key, name)}: missing, expected {field.description}")
             if given is not FOLLOWS:
                 values[name] = field.range.form(given, joined(key, name))
         return values
@@ -60,7 +60,7 @@ class Keys(Range):
 
 
 def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
-    """Return the error of a key that is not known: where it stands, what may be meant, what is allowed."""
+    """Return the error for an unknown key, with its place, the closest known key and all known keys."""
     meant = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
     hint = f" (did you mean {meant[0]}?)" if meant else ""
     return ValueError(f"{joined(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
@@ -71,7 +71,7 @@ _KNOWN: dict[type, Mapping[str, Field]] = {}
 
 
 def settings(kind: type[_T]) -> type[_T]:
-    """Decorate a dataclass whose fields have ranges: these are kept, and its signature shows the plain types."""
+    """Decorate a dataclass whose fields have ranges: register the ranges and show plain types in its signature."""
     fields_of(kind)
     plain = get_type_hints(kind)
     for item in dataclasses.fields(kind):  # type: ignore[arg-type]
@@ -80,7 +80,7 @@ def settings(kind: type[_T]) -> type[_T]:
 
 
 def fields_of(kind: type) -> Mapping[str, Field]:
-    """Return the settings of a dataclass by name: those of its fields that have a range."""
+    """Return the settings of a dataclass by name: the fields that have a range."""
     if kind not in _KNOWN:
         hints, found = get_type_hints(kind, include_extras=True), {}
         for item in dataclasses.fields(kind):
@@ -93,9 +93,9 @@ def fields_of(kind: type) -> Mapping[str, Field]:
 
 
 def check_fields(settings: Any, place: str = "") -> None:
-    """Give the settings of a new dataclass their form: 3 becomes 3.0, a list a tuple.
+    """Convert the settings of a new dataclass to their form: 3 becomes 3.0, a list becomes a tuple.
 
-    place : stands before their names in messages
+    place : prefix of the names in messages
     Raises ValueError, one line, for anything out of range.
     """
     for name, field in fields_of(type(settings)).items():

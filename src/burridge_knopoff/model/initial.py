@@ -19,13 +19,13 @@ _ONE_A_BLOCK = Several(COORDINATE, 1, MAXIMUM_BLOCKS)
 @settings
 @dataclass(frozen=True)
 class InitialState:
-    """Positions U(0) and velocities U'(0), one number a block, under a name: what a person chooses.
+    """A named initial state: positions U(0) and velocities U'(0), one number a block.
 
-    It says neither which blocks stick nor where uniform sliding is: `Model.begin` makes an `ChainState` of it.
+    `Model.begin` turns it into a `ChainState`, which knows which blocks stick and the position of uniform sliding.
 
-    Raises ValueError, one line, for anything out of range, and where they do not match in count.
+    Raises ValueError, one line, for a number out of range and for different numbers of positions and velocities.
 
-    Both are in the units of `Model`. The paper's two states, `minus` and `plus`, are known by name (its Section III).
+    The units are those of `Model`. The paper's two states (its Section III) have the names `minus` and `plus`.
 
     >>> from burridge_knopoff import InitialState
     >>> InitialState("own", position=(-0.9, -1.1), velocity=(0.1, 0.1))
@@ -40,13 +40,13 @@ class InitialState:
         check_fields(self)
         if len(self.velocity) != len(self.position):
             raise ValueError(
-                f"velocity: {len(self.velocity)} numbers for {len(self.position)} positions; one a block is needed"
+                f"velocity: got {len(self.velocity)} numbers, expected {len(self.position)} for as many positions"
             )
 
 
 _PAPER_VELOCITY = (0.099, 0.1012, 0.1023)
 
-#: The paper's two initial states (Section III): they differ in U_1(0) only.
+#: The paper's two initial states (Section III), which differ only in U_1(0).
 PAPER_STATES = {
     "minus": InitialState("minus", (-0.989, -0.993, -0.991), _PAPER_VELOCITY),
     "plus": InitialState("plus", (0.989, -0.993, -0.991), _PAPER_VELOCITY),
@@ -56,9 +56,9 @@ PAPER_STATES = {
 def initial_state(
     name: str, position: Sequence[float] | None = None, velocity: Sequence[float] | None = None
 ) -> InitialState:
-    """Return the state of that name: one of the paper's, or the given numbers under this name.
+    """Return one of the paper's states by its name, or the given numbers under this name.
 
-    Raises ValueError if the name is unknown and numbers are missing.
+    Raises ValueError for an unknown name without numbers.
     """
     known = PAPER_STATES.get(name)
     if position is None and velocity is None and known is not None:
@@ -66,7 +66,7 @@ def initial_state(
     if position is None or velocity is None:
         if known is None:
             raise ValueError(
-                f"initial: {shown(name)} is not known: {' | '.join(PAPER_STATES)}, or give both position and velocity"
+                f"initial: got {shown(name)}, expected {' | '.join(PAPER_STATES)}, or both position and velocity"
             )
         position = known.position if position is None else position
         velocity = known.velocity if velocity is None else velocity

@@ -1,4 +1,4 @@
-"""The model: all that the equations of motion need, and a state of all blocks at one instant."""
+"""The model: everything in the equations of motion, and the state of all blocks at one instant."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z
 
 CONTACTS = ("one_sided", "symmetric")
 STARTS = ("moving", "tested")
-#: What they mean.
+#: The choices of `start` and their meaning.
 START = "moving: every block slips at tau = 0 | tested: those with spring force at most threshold stick there"
 
 
 @settings
 @dataclass(frozen=True)
 class Model:
-    """A chain under a friction law, drawn at a velocity.
+    """A chain with a friction law, pulled by a driver of constant velocity.
 
     chain, law : see `Chain` and `laws`
 
@@ -51,14 +51,14 @@ class Model:
         str,
         OneOf(CONTACTS),
         "one_sided: a stuck block holds against any pull below its threshold | "
-        "symmetric: it holds while |s| is below it, and slips backward beyond",
+        "symmetric: it holds while |s| is below its threshold, and slips backward beyond",
     ] = "one_sided"
 
     def __post_init__(self) -> None:
         check_fields(self)
         instance_of(self.chain, Chain, "chain")
         instance_of(self.law, Law, "law")
-        # Blocks slip at a few v, and from afar at more: then a run ends where its law does.
+        # Blocks slip at a few v, faster from distant initial states: such a run ends where the law is not analytic.
         fastest = FASTEST * self.v
         if fastest > FASTEST and not self.law.tape.is_analytic(0.0, fastest):
             raise ValueError(
@@ -76,19 +76,19 @@ class Model:
         return self.law.a
 
     def at(self, a: float) -> Model:
-        """Return the same model with another friction parameter."""
+        """Return the same model at another friction parameter."""
         return replace(self, law=self.law.at(a))
 
     @property
     def has_closed_form(self) -> bool:
-        """Whether the motion between events is a sum of oscillating modes, as the solver `map` takes it."""
+        """Whether the motion between events is a sum of oscillating modes, as the solver `map` requires."""
         return (
             self.law.is_linear and self.chain.is_uniform and abs(float(self.law.slope(0.0))) < self.chain.damping_limit
         )
 
     @property
     def scale(self) -> float:
-        """Factor on distances that are given for v = 0.1: they grow with v, exactly so under the linearized law."""
+        """Factor on distances given for v = 0.1: distances grow with v, in proportion under the linearized law."""
         return self.v / 0.1
 
     @cached_property
@@ -97,11 +97,11 @@ class Model:
         return read_only(self.chain.sliding_offset(float(self.law(self.v))))
 
     def begin(self, initial: InitialState, start: str = "moving") -> ChainState:
-        """Return the state at τ = 0 of a run from an initial state.
+        """Return the instant τ = 0 of a run from an initial state.
 
         start : moving or tested, see START
 
-        Raises ValueError where the state does not fit the chain, or slips backward under one-sided contact.
+        Raises ValueError if the state does not fit the chain, or slips backward under one-sided contact.
         """
         OneOf(STARTS).form(start, "start")
         if len(initial.position) != self.blocks:
@@ -119,23 +119,23 @@ class Model:
         return ChainState(position, np.where(stuck, 0.0, np.array(initial.velocity)), stuck)
 
     def starts_stuck(self, position: np.ndarray, start: str) -> np.ndarray:
-        """Return which blocks stick at τ = 0 under a convention of start, of the shape of U(0), (…, blocks)."""
-        # Spring forces from U itself: in co-moving coordinates rounding could move a block across its threshold.
+        """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0), (…, blocks)."""
+        # Spring forces from U itself: rounding in co-moving coordinates could move a block across its threshold.
         return (start == "tested") & (self.chain.force(position) <= self.chain.thresholds)
 
 
 @dataclass(frozen=True, eq=False)
 class ChainState:
-    """The state of all blocks at one instant of a motion, arrays of shape (blocks,): what a run can continue from.
+    """The state of all blocks at one instant of a motion, from which a run can continue; arrays of shape (blocks,).
 
-    An `InitialState` becomes one by `Model.begin`, which decides which blocks stick; the kernel's `State` is the one
-    that a solver changes as it goes.
+    `Model.begin` makes one of an `InitialState` and decides which blocks stick. The kernel's `State` is the one that a
+    solver changes as it integrates.
 
-    position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : which blocks stick
-    time : τ of the state, from which a run that continues counts on
+    position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : whether each block sticks
+    time : τ of the state; a continued run starts its clock here
 
-    Positions and velocities are in the units of `Model`, e_i is its `sliding_offset`. `Trajectory.final` also knows the
-    last step of its run: `simulate(model, run.final)` repeats that step, so that a split run equals the whole, bit for
+    Positions and velocities are in the units of `Model`; e_i is its `sliding_offset`. `Trajectory.final` also keeps the
+    last step of its run, which `simulate(model, run.final)` repeats. A split run thus equals the whole run, bit for
     bit.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of
@@ -149,7 +149,7 @@ class ChainState:
     velocity: np.ndarray
     stuck: np.ndarray
     time: float = 0.0
-    # The solver of the run and the start of its last step. It belongs to this state alone: `replace` does not copy it.
+    # The solver of the run and the start of its last step. They belong to this state alone: `replace` drops them.
     last_step: Any = field(default=None, init=False, repr=False)
 
     def __repr__(self) -> str:

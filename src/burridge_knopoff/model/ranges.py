@@ -1,7 +1,7 @@
-"""Ranges: what a setting may be. Each gives a value the one form of settings, or refuses it, and says itself in words.
+"""Ranges: the allowed values of a setting. A range converts a value to its form or refuses it, and describes itself.
 
-The form of 3 is 3.0 where a number need not be whole, that of a list is a tuple, and none has the types of numpy. A
-refusal is a ValueError of one line, `key: got X, expected Y`; the key is that of the part at fault, as
+Form: 3 becomes 3.0 where a number need not be whole, a list becomes a tuple, and NumPy's types become Python's. A
+refusal is a ValueError of one line, `key: got X, expected Y`. The key is that of the part at fault, such as
 `initial.minus.position[1]`.
 """
 
@@ -16,30 +16,30 @@ import numpy as np
 
 from burridge_knopoff.values import joined, real_number, refusal, scalar
 
-#: A limit that is none: numbers have to be finite.
+#: Stands for no limit: numbers still have to be finite.
 HUGE = 1e300
 
 
 class Range:
-    """What a setting may be; `str(range)` says it."""
+    """The allowed values of a setting; `str(range)` describes them."""
 
     def form(self, value: Any, key: str) -> Any:
-        """Return a value in its form; raises ValueError, one line, if it does not fit."""
+        """Return a value in its form; raises ValueError, one line, if it is out of range."""
         fitting = self._fit(value, key)
         if fitting is None:
             raise refusal(key, value, self)
         return fitting
 
     def _fit(self, value: Any, key: str) -> Any:
-        """Return a value in its form, None if it does not fit; raises ValueError for a part of it that does not."""
+        """Return a value in its form, or None if it is out of range; raises ValueError if a part of it is."""
         raise NotImplementedError
 
 
 @dataclass(eq=False, repr=False)
 class Number(Range):
-    """A number from `least` to `most`, or, with `above`, more than `least`; True and False are no numbers.
+    """A number from `least` to `most`, or, with `above`, greater than `least`; True and False are not numbers.
 
-    or_zero : whether 0 is allowed as well, outside the limits
+    or_zero : whether 0 is allowed too, although it is outside the limits
     """
 
     least: float
@@ -59,7 +59,7 @@ class Number(Range):
 
 
 def limited(noun: str, least: float, most: float, above: bool = False) -> str:
-    """Return a number and its limits in words; `above` if the lower one is none of them."""
+    """Describe a number and its limits; `above`: the lower limit is excluded."""
     if least <= -HUGE:
         return f"finite {noun}" if most >= HUGE else f"{noun} of at most {_plain(most)}"
     if most >= HUGE:
@@ -74,7 +74,7 @@ def _plain(limit: float) -> str:
 
 
 class Whole(Number):
-    """A whole number from `least` to `most`; 7.0 is none."""
+    """A whole number from `least` to `most`; 7.0 does not count as whole."""
 
     def _fit(self, value: Any, key: str) -> int | None:
         value = scalar(value)
@@ -87,7 +87,7 @@ class Whole(Number):
 
 @dataclass(eq=False, repr=False)
 class OneOf(Range):
-    """One of some words."""
+    """One of a few words."""
 
     words: tuple[str, ...]
 
@@ -100,7 +100,7 @@ class OneOf(Range):
 
 @dataclass(eq=False, repr=False)
 class Text(Range):
-    """A text that matches a pattern as a whole; the words say it."""
+    """A text that matches a pattern in full; `words` describes the pattern."""
 
     words: str = "text"
     pattern: str = r"(?s:.*)"
@@ -114,7 +114,7 @@ class Text(Range):
 
 @dataclass(eq=False, repr=False)
 class Several(Range):
-    """A list of values, at least and at most so many; `distinct` if none may stand twice."""
+    """A list of `least` to `most` values; `distinct`: no value may occur twice."""
 
     each: Range
     least: int = 0
@@ -137,7 +137,7 @@ class Several(Range):
 
 @dataclass(eq=False, repr=False)
 class Interval(Range):
-    """An interval [low, high] with low < high, both within the same limits."""
+    """An interval [low, high] with low < high, each end in the same range."""
 
     ends: Number
 
@@ -154,7 +154,7 @@ class Interval(Range):
 
 @dataclass(eq=False, repr=False)
 class Named(Range):
-    """Values by names, at least so many."""
+    """A mapping from names to values, with at least `least` entries."""
 
     name: Range
     each: Range
@@ -172,7 +172,7 @@ class Named(Range):
 
 @dataclass(eq=False, repr=False)
 class Either(Range):
-    """A value in one of several ranges."""
+    """A value in any one of several ranges."""
 
     ranges: tuple[Range, ...]
 

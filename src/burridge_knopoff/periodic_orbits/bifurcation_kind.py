@@ -1,4 +1,4 @@
-"""What may end or change an attractor as a parameter moves: one list for orbits, files and figures."""
+"""The bifurcations that may end or change an attractor as a parameter varies, for orbits, files and figures."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from enum import IntEnum
 
 
 class BifurcationKind(IntEnum):
-    """Kinds of bifurcations, numbered as in netCDF files.
+    """Kinds of bifurcations and crises (bifurcations), numbered as in netCDF files.
 
-    grazing : a stick of a periodic orbit, or a slip, shrinks to nothing or is born
+    grazing : a stick or a slip of a periodic orbit shrinks to nothing or is born
     fold : two orbits meet and vanish, multiplier +1
     period_doubling : the period doubles, multiplier −1
     neimark_sacker : a pair of complex multipliers leaves the unit circle, a torus branches off
-    pitchfork : mirror symmetry breaks, multiplier +1 of a perturbation that breaks it
-    crisis : a set that is no closed orbit ends
+    pitchfork : mirror symmetry breaks, multiplier +1 of a symmetry-breaking perturbation
+    crisis : an attractor that is not a periodic orbit ends
 
     >>> from burridge_knopoff import BifurcationKind
     >>> BifurcationKind.FOLD.name, int(BifurcationKind.NEIMARK_SACKER)

@@ -1,10 +1,10 @@
-"""Where and by what a branch of periodic orbits changes: grazing, fold, period doubling, Neimark-Sacker, pitchfork.
+"""Bifurcations along a branch of periodic orbits: grazing, fold, period doubling, Neimark-Sacker, pitchfork.
 
-Grazings are corners of the branch, which `following` has come to. Every other kind is a sign of a function of the
-multipliers that changes between two orbits; its root along the branch is found with orbits of their own. The function
-of a fold also changes its sign where a branch joins another one, of which it is a special case: orbits that break a
-symmetry begin as orbits that have it, and orbits of twice the period as orbits of the single one. What they become
-there tells a pitchfork and a period doubling, seen from the branch that begins, from a fold.
+Grazings are corners of the branch, which `following` reaches. Every other kind is a change of sign, between two orbits,
+of a function of the multipliers; its root along the branch is found with additional orbits. The function of a fold also
+changes sign where a branch joins a branch of simpler orbits: orbits of less symmetry begin as symmetric orbits, and
+orbits of twice the period as orbits of the single period. The simpler orbit there distinguishes a pitchfork and a
+period doubling, seen from the branch that begins, from a fold.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2.
 """
@@ -27,35 +27,35 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.values import each_instance_of
 
-# Lengths along a branch to which roots are found, and by which they are held from both sides, in turn.
+# Lengths along a branch to which roots are found, and within which they are bracketed, in turn.
 TOLERANCE = 1e-14
 SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
 
-# Rounding of a, below which no error is told.
+# Rounding error of a; smaller errors are not reported.
 ROUNDING = 1e-12
 
-# How far from where a branch has joined another one its end is looked for, in steps.
+# Range, in steps, searched for the end of a branch around the point where it has joined another branch.
 NEAR_JOINT = 2.0
 
-# A stick as short as this next to a grazing is the one that shrinks to nothing: it does so like a square root.
+# A stick this short next to a grazing is the one that shrinks to nothing, as a square root.
 NO_STICK = 1e-4
 
-# Multipliers with an imaginary part below this are real.
+# Multipliers with a smaller imaginary part are real.
 REAL = 1e-6
 
-# Distance, for v = 0.1, within which an orbit at a root is one of more symmetry or of a shorter period: near a root the
-# difference is that of a root, too.
+# Distance, for v = 0.1, within which an orbit at a root is a more symmetric one or one of a shorter period: near a root
+# the distance is itself a square root.
 JOINED = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
 class Bifurcation:
-    """A place on a branch of periodic orbits where it changes.
+    """A bifurcation on a branch of periodic orbits.
 
-    a, a_error : friction parameter, and half the width within which it has been held from both sides
-    at : the orbit there, as near as it is known; the simpler one where the branch joins one of these
-    before, after : orbits on the branch on both sides; `after` is None where the branch ends, and where it joins
-        a branch of simpler orbits
+    a, a_error : friction parameter, and half the width of its bracket
+    at : the orbit there, as accurately as known; where the branch joins one of simpler orbits, the simpler orbit
+    before, after : orbits on the branch on either side; `after` is None where the branch ends or joins a branch of
+        simpler orbits
     turns : whether the branch turns back in a there
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
@@ -91,29 +91,29 @@ class Bifurcation:
 
     @property
     def stick_time(self) -> float:
-        """Shortest stick of the orbit there; 0 where it shrinks to nothing."""
+        """Shortest stick of the orbit there; 0 if it shrinks to nothing."""
         shortest = float(self.at.contacts.stick.min())
         return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < NO_STICK else shortest
 
     @property
     def loses_stability(self) -> bool:
-        """Whether the orbits before it are stable, and those after are not or do not exist."""
+        """Whether the orbits before are stable, and those after are unstable or do not exist."""
         return self.before.multipliers.unstable == 0 and not self.keeps_stability
 
     @property
     def keeps_stability(self) -> bool:
-        """Whether the orbits on both sides of it are stable."""
+        """Whether the orbits on both sides are stable."""
         sides = (self.before, self.after)
         return all(point is not None and point.multipliers.unstable == 0 for point in sides)
 
 
 def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
-    """Yield all bifurcations along a followed branch, in the order in which it meets them, each located on request.
+    """Yield the bifurcations along a followed branch in order, each computed on demand.
 
     branch : as `follow` returns it; raises ValueError, one line, for anything else
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
-    docs/bifurcations.md says how each kind is told.
+    docs/bifurcations.md says how the kinds are distinguished.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
@@ -138,7 +138,7 @@ def _bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
 
 
 def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
-    """Return the bifurcation at a corner; its a is known to the length that is left to it."""
+    """Return the grazing at a corner; the error of its a is the remaining length to the corner."""
     left = point.remaining * float(point.tangent[-1])
     turns = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
     return Bifurcation(
@@ -147,7 +147,7 @@ def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
 
 
 def _roots(first: BranchOrbit, second: BranchOrbit) -> list[Bifurcation]:
-    """Return the bifurcations between two neighbouring orbits of the same stops, sorted along the branch."""
+    """Return the bifurcations between two neighbouring orbits with the same stops, sorted along the branch."""
     signs = [critical_values(point.orbit, point.multipliers) for point in (first, second)]
     found: list[tuple[float, Bifurcation]] = []
     for key in signs[0].keys() & signs[1].keys():
@@ -161,7 +161,7 @@ def _roots(first: BranchOrbit, second: BranchOrbit) -> list[Bifurcation]:
 def _root(
     first: BranchOrbit, second: BranchOrbit, key: tuple[BifurcationKind, str]
 ) -> tuple[float, Bifurcation] | None:
-    """Return where along the step from the first orbit a function of its kind is 0, and the bifurcation there."""
+    """Return the root of a function between two orbits as a length from the first, and the bifurcation there."""
     known: dict[float, BranchOrbit] = {0.0: first, second.length: second}
 
     def value(length: float) -> float:
@@ -184,7 +184,7 @@ def _root(
     low, high = known[root - side], known[root + side]
     kind = _kind(at, key)
     turns = first.tangent[-1] * second.tangent[-1] < 0.0
-    # What breaks a symmetry other than the mirror's, as that of a ring of blocks, has a multiplier +1 and is no fold.
+    # Breaking a symmetry other than the mirror's, such as that of a ring, gives a multiplier +1 that is not a fold.
     if kind is None or (kind == BifurcationKind.FOLD and not turns):
         return None
     error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
@@ -192,7 +192,7 @@ def _root(
 
 
 def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
-    """Return the bifurcation at which a branch has come to one of simpler orbits, found along that one."""
+    """Return the bifurcation at which a branch has joined one of simpler orbits, located along the latter."""
     simple = following.joined
     if simple is None:
         return []
@@ -213,7 +213,7 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
 
 
 def _kind(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:
-    """Return the kind of a bifurcation at the root of a function of multipliers; None for an ordinary saddle."""
+    """Return the kind of bifurcation at the root of a function of multipliers; None for an ordinary saddle."""
     kind, part = key
     if kind == BifurcationKind.NEIMARK_SACKER:
         values = at.multipliers.keeping if part == "keeping" else at.multipliers.breaking
@@ -225,7 +225,7 @@ def _kind(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind 
 
 
 def _joint_kind(orbit: PeriodicOrbit, simple: PeriodicOrbit) -> BifurcationKind | None:
-    """Return the kind of bifurcation at which orbits begin as simpler ones; None if these are no simpler."""
+    """Return the kind of bifurcation at which orbits emerge from simpler ones; None if these are not simpler."""
     # A period doubling may break the mirror symmetry as well.
     if simple.period < 0.75 * orbit.period:
         return BifurcationKind.PERIOD_DOUBLING

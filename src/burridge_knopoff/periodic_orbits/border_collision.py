@@ -1,11 +1,11 @@
-"""Corners of a branch of periodic orbits, where an orbit grazes: how to come to one, and how to go around it.
+"""Corners of a branch of periodic orbits, where an orbit grazes: approaching and rounding them.
 
-The return of a grazing orbit is continuous, but its derivative jumps, since a stop takes a perturbation of the velocity
-away however short the stick is; the next terms are of order 3/2. So the branch has a corner there, and Floquet
-multipliers jump. Either the orbit goes on with one stick more or less, or both kinds of it exist on the same side and
-meet: the branch turns back in a (a non-smooth fold).
+The return map of a grazing orbit is continuous, but its derivative jumps, since a stop removes a velocity perturbation
+however short the stick is; the next terms are of order 3/2. The branch therefore has a corner, and Floquet multipliers
+jump. Either the orbit continues with one stick more or less, or both kinds of orbit exist on the same side of the
+grazing and meet there: the branch turns back in a (a non-smooth fold).
 
-Where friction drops at the start of a slip the return itself jumps, and the branch ends.
+If friction drops at the start of a slip, the return map itself jumps, and the branch ends.
 
 Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
 2008), Sections 3.1 (border collisions) and 8.3 (grazing-sliding).
@@ -27,22 +27,22 @@ from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
-# A corner has been reached at this length from it; it takes fewer steps than these, and steps that fail.
+# A corner is reached at this distance from it; limits on the number of steps, and on failed steps.
 REACHED = 1e-10
 STEPS = 32
 FAILURES = 14
 
-# First step towards a corner, as a share of the length within which it lies; later ones are this share at most of the
-# length that is predicted, changed by these factors after a step that was made and one that was not.
+# First step towards a corner, as a fraction of the length within which it lies. Later steps are at most this fraction
+# of the predicted length; a factor applies after a successful and after a failed step.
 PROBE = 1e-2
 CAUTIOUS = 0.97
 LONGER = 2.0
 SHORTER = 0.4
 
-# Steps ahead within which a branch may join one of simpler orbits that a step has come to.
+# Number of steps ahead within which a branch may join a branch of simpler orbits.
 STEPS_TO_JOINT = 2.0
 
-# How far beyond a corner the tangent of its other side is taken, and lengths of first steps along it, in turn.
+# Distance beyond a corner at which the tangent of the other side is taken, and lengths of the first steps to try.
 BEYOND = (1e-5, 1e-4, 1e-6)
 FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
 
@@ -50,7 +50,7 @@ FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
 def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
     """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
 
-    What is 0 there falls in proportion to the length.
+    The grazing distance falls in proportion to the length.
     """
     last, here = before.contacts.values(), point.contacts.values()
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -60,11 +60,11 @@ def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
 
 
 def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
-    """Return the orbit at a length from the end of a way along a branch; None if none with the same stops is found.
+    """Return the orbit at a length from the end of a path along a branch; None if none with the same stops is found.
 
-    If it is a simpler one, gone round several times or seen without its symmetry, `joined` is that: but only where the
-    way comes to it, as the multiplier does that is 1 there. From afar a step may leap to such an orbit, which is not on
-    the branch.
+    If it is a simpler orbit, traversed several times or seen without its symmetry, `joined` is that orbit. This counts
+    only if the path approaches it, as the multiplier that equals 1 there shows. A long step may jump to such an orbit,
+    which is not on the branch.
     """
     point = way[-1]
     try:
@@ -80,9 +80,9 @@ def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None
 
 
 def _joint_ahead(way: Sequence[BranchOrbit]) -> float:
-    """Return the length from the end of a way to where a multiplier is 1, if it comes nearer; else infinite.
+    """Return the length from the end of a path to where an approaching multiplier reaches 1; else infinite.
 
-    There a branch of orbits that break a symmetry, or of twice the period, begins as one of simpler orbits.
+    There a branch of orbits with less symmetry, or with twice the period, joins one of simpler orbits.
     """
     if len(way) < 2:
         return np.inf
@@ -92,9 +92,9 @@ def _joint_ahead(way: Sequence[BranchOrbit]) -> float:
 
 
 def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
-    """Return orbits ahead of a way up to the one next to the grazing that lies within a length, or about so far.
+    """Return orbits ahead of a path up to the one next to the grazing that lies within about a length.
 
-    Near a corner that turns back a step may end on the other side of it, with other stops: it is made again, shorter.
+    Near a corner that turns back, a step may end on its other side, with other stops; it is repeated shorter.
     """
     way: list[BranchOrbit] = []
     step, share, failures = PROBE * length, CAUTIOUS, 0
@@ -122,7 +122,7 @@ def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchO
 
 
 def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
-    """Return an orbit on the other side of the grazing that a branch has come to; None if the branch ends there."""
+    """Return an orbit on the other side of the grazing that a branch has reached; None if the branch ends there."""
     orbit = point.orbit
     if drops(orbit.model):
         return None
@@ -142,9 +142,9 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                     found = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                # What never stops is no orbit of stick and slip: such motion is neutral, as at a = 0. Several turns of
-                # a simpler orbit, somewhere beside the corner, do not go on from it; nor does the way that has come
-                # here, in a mirror: the corner is where orbits that break a symmetry begin.
+                # Reject an orbit without stops: such motion is neutral, as at a = 0. Reject several turns of a simpler
+                # orbit beside the corner, which do not continue the branch, and the mirror image of the path itself:
+                # there the corner is where orbits of less symmetry begin.
                 signature = found.orbit.stop_counts
                 if (
                     signature not in (orbit.stop_counts, orbit.stop_counts[::-1])

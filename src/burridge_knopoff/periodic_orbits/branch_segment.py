@@ -1,4 +1,4 @@
-"""A segment of stable periodic orbits, followed in a both ways to the bifurcations at which it ends."""
+"""A branch segment of stable periodic orbits, followed in a both ways to the bifurcations at its ends."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from burridge_knopoff.periodic_orbits.following import FOLLOWING, Following, fol
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 
-# Difference of ⟨J⟩, for v = 0.1, at which orbits between two neighbours on a branch may be the same.
+# Difference of ⟨J⟩, for v = 0.1, within which an orbit between two neighbours on a branch may belong to the branch.
 SAME_MEAN = 1e-3
 
-# Orbits closer than this along a branch are not kept apart.
+# Orbits closer than this along a branch are merged.
 CLOSE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class Half:
-    """Orbits of one branch from a stable one on, with a growing at first, or falling.
+    """Orbits of one branch followed from a stable one in one direction of a.
 
     orbits : in the order in which they were followed
     """
@@ -31,7 +31,7 @@ class Half:
 
     @cached_property
     def bifurcations(self) -> list[Bifurcation]:
-        """Bifurcations that the stable orbits pass, and the one at which they end, if it is met."""
+        """Bifurcations that the stable orbits pass, and the one at which they end, if it was reached."""
         found = []
         for bifurcation in locate_bifurcations(self.orbits):
             found.append(bifurcation)
@@ -41,18 +41,18 @@ class Half:
 
     @cached_property
     def end(self) -> Bifurcation | None:
-        """The bifurcation at which the stable orbits end; None if none is met."""
+        """The bifurcation at which the stable orbits end; None if it was not reached."""
         return self.bifurcations[-1] if self.bifurcations and self.bifurcations[-1].loses_stability else None
 
     @property
     def shown(self) -> list[BranchOrbit]:
-        """All orbits but those on the way to a corner."""
+        """All orbits except those approaching a corner."""
         return [point for point in self.orbits if point.corner or not 0.0 < point.length < CLOSE]
 
 
 @dataclass(frozen=True, eq=False)
 class BranchSegment:
-    """Orbits of one branch around a stable one.
+    """A segment of a branch around a stable orbit.
 
     downward, upward : orbits followed from it with a falling, and growing, at first
     """
@@ -62,7 +62,7 @@ class BranchSegment:
 
     @cached_property
     def stable(self) -> list[BranchOrbit]:
-        """The stable orbits, a ascending."""
+        """The stable orbits, in ascending order of a."""
         low = self.downward.end.a if self.downward.end else -np.inf
         high = self.upward.end.a if self.upward.end else np.inf
         both = (*self.downward.orbits[:0:-1], *self.upward.orbits)
@@ -71,13 +71,13 @@ class BranchSegment:
 
     @property
     def shown(self) -> list[BranchOrbit]:
-        """All orbits from one end to the other, but for those on the way to a corner."""
+        """All orbits from one end to the other, except those approaching a corner."""
         return [*self.downward.shown[:0:-1], *self.upward.shown]
 
     def holds(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
-        """Tell whether an orbit is one of the stable ones: by its a, its stops and symmetry, its period and ⟨J⟩.
+        """Tell whether an orbit is one of the stable ones: by its a, stops, symmetry, period and ⟨J⟩.
 
-        tolerance : share of the period within which it has to be that of the orbits beside it
+        tolerance : largest relative difference from the period of the neighbouring orbits
         """
         a, period = self._known
         if not len(a):
@@ -95,7 +95,7 @@ class BranchSegment:
         expected = float(np.interp(orbit.a, a, period))
         if abs(orbit.period - expected) > tolerance * expected:
             return False
-        # Next to a grazing ⟨J⟩ changes like a root.
+        # Next to a grazing ⟨J⟩ changes as a square root.
         means = [other.mean_distance for other in near]
         margin = max(means) - min(means) + SAME_MEAN * orbit.model.scale
         return min(means) - margin <= orbit.mean_distance <= max(means) + margin
@@ -114,7 +114,7 @@ def half(
     beyond: int,
     settings: Following = FOLLOWING,
 ) -> Half:
-    """Follow a stable orbit one way until so many orbits beyond a bifurcation are unstable, or a leaves a range.
+    """Follow a stable orbit one way until some orbits beyond a bifurcation are unstable, or a leaves a range.
 
     Raises OrbitError if it cannot be followed at all.
     """
@@ -122,7 +122,7 @@ def half(
 
 
 def _enough(beyond: int) -> Callable[[list[BranchOrbit]], bool]:
-    """Return what tells that so many orbits have passed since the first unstable one."""
+    """Return a test whether `beyond` orbits have followed since the first unstable one."""
     first = 0
 
     def enough(points: list[BranchOrbit]) -> bool:

@@ -1,10 +1,11 @@
-"""Floquet multipliers of a periodic orbit without that of the flow, and what is 0 where one leaves the unit circle.
+"""Floquet multipliers of a periodic orbit, without that of the flow, and functions that vanish at its bifurcations.
 
-For an orbit that is its own mirror image after half its period all is taken from the map of the half: its multipliers ν
-are those of the whole by μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a fold. A single μ = −1
-would need ν = ±i, both at once: such orbits do not double their period before they have lost the symmetry.
+For an orbit that is its own mirror image after half a period, everything is computed from the half return: its
+multipliers ν give those of the whole period, μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a
+fold. A single μ = −1 would need ν = i and ν = −i at once. Such orbits do not double their period before they have lost
+the symmetry.
 
-If mirror blocks move as one, perturbations that keep this and those that break it do not mix: +1 is a fold among the
+If mirror blocks move synchronously, symmetric and symmetry-breaking perturbations do not mix: +1 is a fold among the
 former and a pitchfork among the latter, −1 a period doubling among both.
 
 References: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2;
@@ -28,11 +29,11 @@ from burridge_knopoff.values import instance_of
 
 @dataclass(frozen=True, eq=False)
 class Multipliers:
-    """Multipliers of a return, complex, without that of the flow; the largest modulus first.
+    """Multipliers of a return, complex, without that of the flow; largest modulus first.
 
-    keeping : of all perturbations, or of those that keep mirror blocks together if these move as one
-    breaking : of those that part mirror blocks; empty unless these move as one
-    power : returns in a period
+    keeping : of all perturbations, or of the mirror-symmetric ones if mirror blocks move synchronously
+    breaking : of the symmetry-breaking perturbations; empty unless mirror blocks move synchronously
+    power : number of returns in a period
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -53,28 +54,28 @@ class Multipliers:
 
     @property
     def whole(self) -> np.ndarray:
-        """All multipliers of a whole period, the largest modulus first."""
+        """All multipliers of a whole period, largest modulus first."""
         both = np.concatenate([self.keeping, self.breaking]) ** self.power
         return both[np.argsort(-np.abs(both), kind="stable")]
 
     @property
     def transverse(self) -> complex:
-        """The leading one of perturbations that part mirror blocks; NaN unless these move as one."""
+        """Leading multiplier of symmetry-breaking perturbations; NaN unless mirror blocks move synchronously."""
         return complex(self.breaking[0]) if len(self.breaking) else complex(np.nan)
 
     @property
     def unstable(self) -> int:
-        """How many lie outside the unit circle."""
+        """Number of multipliers outside the unit circle."""
         return int((np.abs(np.concatenate([self.keeping, self.breaking])) > 1.0).sum())
 
 
 def multipliers(orbit: PeriodicOrbit) -> Multipliers:
-    """Return the Floquet multipliers of an orbit; velocities of stuck blocks count with a multiplier 0.
+    """Return the Floquet multipliers of an orbit; the velocities of stuck blocks have multiplier 0.
 
-    The flow f is an eigenvector of the return with the eigenvalue 1: what is left on its orthogonal complement has the
-    other eigenvalues, however close to 1 they are.
+    The flow direction f is an eigenvector of the return with eigenvalue 1. The restriction to its orthogonal complement
+    has the other eigenvalues, however close to 1 they are.
 
-    orbit : of any chain; that of the flow, which is 1, is left out
+    orbit : of any chain; the multiplier of the flow, 1, is left out
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
@@ -101,10 +102,10 @@ def _sorted(values: np.ndarray) -> np.ndarray:
 
 
 def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
-    """Return for each kind of bifurcation, and part of the perturbations, a smooth function that changes sign there.
+    """Return, for each kind of bifurcation and part of the perturbations, a smooth function that changes sign there.
 
-    They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1, which is also 0 where the
-    product of two real ones is 1, at an ordinary saddle.
+    They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1. The last is also 0 if the
+    product of two real multipliers is 1, at an ordinary saddle.
     """
     found = multipliers(orbit) if found is None else found
     values = {}

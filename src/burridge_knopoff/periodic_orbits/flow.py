@@ -1,4 +1,4 @@
-"""Runs over a time from one state, as orbits take them: the state at the end, the events, the mean of J."""
+"""Integration of a state over a time: the state at the end, the events, the mean of J."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from burridge_knopoff.running.runner import Runner, new_observer
 
 
 class OrbitError(ValueError):
-    """There is no such orbit, or it was not found; the message says why.
+    """There is no such orbit, or it was not found; the message gives the reason.
 
     >>> from burridge_knopoff import Chain, Model, OrbitError, law_of, synchronized_orbit
     >>> try:
@@ -21,7 +21,7 @@ class OrbitError(ValueError):
 
 
 def model_at(model: Model, a: float) -> Model:
-    """Return a model at another friction parameter; raises OrbitError where its law does not allow that."""
+    """Return a model at another friction parameter; raises OrbitError if its law does not allow that."""
     try:
         return model.at(a)
     except ValueError as error:
@@ -39,7 +39,7 @@ def flow(model: Model, start: ChainState, time: float) -> tuple[Runner, tuple[tu
 
 
 def after(runner: Runner, start: ChainState, time: float) -> ChainState:
-    """Return the state that a runner reaches from a state after a time.
+    """Return the state of a runner a time after a given state.
 
     Raises OrbitError if the run does not complete.
     """
@@ -50,7 +50,7 @@ def after(runner: Runner, start: ChainState, time: float) -> ChainState:
 
 
 def mean_distance(model: Model, start: ChainState, period: float) -> float:
-    """Return ⟨J⟩ over one period from a state on an orbit."""
+    """Return ⟨J⟩ over one period, starting from a state on an orbit."""
     observer = new_observer(model, [0.0, period])
     after(Runner(model, observer=observer), start, period)
     return float(observer.results()["batch_integral"][0]) / period
@@ -65,5 +65,5 @@ def rate(model: Model, at: ChainState) -> np.ndarray:
 
 
 def _products(vectors: np.ndarray, of: np.ndarray) -> np.ndarray:
-    """Return the products of each row with a vector, added up in the same order everywhere."""
+    """Return the product of each row with a vector, summed in the same order on every machine."""
     return (vectors * of).sum(axis=1)

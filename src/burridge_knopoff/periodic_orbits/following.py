@@ -1,4 +1,4 @@
-"""Branches of periodic orbits followed in a: through folds and around grazings, stable or not."""
+"""Continuation of periodic orbits in a: through folds and around grazings, stable or unstable."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch
 from burridge_knopoff.values import instance_of, real_number, refusal
 
-# Distance, for v = 0.1, within which an orbit that is about to become one of more symmetry, or of half the period,
-# comes back to itself in a mirror, or after half its period.
+# Distance, for v = 0.1, within which an orbit about to become more symmetric, or of half the period, returns to its
+# mirror image, or to itself after half its period.
 JOINED = 3e-2
 
-# Growth of a step after one that was made.
+# Growth of a step after a successful one.
 FASTER = 2.0
 
 
 @dataclass(frozen=True)
 class Following:
-    """How a branch is followed: lengths of steps along it, mostly lengths in a, and the most orbits that are kept.
+    """Options of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
 
     >>> from burridge_knopoff import Following
     >>> Following(most_orbits=20).largest_step
@@ -49,22 +49,22 @@ def follow(
     upward: bool = True,
     enough: Callable[[list[BranchOrbit]], bool] = lambda points: False,
 ) -> list[BranchOrbit]:
-    """Return the orbits of a branch from one on, until a leaves a range or enough is known.
+    """Return the orbits of a branch starting from one of them, until a leaves a range or `enough` says so.
 
-    orbit : stable or not, of any chain; one of simpler orbits is followed as that; a_range : (low, high)
+    orbit : stable or unstable, of any chain; reduced to its simplest form first; a_range : (low, high)
     settings : lengths of steps; upward : whether a grows at first
-    enough : told after each orbit but those on a corner, with all orbits so far
+    enough : called after each orbit except those on a corner, with all orbits so far
 
-    Where an orbit grazes it is in the list, with `corner` set, and the next one is on the other side, if there is one.
-    The branch also ends where it joins one of simpler orbits, where no step is short enough, and with the
-    `settings.most_orbits`-th orbit, or the next one if that is on a corner: if a is still within the range then, the
-    rest of it was not looked at.
+    A grazing orbit is in the list with `corner` set; the next orbit, if there is one, is on the other side. The branch
+    also ends where it joins one of simpler orbits, where no step is short enough, and at the `settings.most_orbits`-th
+    orbit, or the next one if that is on a corner. If a is then still within the range, the rest of the branch has not
+    been followed.
 
-    Raises OrbitError if it cannot begin, as where the orbit is not within the range, and ValueError for a range that is
-    none.
+    Raises OrbitError if it cannot start, for example if the orbit is not within the range, and ValueError for an
+    invalid range.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
-    docs/bifurcations.md says how a branch goes on where its orbit grazes.
+    docs/bifurcations.md explains how a branch continues where its orbit grazes.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
@@ -116,9 +116,9 @@ def follow(
 
 
 def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
-    """Return the simpler orbit that a branch has come to and gone past, on to its own mirror image; None if none.
+    """Return the simpler orbit that a branch has passed, on to its own mirror image; None if there is none.
 
-    The branch turns back in a there, but no multiplier goes through 1, as at a fold: it only touches it.
+    The branch turns back in a there, but the multiplier only touches 1, unlike at a fold.
     """
     if first.tangent[-1] * second.tangent[-1] > 0.0:
         return None

@@ -1,9 +1,9 @@
-"""How far a periodic orbit is from gaining or losing a stick or a slip: what is 0 where it grazes.
+"""Grazing distances: how far a periodic orbit is from gaining or losing a stick or a slip; 0 at a grazing.
 
-A slip splits where its least speed falls to 0: a stick is born, whose length grows like a square root, so that the
-square of it is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and a slip is
-born. In the other direction the shortest stick, or slip, shrinks to nothing. Where friction drops at the start of a
-slip no stick does: it goes with a jump, where the slip before it comes to rest without deceleration.
+A slip splits where its least speed falls to 0. A stick is born there, whose length grows as a square root, so that its
+square is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and a slip is born.
+In the other direction the shortest stick or slip shrinks to nothing. If friction drops at the start of a slip, no stick
+can shrink to nothing: it disappears in a jump, where the slip before it comes to rest without deceleration.
 
 Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
 2008), Chapter 8 (sliding bifurcations).
@@ -24,32 +24,31 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
 
-# Longest time between the states among which least speeds and greatest forces are looked for, and longest phase of the
-# fastest mode; the Hermite cubic through two of them finds the instant to 1e-5, a step along the acceleration there all
-# the rest.
+# Longest time between the states searched for least speeds and greatest forces, and longest phase of the fastest mode.
+# The Hermite cubic through two of them finds the instant to 1e-5; a step along the acceleration there does the rest.
 SPACING = 0.1
 LARGEST_PHASE = 0.245
 
-# Instants of least speed of a block that are looked at more closely, the slowest ones.
+# Number of instants of least speed of a block that are refined, the slowest ones.
 SLOWEST = 2
 
-# Samples of which derivatives are taken at a time: few enough for a fast cache.
+# Number of samples whose derivatives are computed at a time: few enough for a fast cache.
 CHUNK = 4096
 
-# Rounding of accelerations and forces.
+# Rounding errors of accelerations and forces.
 ROUNDING = 1e-12
 
-# Directions in which a block slips, by the contact.
+# Directions in which a block can slip, by contact.
 SIDES = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
 
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Of each block, shape (blocks,), infinite where there is none.
+    """The grazing distances of each block, shape (blocks,); infinite if the orbit has no such piece.
 
     stick, slip : length of its shortest stick and slip
     speed : least speed within a slip; force : least distance of the spring force from the threshold within a stick
-    deceleration : the least at the end of a slip, where friction drops at the start of one
+    deceleration : the least at the end of a slip, if friction drops at the start of one
     """
 
     stick: np.ndarray
@@ -59,7 +58,7 @@ class Contacts:
     deceleration: np.ndarray
 
     def values(self) -> np.ndarray:
-        """Return all that falls to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
+        """Return the quantities that fall to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
         return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force, self.deceleration**2])
 
 
@@ -69,16 +68,16 @@ def drops(model: Model) -> bool:
 
 
 def longest_spacing(chain: Chain) -> float:
-    """Return the longest time between two samples that show the motion of a chain."""
+    """Return the longest time between two samples that resolves the motion of a chain."""
     return min(SPACING, LARGEST_PHASE / chain.highest_frequency)
 
 
 def contacts(orbit: PeriodicOrbit) -> Contacts:
-    """Return how far an orbit is from its grazings; raises OrbitError if it cannot be run along."""
+    """Return the grazing distances of an orbit; raises OrbitError if the orbit cannot be integrated."""
     model = orbit.model
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
     longest = longest_spacing(model.chain)
-    # On an orbit that is its own mirror image the second half shows of a block what the first does of its mirror one.
+    # On a symmetric orbit the second half shows for a block what the first half shows for its mirror block.
     until = orbit.return_time
     time, spacing = np.linspace(0.0, until, math.ceil(until / longest) + 1, retstep=True)
     observer = new_observer(model, 2 * [until + longest], trajectory_time=time, section_only=True)
@@ -94,7 +93,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     chunks = [slice(first, first + CHUNK) for first in range(0, len(time), CHUNK)]
     parts = [_derivatives(model, position[chunk], velocity[chunk]) for chunk in chunks]
     derivatives = [np.concatenate(values) for values in zip(*parts, strict=True)]
-    # What slips backward, and what is pulled back, is seen in a mirror: forward.
+    # Backward slip and backward pull are treated as their mirror images.
     for side in SIDES[model.contact]:
         force, force_rate, acceleration, jerk = (side * values for values in derivatives)
         moving = side * velocity
@@ -131,7 +130,7 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
             own = events[events[:, 0] == number + 1]
             position = own[:, 2 : 2 + model.blocks]
             force = _derivatives(model, position, np.zeros_like(position))[0][:, number]
-            # A slip goes where the spring force points at its start, the event before its stop.
+            # A slip goes in the direction of the spring force at its start, the event before its stop.
             along = np.sign(np.roll(force, 1)) * force
             decelerations = threshold * float(model.law(0.0)) - along
             least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
@@ -139,16 +138,16 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
 
 
 def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
-    """Return the shortest time from an event of a kind to the next one of the block; infinite if there is none."""
+    """Return the shortest time from an event of a kind to the next event of the block; infinite if there is none."""
     time, event = orbit.events_of(block)
     length = np.diff(time, append=time[:1] + orbit.period)[event == kind]
-    # A block that turns round stops and starts at one instant: no stick shrinks there.
+    # A block that reverses stops and starts at one instant: no stick shrinks there.
     turns = (length == 0.0) & (orbit.model.contact == "symmetric")
     return float(length[~turns].min(initial=np.inf))
 
 
 def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield for each block whether it sticks at each time, and how many of its events are over."""
+    """Yield for each block whether it sticks at each time, and the number of its events before that time."""
     for block in range(orbit.model.blocks):
         at, kind = orbit.events_of(block)
         over = np.searchsorted(at, time)
@@ -157,7 +156,7 @@ def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray
 
 
 def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return spring force, its rate, and acceleration and its rate of blocks that slip, each of shape (n, blocks)."""
+    """Return spring force, its rate, and acceleration and its rate of slipping blocks, each of shape (n, blocks)."""
     chain = model.chain
     force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
     force_rate = -(velocity - model.v) @ chain.stiffness.T
@@ -167,7 +166,7 @@ def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tu
 
 
 def _root(value: np.ndarray, slope: np.ndarray) -> float:
-    """Return where, from 0 to 1, the Hermite cubic through values of opposite sign, with these slopes, is 0."""
+    """Return the root in [0, 1] of the Hermite cubic through values of opposite sign, with these slopes."""
     cubic = [
         2.0 * (value[0] - value[1]) + slope[0] + slope[1],
         3.0 * (value[1] - value[0]) - 2.0 * slope[0] - slope[1],

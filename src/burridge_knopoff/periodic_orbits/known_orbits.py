@@ -1,6 +1,6 @@
-"""Orbits of one branch at any friction parameters that are asked for, each continued from the nearest that is known.
+"""Orbits of one branch at requested friction parameters, each continued from the nearest known orbit.
 
-Steps in a do not go around folds, as those of `following` do; where the orbit only grazes they pass the corner.
+Steps in a cannot go around folds, unlike those of `following`; they can pass the corner where an orbit only grazes.
 """
 
 from __future__ import annotations
@@ -11,18 +11,18 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refined
 
-# Steps in a by which an orbit is continued; sticks vanish like the root of a as it falls to 0.
+# Steps in a of the continuation; sticks vanish as the square root of a as a falls to 0.
 LARGEST_STEP = 0.02
 LEAST_STEP = 1e-5
 
-# Largest change of the period in a step, as a share of it: more leads to another orbit.
+# Largest relative change of the period in a step: a larger change means another orbit.
 FARTHEST = 0.1
 
 
 class KnownOrbits:
-    """Orbits of a branch by their a, solved down to rounding.
+    """Orbits of a branch by their a, solved to rounding.
 
-    first : one of them, stable or not, of any chain
+    first : an orbit of the branch, stable or unstable, of any chain
     """
 
     def __init__(self, first: PeriodicOrbit) -> None:
@@ -30,11 +30,11 @@ class KnownOrbits:
 
     @property
     def model(self) -> Model:
-        """The model of the orbits, at one a of them."""
+        """The model of the orbits, at the a of one of them."""
         return next(iter(self.known.values())).model
 
     def at(self, a: float) -> PeriodicOrbit:
-        """Return the orbit at a > 0; raises OrbitError where it is lost on the way, and elsewhere."""
+        """Return the orbit at a > 0; raises OrbitError if it is lost on the way, and for other a."""
         if a in self.known:
             return self.known[a]
         if not a > 0.0:
@@ -56,7 +56,7 @@ class KnownOrbits:
 
 
 def beside(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
-    """Return the orbit that an orbit becomes at an a nearby, solved down to rounding.
+    """Return the continuation of an orbit to a nearby a, solved to rounding.
 
     Raises OrbitError if it is not found.
     """

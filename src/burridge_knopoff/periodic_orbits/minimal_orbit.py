@@ -1,4 +1,4 @@
-"""Reduce an orbit to its minimal, most symmetric form, which may have a shorter period, gone round often."""
+"""Reduction of an orbit to its minimal, most symmetric form, which it may traverse several times."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_period
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Distance, for v = 0.1, within which an orbit is one of more symmetry, or of a shorter period.
+# Distance, for v = 0.1, within which an orbit counts as more symmetric, or of a shorter period.
 SAME = 1e-8
 
-# Share of the time within which the simpler orbit has to return; else Newton's method has come to another one.
+# Relative time within which the simpler orbit has to return; otherwise Newton's method has reached another orbit.
 SAME_TIME = 0.05
 
 
 def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
-    """Return the orbit of the most symmetry and the shortest return that an orbit is; itself if there is none.
+    """Return the most symmetric form of an orbit with the shortest return; the orbit itself if there is no simpler one.
 
-    The simpler orbit has the same stops, gone round as often as it takes.
+    The simpler orbit has the same stops, traversed as often as necessary.
 
-    tolerance : how far, for v = 0.1, its state may be from where the simpler orbit would be; a branch of orbits of less
+    tolerance : largest distance, for v = 0.1, of its state from that of the simpler orbit; a branch of orbits of less
         symmetry, or of twice the period, begins at such orbits
     """
     for time, symmetry in _simpler(orbit):
@@ -47,7 +47,7 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
 
 
 def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
-    """Return the orbit of more symmetry, or of a shorter period, that one is to rounding; None if it is its own."""
+    """Return the more symmetric or shorter form that an orbit has up to rounding; None if there is none."""
     mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.stop_counts == orbit.stop_counts[::-1]
     if not mirrored and gcd(*orbit.stop_counts) == 1:
         return None
@@ -56,7 +56,7 @@ def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
 
 
 def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
-    """Yield times after which a simpler orbit would have returned, and its symmetry; 0 if it is the state itself."""
+    """Yield the return times and symmetries that simpler forms could have; a time of 0 means the state itself."""
     if orbit.symmetry != Symmetry.SYNCHRONIZED and orbit.model.chain.is_mirror_symmetric:
         yield 0.0, Symmetry.SYNCHRONIZED
     for part in _prime_factors(gcd(*orbit.stop_counts)):
@@ -67,6 +67,6 @@ def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
 
 
 def _prime_factors(number: int) -> list[int]:
-    """Return the primes that divide a number of turns, each once."""
+    """Return the prime factors of a number of turns, each once."""
     divisors = [part for part in range(2, number + 1) if number % part == 0]
     return [part for part in divisors if all(part % other for other in divisors if other < part)]

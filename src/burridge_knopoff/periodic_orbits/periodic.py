@@ -1,11 +1,11 @@
-"""Periodic orbits of any order of stops and starts, of any chain under any law of friction, stable or not.
+"""Periodic orbits with any order of stops and starts, of any chain and friction law, stable or unstable.
 
-An orbit is represented by a reference state in the middle of its longest time without a stop or start. There the return
-after a fixed time is smooth, whatever stops and starts lie between, so that Newton's method needs no list of them and
-an orbit may gain or lose sticks from one step to the next. The unknowns are all positions, the velocities of the
-blocks that slip, and the time; the equations are that the state returns (in a mirror, where the orbit is its own mirror
-image after half its period) and that corrections are perpendicular to the flow. The Jacobian comes from the tangent
-dynamics of the kernel, with the saltation at starts where friction drops.
+An orbit is represented by a reference state in the middle of its longest time without an event. There the return after
+a fixed time is smooth, whatever stops and starts lie between, so that Newton's method needs no list of events and an
+orbit may gain or lose sticks between iterations. The unknowns are all positions, the velocities of slipping blocks, and
+the return time. The equations require that the state returns (in a mirror, if the orbit is its own mirror image after
+half its period) and that corrections are perpendicular to the flow. The Jacobian comes from the tangent dynamics of the
+kernel, with the saltation at starts where friction drops.
 
 References: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493; M. di Bernardo,
 C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer 2008), Section 2.5.
@@ -26,31 +26,32 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import instance_of
 
-#: Largest difference of a position or velocity after a return, times v beyond 1. Newton's method goes on below it as
-#: long as it gains, down to where rounding begins to count.
+#: Largest difference of a position or velocity after a return, times v if v > 1. Below it Newton's method continues as
+#: long as it gains, down to rounding.
 TOLERANCE = 1e-10
 ENOUGH = 1e-12
 ITERATIONS = 10
 
-# From this iteration on equations are nearer to solved after each, or they never will be.
+# From this iteration on, each iteration has to improve the solution, or the method fails.
 FIRST = 2
 
-# A correction larger than this, in units of v, leads to another orbit, if to any.
+# A larger correction, in units of v, leads to another orbit, if to any.
 FARTHEST = 5.0
 
-# A reference state nearer than this share of the longest time without an event to an end of it is moved to the middle.
+# A reference state closer than this, as a fraction of the longest time without events, to an event is moved to the
+# middle of that time.
 NEAR_EVENT = 0.2
 
 
 @dataclass(frozen=True, eq=False)
 class PeriodicOrbit:
-    """A closed motion of a chain.
+    """A periodic orbit of a chain.
 
     reference : a state between two events, well away from both
-    return_time : after which the state returns: the period, or half of it for an orbit that is its own mirror image
+    return_time : time of a return: the period, or half of it for an orbit that is its own mirror image
     returned : the state after a return, in a mirror for an orbit that is its own mirror image
-    monodromy : how perturbations of the reference state return, shape (2 blocks, 2 blocks)
-    known_events : `event_rows`, where they are known
+    monodromy : linearized return of perturbations of the reference state, shape (2 blocks, 2 blocks)
+    known_events : `event_rows`, if known
 
     Times are in units of 1/ω, states in those of `Model`.
 
@@ -71,7 +72,7 @@ class PeriodicOrbit:
     known_events: InitVar[np.ndarray | None] = None
 
     def __post_init__(self, known_events: np.ndarray | None) -> None:
-        """Take over the events that are known."""
+        """Store the events if they are known."""
         if known_events is not None:
             self.__dict__["event_rows"] = known_events
 
@@ -89,13 +90,13 @@ class PeriodicOrbit:
         )
 
     def forget_events(self) -> None:
-        """Free what the events take, a megabyte on the longest orbits: they are found again when they are asked for."""
+        """Free the events, a megabyte on the longest orbits; they are computed again on demand."""
         _ = self.stop_counts
         self.__dict__.pop("event_rows", None)
 
     @property
     def events(self) -> list[tuple[float, int, int]]:
-        """Time since the reference, block (0 …) and kind (0 stop, 1 start) of every event of a whole period."""
+        """Time since the reference, block (0 …) and kind (0 stop, 1 start) of every event in a whole period."""
         return [(time, int(block), int(kind)) for time, block, kind in self.event_rows.tolist()]
 
     def events_of(self, block: int) -> tuple[np.ndarray, np.ndarray]:
@@ -104,7 +105,7 @@ class PeriodicOrbit:
         return time[moved == block], kind[moved == block]
 
     def stick_time(self, block: int) -> float:
-        """Return for how long a block, from 0, sticks in a period, all its sticks together."""
+        """Return the total time in a period for which a block, numbered from 0, sticks."""
         time, kind = self.events_of(block)
         if not len(time):
             return self.period if self.reference.stuck[block] else 0.0
@@ -117,17 +118,17 @@ class PeriodicOrbit:
 
     @property
     def residual(self) -> float:
-        """Max norm of the state after a return minus the reference state."""
+        """Maximum norm of the state after a return minus the reference state."""
         return float(np.abs(self.returned.vector() - self.reference.vector()).max())
 
     @property
     def period(self) -> float:
-        """The time after which all blocks are where they were."""
+        """The time after which all blocks are back at their positions and velocities."""
         return self.return_time * (2.0 if self.symmetry == Symmetry.SYMMETRIC else 1.0)
 
     @cached_property
     def stop_counts(self) -> tuple[int, ...]:
-        """How often each block stops in a period."""
+        """Number of stops of each block in a period."""
         stopped = self.event_rows[self.event_rows[:, 2] == 0, 1].astype(int)
         return tuple(np.bincount(stopped, minlength=self.model.blocks).tolist())
 
@@ -158,9 +159,9 @@ def solve_return(
 ) -> PeriodicOrbit:
     """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
 
-    constraint : a vector over (positions and velocities, time, a) and what its product with the change from the
-        origin, a point of the same form, has to be: the orbit is sought with a as another unknown
-    enough : what is left of the equations when the iteration ends; with 0 it ends at rounding
+    constraint : a vector over (positions and velocities, time, a), an origin of the same form, and the required product
+        of the vector with the change from the origin; makes a another unknown
+    enough : residual at which the iteration ends; 0 iterates to rounding
 
     Raises OrbitError if Newton's method does not converge.
     """
@@ -186,7 +187,7 @@ def solve_return(
             vector, amount = constraint
             change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
             values[-1] = vector @ change - amount
-            # Costly, and it changes little from one iteration to the next.
+            # Expensive, and nearly constant between iterations.
             if by_a is None:
                 by_a = basis.T @ mapping.a_derivative(here, time, end, mapping.event_rows()[:, 1:])
             jacobian[:count, -1] = by_a
@@ -216,12 +217,12 @@ def solve_return(
 
 
 def refined(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return an orbit with its equations solved down to rounding, which a root of its multipliers is known by."""
+    """Return an orbit solved to rounding, as a root of its multipliers requires."""
     return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, enough=0.0)
 
 
 def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -> PeriodicOrbit:
-    """Return the orbit through a state between two events that returns after a time, whether it does or not.
+    """Return an orbit through a state between two events with a given return time, without checking that it returns.
 
     Raises OrbitError if the run does not complete.
     """
@@ -231,19 +232,19 @@ def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -
 
 
 def safe_offset(orbit: PeriodicOrbit) -> float:
-    """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe where it is."""
+    """Return the time to the middle of the longest time without events; 0 if the reference is far from events."""
     return _safe_offset(orbit.event_rows[:, 0].tolist(), orbit.period)
 
 
 def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
     """Return the periodic orbit near a state between two events, by Newton's method.
 
-    model, guess : the state, in the model whose orbit is sought
-    return_time : after which the state about returns: a period, or half of one for SYMMETRIC, in a mirror
+    model, guess : the state, and the model whose orbit is sought
+    return_time : approximate time of a return: a period, or half a period for SYMMETRIC, in a mirror
 
-    Raises OrbitError if none is found on which a block stops: a chain that slides uniformly returns after any time.
-    Raises ValueError for a time or a symmetry that is not allowed, as where the chain has no mirror image and the
-    symmetry needs one.
+    Raises OrbitError if there is none on which a block stops, since a uniformly sliding chain returns after any time.
+    Raises ValueError for an invalid time or symmetry, for example a mirror symmetry of a chain that is not its own
+    mirror image.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
@@ -265,7 +266,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     mapping.end(guess, return_time)
     events = _event_rows(mapping, return_time)
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
-    # The guess may lie at a stop itself, which rounding puts before or after it.
+    # The guess may lie at a stop itself, which rounding may put before or after it.
     times = sorted([*events[:, 0].tolist(), return_time, period])
     guess = flow(model, guess, _safe_offset(times, period))[0].state()
     if symmetry == Symmetry.SYNCHRONIZED:
@@ -278,7 +279,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
 
 
 def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:
-    """Return the events of a whole period, of which a return has just been made, shape (events, 3)."""
+    """Return the events of a whole period after a return has been integrated, shape (events, 3)."""
     rows = mapping.event_rows()
     if mapping.symmetry != Symmetry.SYMMETRIC:
         return rows
@@ -286,7 +287,7 @@ def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:
 
 
 def _safe_offset(times: list[float], period: float) -> float:
-    """Return how far ahead the middle of the longest time without events is; 0 if the reference is safe in one."""
+    """Return the time to the middle of the longest time without events; 0 if the reference is far from events."""
     if not times:
         return 0.0
     ordered = np.array([times[-1] - period, *times])

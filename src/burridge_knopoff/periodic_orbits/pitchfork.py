@@ -1,7 +1,7 @@
-"""Orbits that branch off a synchronized one where a transverse multiplier is 1, each with a as another unknown.
+"""Orbits that branch off a synchronized orbit where a transverse multiplier is 1, with a as another unknown.
 
-Such an orbit is sought by its asymmetry d, the difference of the positions of the end blocks while both stick. Its a is
-a_c + c d² + …, even in d by mirror symmetry: orbits at an a beyond a_c make the pitchfork supercritical.
+Such an orbit is parametrized by its asymmetry d, the difference of the positions of the end blocks while both stick.
+Its a is a_c + c d² + …, even in d by mirror symmetry. Orbits at a beyond a_c make the pitchfork supercritical.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 7.4.
 """
@@ -16,7 +16,7 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, r
 from burridge_knopoff.periodic_orbits.return_map import parting
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# An orbit that branches off is looked for no farther from a_c than this share of it.
+# Orbits that branch off are searched for up to this relative distance from a_c.
 FARTHEST = 0.5
 
 
@@ -24,7 +24,7 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
     """Return the orbit of a given asymmetry that branches off; its model has the a at which it exists.
 
     critical : the synchronized orbit at a_c
-    near : an orbit of less asymmetry that this function has returned, for a better guess
+    near : an orbit of smaller asymmetry returned by this function, for a better guess
 
     Its reference is a state in which the end blocks stick. Raises OrbitError if it is not found.
     """
@@ -35,7 +35,7 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
         start = ChainState(vector[:blocks], vector[blocks:], center.reference.stuck)
         a, time = center.a + (asymmetry / center.model.v) ** 2 * center.a, center.return_time
     else:
-        # What is apart grows with the asymmetry, all else with its square.
+        # The antisymmetric part grows with the asymmetry, everything else with its square.
         factor = asymmetry / asymmetry_of(near)
         change = near.reference.vector() - base
         mirrored = near.reference.mirrored().vector() - base
@@ -74,14 +74,14 @@ def _way_off(orbit: PeriodicOrbit) -> np.ndarray:
 
 
 def _while_ends_stick(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return a synchronized orbit from the middle of the longest time without events in which its end blocks stick."""
+    """Return a synchronized orbit, with the middle of the longest event-free time of stuck end blocks as reference."""
     time = orbit.event_rows[:, 0]
     at, kind = orbit.events_of(0)
     if not len(at):
         raise OrbitError(f"a = {orbit.a!r}: the end blocks never stick")
     length = np.diff(time, append=time[:1] + orbit.period)
     middle = time + 0.5 * length
-    # The last event of an end block before the middle, the last one of a period before the first.
+    # The last event of an end block before the middle; the last one of a period precedes the first.
     sticks = kind[np.searchsorted(at, middle) - 1] == 0
     chosen = float(middle[np.where(sticks, length, -np.inf).argmax()])
     state = flow(orbit.model, orbit.reference, chosen)[0].state()

@@ -1,7 +1,7 @@
-"""Periodic orbits followed in the friction parameter a by pseudo-arclength: through folds and grazings, stable or not.
+"""Pseudo-arclength continuation of periodic orbits in the friction parameter a: through folds, up to grazings.
 
-A step goes along the tangent of the branch in (state, return time, a) and comes back to the branch perpendicular to it.
-No step passes a grazing: there the branch has a corner (`corner`), and `follow` goes around it.
+A step follows the tangent of the branch in (state, return time, a) and is corrected perpendicular to it. No step passes
+a grazing: there the branch has a corner (`corner`), which `follow` goes around.
 
 Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 and 745.
 """
@@ -20,14 +20,14 @@ from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contact
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
 
-# A length along a branch is mostly one in a: positions, in units of 0.1 v, and times count less.
+# Length along a branch is mostly length in a: positions, in units of 0.1 v, and times have smaller weights.
 STATE_WEIGHT = 0.01
 TIME_WEIGHT = 1e-4
 
-# Part of a change of a state by which the tangent is carried from one reference state to another.
+# Fraction of a change of state by which the tangent is carried from one reference state to another.
 PART = 1e-6
 
-# Cosine of the largest angle between the tangents at both ends of a step; a sharper turn asks for shorter steps.
+# Cosine of the largest angle between the tangents at both ends of a step; sharper turns need shorter steps.
 STRAIGHT = 0.8
 
 
@@ -35,10 +35,10 @@ STRAIGHT = 0.8
 class BranchOrbit:
     """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, a).
 
-    length : along the tangent of the orbit before, from there to here
-    joined : the simpler orbit that this one is, where the branch has come to another one: an orbit of more symmetry, or
-        of half the period; the branch ends before it
-    remaining : length from here to the corner of the branch where the orbit grazes; NaN if it is not right there
+    length : from the previous orbit, along its tangent
+    joined : the simpler form of this orbit, more symmetric or of half the period, if the branch has reached another
+        branch; the branch ends before it
+    remaining : length from here to the corner of the branch where the orbit grazes; NaN unless the corner is next
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
@@ -59,12 +59,12 @@ class BranchOrbit:
 
     @property
     def corner(self) -> bool:
-        """Whether the orbit grazes, to rounding."""
+        """Whether the orbit grazes, up to rounding."""
         return not np.isnan(self.remaining)
 
     @cached_property
     def contacts(self) -> Contacts:
-        """How far the orbit is from its grazings."""
+        """The grazing distances of the orbit."""
         return contacts(self.orbit)
 
     @cached_property
@@ -74,12 +74,12 @@ class BranchOrbit:
 
 
 def weights(model: Model) -> np.ndarray:
-    """Return what each component of (positions and velocities, return time, a) counts in a squared length."""
+    """Return the weight of each component of (positions and velocities, return time, a) in a squared length."""
     return np.concatenate([np.full(2 * model.blocks, STATE_WEIGHT / model.scale**2), [TIME_WEIGHT, 1.0]])
 
 
 def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
-    """Return the unit tangent of the branch through an orbit, of either sign."""
+    """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
     basis = directions(start.stuck, orbit.symmetry)
     count = basis.shape[1]
@@ -96,7 +96,7 @@ def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
 
 
 def begin_branch(orbit: PeriodicOrbit, upward: bool) -> BranchOrbit:
-    """Return an orbit with the tangent along which a grows, or falls."""
+    """Return an orbit with the tangent along which a grows or falls."""
     tangent = tangent_of(orbit)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent)
 
@@ -104,7 +104,7 @@ def begin_branch(orbit: PeriodicOrbit, upward: bool) -> BranchOrbit:
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
     """Return the orbit at a length along the tangent from a point of a branch.
 
-    tangent : another one than that of the point
+    tangent : replaces that of the point
 
     Raises OrbitError if none is found, or if the branch turns sharply on the way.
     """
@@ -142,7 +142,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
 
 
 def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float) -> np.ndarray:
-    """Return a tangent at the state that the reference comes to after a time, perpendicular to the flow there."""
+    """Return a tangent carried to the state a time after the reference, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)

@@ -1,8 +1,8 @@
-"""The return of a chain to where it was: after a time, and seen from the other end of the chain where that closes it.
+"""The return map of a chain: the state after a time, in a mirror if the symmetry requires it.
 
 An orbit that is its own mirror image after half its period is closed by the return after half a period composed with
-the mirror image. The map of the whole period is the square of this one, and does not tell
-apart what breaks the symmetry (a multiplier −1 of the half) from what keeps it (+1).
+the mirror image. The map of the whole period is the square of this one. It does not distinguish perturbations that
+break the symmetry (a multiplier −1 of the half return) from those that keep it (+1).
 
 Reference: J. W. Swift and K. Wiesenfeld, "Suppression of period doubling in symmetric systems", Phys. Rev. Lett. 52
 (1984) 705.
@@ -19,15 +19,16 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at, r
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
-# Step in a for the derivative of a return, which is good to about as much: enough for Newton's method and for tangents.
+# Step in a for the derivative of a return. The error is of the same order, small enough for Newton's method and
+# tangents.
 STEP = 1e-7
 LEAST_STEP = 1e-13
 
 
 class ReturnMap:
-    """States of one model after a time, mirrored where the symmetry is that of a motion that is its own mirror image.
+    """The return map of one model, mirrored for a motion that is its own mirror image.
 
-    symmetry : SYNCHRONIZED (mirror blocks move as one: no mirror needed), SYMMETRIC or ASYMMETRIC
+    symmetry : SYNCHRONIZED (mirror blocks move synchronously, no mirror needed), SYMMETRIC or ASYMMETRIC
     """
 
     def __init__(self, model: Model, symmetry: Symmetry) -> None:
@@ -37,17 +38,17 @@ class ReturnMap:
 
     @cached_property
     def _runner(self) -> Runner:
-        # To make one takes longer than most returns do.
+        # Creating a runner takes longer than most returns.
         return Runner(self.model, keep_events=True, perturbations=self._free)
 
     def end(self, start: ChainState, time: float) -> ChainState:
-        """Return the state that a state comes to; raises OrbitError if the run does not complete."""
+        """Return the end of a return from a state; raises OrbitError if the run does not complete."""
         return self._mirrored(after(self._runner, start, time))
 
     def with_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
-        """Return the same and how perturbations of the start return, shape (2 blocks, 2 blocks).
+        """Return the end of a return and the linearized return map, shape (2 blocks, 2 blocks).
 
-        Velocities of stuck blocks have no perturbation: their columns are 0.
+        Velocities of stuck blocks cannot be perturbed: their columns are 0.
         """
         self._runner.carry(self._free * np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
         end = self.end(start, time)
@@ -58,11 +59,11 @@ class ReturnMap:
         return np.stack(self._runner.events(), axis=1)
 
     def a_derivative(self, start: ChainState, time: float, end: ChainState, events: np.ndarray) -> np.ndarray:
-        """Return how the end of a return changes with a, shape (2 blocks,).
+        """Return the derivative of the end of a return with respect to a, shape (2 blocks,).
 
-        start, time, end : of the return; events : blocks and kinds of its events in their order, shape (n, 2)
+        start, time, end : of the return; events : blocks and kinds of its events in order, shape (n, 2)
 
-        From a finite difference: next to a grazing, where the derivative jumps, on the side of the orbit. Raises
+        By finite differences; next to a grazing, where the derivative jumps, on the side of the orbit. Raises
         OrbitError if there is none.
         """
         step = STEP
@@ -80,7 +81,7 @@ class ReturnMap:
         raise OrbitError(f"a = {self.model.a!r}: stops and starts change however little a does")
 
     def time_derivative(self, end: ChainState) -> np.ndarray:
-        """Return how the end changes with the time, shape (2 blocks,)."""
+        """Return the derivative of the end with respect to the time, shape (2 blocks,)."""
         return rate(self.model, end)
 
     def _mirrored(self, instant: ChainState) -> ChainState:
@@ -91,15 +92,15 @@ class ReturnMap:
 
 
 def mirror(blocks: int) -> np.ndarray:
-    """Return the order of positions and velocities in a state seen from the other end of the chain."""
+    """Return the order of positions and velocities in the mirror image of a state."""
     order = np.arange(blocks)[::-1]
     return np.concatenate([order, blocks + order])
 
 
 def directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
-    """Return an orthonormal basis of the changes of a state as columns, shape (2 blocks, free).
+    """Return an orthonormal basis of the allowed changes of a state as columns, shape (2 blocks, free).
 
-    Velocities of stuck blocks do not change; if mirror blocks move as one, only what keeps them together does.
+    Velocities of stuck blocks do not change. If mirror blocks move synchronously, changes are mirror-symmetric.
     """
     free = np.concatenate([np.ones(len(stuck), dtype=bool), ~stuck])
     basis = np.eye(2 * len(stuck))
@@ -111,7 +112,7 @@ def directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
 
 
 def parting(stuck: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the changes that part mirror blocks, as columns, those of stuck velocities not."""
+    """Return an orthonormal basis of symmetry-breaking changes as columns, without velocities of stuck blocks."""
     count = 2 * len(stuck)
     free = np.concatenate([np.ones(len(stuck), dtype=bool), ~stuck])
     order, basis = mirror(len(stuck)), np.eye(count)

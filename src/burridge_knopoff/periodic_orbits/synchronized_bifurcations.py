@@ -25,24 +25,24 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import parting
 from burridge_knopoff.running.runner import Runner
 
-#: Friction parameters, in those of `unit`, between which changes are looked for, and steps in a: the grid of a study
-#: has no part in them. Where a branch ends it is looked for again this far on.
+#: Range of friction parameters, in units of `unit`, searched for changes, and steps in a; independent of the grid of a
+#: study. Where a branch ends, the search continues this far beyond.
 RANGE = (0.0125, 0.3)
 FIRST_STEP = 1e-3
 LARGEST_STEP = 5e-3
 AGAIN = 0.0125
 
-# A root is held from both sides at these distances, in turn, and found to the rounding of the function. With steps that
-# small brentq only bisects, and its usual hundred iterations may not be enough.
+# A root is bracketed at these distances, in turn, and found to the rounding of the function. With such small steps
+# brentq only bisects, and may need more than its usual hundred iterations.
 SIDES = (1e-9, 1e-8, 1e-7, 1e-6)
 TOLERANCE = 1e-15
 ITERATIONS = 1000
 
-# How near to −1, or to the unit circle, the multiplier is that a bifurcation is about.
+# Largest distance from −1, or from the unit circle, of the multiplier of a bifurcation.
 CRITICAL = 1e-5
 
 # Difference d of mirror blocks for finite differences, in units of v: rounding of the quotient and the d⁴ that
-# extrapolation leaves are about 1e-12 both.
+# extrapolation leaves are both about 1e-12.
 DIFFERENCE = 1e-3
 
 # Step in a, in units of `unit`, for the slope of the multiplier.
@@ -50,20 +50,20 @@ SLOPE_STEP = 1e-4
 
 
 def unit(chain: Chain) -> float:
-    """Return the a by which friction changes a slip in a chain as much as a = 1 does in the paper's; 1 in that.
+    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, where it is 1.
 
-    Springs that are stronger by a factor make all motion faster by its root; a mode grows with a times the threshold.
+    Springs stronger by a factor make all motion faster by its square root; a mode grows with a times the threshold.
     """
     return math.sqrt(float(chain.driving[chain.driving > 0.0].min())) / float(chain.thresholds.max())
 
 
 def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:
-    """Return the bifurcations of the synchronized orbits, a ascending."""
+    """Return the bifurcations of the synchronized orbits, in ascending order of a."""
     return sorted(_each_bifurcation(orbits), key=lambda bifurcation: bifurcation.a)
 
 
 def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
-    """Follow the orbits upward, and where a branch ends go on with what there is beyond, both ways."""
+    """Follow the orbits upward; where a branch ends, continue both ways with any orbit beyond."""
     size = unit(orbits.model.chain)
     (first, high), gap = (size * end for end in RANGE), size * AGAIN
     settings = Following(first_step=size * FIRST_STEP, largest_step=size * LARGEST_STEP)
@@ -113,11 +113,11 @@ def symmetric_period_doubling_a(bifurcations: list[Bifurcation]) -> float:
 
 
 def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
-    """Return the a at which a block, from 0, begins to stick; NaN if it does not.
+    """Return the a at which a block, numbered from 0, begins to stick; NaN if it does not.
 
-    On one side of it the least speed of the block is positive. On the other one the stick lasts about the square root
-    of the distance from it, so that minus the square of its length continues the least speed through 0. Where friction
-    drops at the start of a slip no stick begins so: the branch ends.
+    On one side the least speed of the block is positive. On the other side the stick lasts about the square root of the
+    distance, so that minus its squared length continues the least speed through 0. If friction drops at the start of a
+    slip no stick begins this way: the branch ends.
     """
 
     def begins(bifurcation: Bifurcation) -> bool:
@@ -135,13 +135,13 @@ def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
 def _least(
     bifurcations: list[Bifurcation], is_one: Callable[[Bifurcation], bool], value: Callable[[PeriodicOrbit], float]
 ) -> float:
-    """Return the least a of the bifurcations of a kind, as a root of what is 0 there; NaN if there is none."""
+    """Return the smallest a of the bifurcations of a kind, from the root of its function; NaN if there is none."""
     bifurcation = next((bifurcation for bifurcation in bifurcations if is_one(bifurcation)), None)
     return math.nan if bifurcation is None else _root(bifurcation, value)
 
 
 def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> float:
-    """Return the root in a of a function of the orbit next to a bifurcation; the bifurcation's a if there is none."""
+    """Return the root in a of a function of the orbit at a bifurcation; the a of the bifurcation if there is none."""
     orbit = bifurcation.at.orbit
     for side in SIDES:
         ends = bifurcation.a - side, bifurcation.a + side
@@ -157,8 +157,8 @@ def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> 
 def differenced_multiplier(orbit: PeriodicOrbit) -> complex:
     """Return the leading transverse multiplier of a synchronized orbit without the tangent map.
 
-    Mirror blocks are moved apart by d and followed for a period. By mirror symmetry what is left of d is an odd
-    function of d, so that one step of Richardson's extrapolation leaves an error of order d⁴.
+    Mirror blocks are displaced by d and followed for a period. By mirror symmetry the remaining difference is an odd
+    function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
     """
     runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
     basis = parting(start.stuck)
@@ -175,7 +175,7 @@ def differenced_multiplier(orbit: PeriodicOrbit) -> complex:
 
 
 def critical_a_error(orbits: KnownOrbits, a: float) -> float:
-    """Return by how much a_c changes if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
+    """Return the change of a_c if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
     orbit, step = orbits.at(a), SLOPE_STEP * unit(orbits.model.chain)
     try:
         low, high = (abs(multipliers(orbits.at(a + side * step)).transverse) for side in (-1, 1))

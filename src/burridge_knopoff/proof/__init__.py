@@ -1,1 +1,1 @@
-"""Proofs: the synchronized orbit, its multipliers and its loss under the paper's laws, enclosed in ball arithmetic."""
+"""Proofs in ball arithmetic: the synchronized orbit, its multipliers and its loss under the paper's laws."""

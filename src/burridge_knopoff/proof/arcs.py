@@ -1,13 +1,13 @@
-"""Arcs: the mirror-symmetric motion of three blocks from event to event, and a small difference of the end blocks.
+"""Arcs: the mirror-symmetric motion of three blocks between events, with a small difference of the end blocks.
 
-Blocks 1 and 3, the end blocks (LATERAL), move as one; block 2 is the CENTER. Positions are co-moving and, like
-velocities, divided by v. With x, y the positions of an end block and of the center, slipping blocks obey
+Blocks 1 and 3, the end blocks (LATERAL), move synchronously; block 2 is the CENTER. Positions are co-moving and, like
+velocities, divided by v. If x and y are the positions of an end block and of the center, slipping blocks obey
 
     x'' = −2x + y + w(x'),       y'' = −4y + 2x + w(y'),
 
-where w(p) = (Φ(v) − Φ(v + vp))/v is by how much friction has weakened, and a stuck block has the velocity −1, that of
-the ground. Its right-hand side is then (s − 1)/v, so that it starts when that rises to 0. Everything here takes balls
-and power series alike.
+where w(p) = (Φ(v) − Φ(v + vp))/v is the weakening of friction. A stuck block has the velocity −1 of the ground; the
+right-hand side of its equation is then (s − 1)/v, and it starts when that rises to 0. Everything here takes balls and
+power series alike.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any, ClassVar, Protocol
 LATERAL, CENTER = 0, 1
 NAMES = ("blocks 1 and 3", "block 2")
 
-#: Strengths of all springs at each of the two, and of the springs from the one to the other.
+#: Total strength of the springs at each of the two, and strength of the springs between them.
 STIFFNESS, COUPLING = (2, 4), (1, 2)
 
 
@@ -27,7 +27,7 @@ STIFFNESS, COUPLING = (2, 4), (1, 2)
 class State:
     """A mirror-symmetric state: positions x, y and velocities x', y' relative to the driver, in units of v.
 
-    difference : of blocks 1 and 3, d and d', to first order: what has become of d = 1
+    difference : of blocks 1 and 3, d and d', to first order: the image of d = 1
     """
 
     position: tuple[Any, Any]
@@ -42,18 +42,18 @@ class State:
 
 
 class Flow(Protocol):
-    """A friction law, as the arcs need it.
+    """A friction law in the form that arcs use.
 
-    reaches : half-widths of the boxes in which it is worth looking for an orbit, the widest first
+    reaches : half-widths of the boxes in which an orbit is searched, widest first
     """
 
     reaches: ClassVar[tuple[float, ...]]
 
     def weakening(self, rate: Any, a: Any) -> Any:
-        """Return w, by how much friction is below that at the velocity of the driver, in units of v."""
+        """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
 
     def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
-        """Return the motion from a state as a function of time, as long as no event comes."""
+        """Return the motion from a state as a function of time, up to the next event."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Arc:
     """The motion up to an event.
 
     slips : whether the end blocks, and the center, slip
-    ends : LATERAL or CENTER: which of them starts, if it sticks, or stops, if it slips, at the end of the arc
+    ends : LATERAL or CENTER: the one that starts (if it sticks) or stops (if it slips) at the end of the arc
     flow : the friction law
     """
 
@@ -71,17 +71,17 @@ class Arc:
 
     @property
     def name(self) -> str:
-        """The arc in words: what ends it."""
+        """Name of the arc, by the event at its end."""
         return f"the arc until {NAMES[self.ends]} {'stop' if self.slips[self.ends] else 'start'}"
 
     def after(self, state: State, a: Any, time: Any) -> State:
-        """Return the state a time later, if no event comes before; a : friction parameter."""
+        """Return the state a time later if no event comes before; a : friction parameter."""
         return self.flow.path(self.slips, state, a)(time)
 
     def margin(self, block: int, state: State, a: Any) -> Any:
-        """Return what is positive while a block goes on as it does, in units of v.
+        """Return a margin, in units of v, that is positive while a block stays stuck or keeps slipping.
 
-        The speed U' of a block that slips; 1 − s, static friction less spring force, of a block that sticks.
+        For a slipping block its speed U'; for a stuck block 1 − s, static friction minus spring force.
         """
         if self.slips[block]:
             return state.velocity[block] + 1
@@ -89,5 +89,5 @@ class Arc:
         return STIFFNESS[block] * x - COUPLING[block] * other - self.flow.weakening(-1, a)
 
     def last(self, state: State) -> State:
-        """Return the state just after the event, given the one just before: a stop takes the velocity away."""
+        """Return the state just after the event from the one just before: a stop removes the velocity."""
         return state.stopped(self.ends) if self.slips[self.ends] else state

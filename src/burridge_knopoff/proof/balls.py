@@ -1,6 +1,6 @@
-"""Balls: real numbers with a bound on their error, as Arb computes with them, and how they leave this room.
+"""Balls: real numbers with an error bound, as Arb computes with them, and their conversion to doubles and text.
 
-Every operation of Arb returns a ball that holds all values of the operation on numbers from its operands: see
+Every operation of Arb returns a ball that contains all results for numbers in its operands; see
 F. Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic, IEEE Trans. Comput. 66 (2017).
 """
 
@@ -12,17 +12,17 @@ from contextlib import contextmanager
 
 from flint import arb, ctx
 
-#: Bits of the midpoints. An orbit loses about 20 of them on its way through a period.
+#: Bits of the midpoints. An orbit loses about 20 of them in a period.
 BITS = 192
 
 
 class ProofError(ValueError):
-    """What was to be proved is not proved; the message says what and where, in one line."""
+    """A statement that could not be proved; the message says which and where, in one line."""
 
 
 @contextmanager
 def arithmetic(terms: int = 2) -> Iterator[None]:
-    """Compute with BITS bits, and with power series cut off after a number of terms."""
+    """Compute with BITS bits, and truncate power series after a number of terms."""
     before = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = BITS, terms
     try:
@@ -32,17 +32,17 @@ def arithmetic(terms: int = 2) -> Iterator[None]:
 
 
 def around(low: arb | float, high: arb | float) -> arb:
-    """Return a ball that holds all numbers from low to high."""
+    """Return a ball that contains all numbers from low to high."""
     return arb(low).union(arb(high))
 
 
 def decimal(numerator: int, denominator: int) -> arb:
-    """Return a ball that holds a fraction and the double nearest to it: what is written, and what is computed with."""
+    """Return a ball that contains a fraction and the nearest double: the number as written, and as computed with."""
     return (arb(numerator) / denominator).union(arb(numerator / denominator))
 
 
 def limits(ball: arb) -> tuple[float, float]:
-    """Return doubles between which a ball lies: the nearest ones that do.
+    """Return the nearest doubles between which a ball lies.
 
     Raises ProofError for a ball that is not finite.
     """
@@ -57,11 +57,11 @@ def limits(ball: arb) -> tuple[float, float]:
 
 
 def width(ball: arb) -> float:
-    """Return a double that is no less than the width of a ball."""
+    """Return a double not less than the width of a ball."""
     return limits(2 * ball.rad())[1]
 
 
 def digits(ball: arb) -> str:
-    """Return a ball as Arb prints it: a decimal of 40 digits at most, and how far off, «[0.0869 +/- 1.2e-50]»."""
+    """Return a ball as Arb prints it: a decimal of at most 40 digits and its error, «[0.0869 +/- 1.2e-50]»."""
     text: str = ball.str(40, more=False, radius=True)
     return text

@@ -1,10 +1,10 @@
-"""Bounds over whole arcs: that a function of time stays positive between two events, not at samples but throughout.
+"""Bounds over whole arcs: that a function of time is positive throughout the time between two events.
 
-A ball of times goes through the closed form of the motion and comes out as a ball that holds all values of the function
-meanwhile; one with a derivative beside it bounds that as well. Where this does not decide, the time is halved. At the
-ends of an arc a function may have a root that is known exactly: a block that starts has no speed and no acceleration,
-so that the sign of its second derivative decides what it does next; where an arc ends one function passes through 0,
-and the sign of its first derivative decides what it did before.
+A ball of times, put into the closed form of the motion, gives a ball that contains all values of the function during
+these times; with derivatives, the mean value theorem gives another bound. If neither decides, the time is halved. At
+the ends of an arc a function may have a root that is known exactly. A block that starts has zero speed and
+acceleration, so that the sign of its second derivative decides its motion just after. Where an arc ends, one function
+passes through 0, and the sign of its first derivative decides its sign just before.
 """
 
 from __future__ import annotations
@@ -16,30 +16,30 @@ from flint import arb, arb_series, fmpq
 
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
 
-#: A function of time, in power series.
+#: A function of time that accepts power series.
 Function = Callable[[Any], Any]
 
-# An arc is halved this often at most: to pieces of a millionth of it.
+# Maximum number of halvings of an arc: to pieces of a millionth of it.
 DEEPEST = 20
 
-# Into so many pieces an arc is cut to bound what is far from any limit.
+# Number of pieces of an arc for bounds on quantities far from any limit.
 PIECES = 64
 
 
 def jet(function: Function, time: arb) -> tuple[arb, arb, arb]:
-    """Return balls that hold a function and its first two derivatives at all times of a ball."""
+    """Return balls that contain a function and its first two derivatives at all times in a ball."""
     with arithmetic(3):
         value = arb_series(function(arb_series([time, 1])))
         return value[0], value[1], 2 * value[2]
 
 
 def check_positive(function: Function, length: arb, starts: bool = False, ends: bool = False) -> None:
-    """Prove that a function is positive at all times from 0 to the length of an arc, its known roots excepted.
+    """Prove that a function is positive at all times from 0 to the length of an arc, except at its known roots.
 
     length : a ball; the proof is for every length in it
-    starts : whether function and first derivative are exactly 0 at time 0
+    starts : whether the function and its first derivative are exactly 0 at time 0
     ends : whether the function is exactly 0 at the end, for whatever length in the ball is the true one
-    Raises ProofError with the time at which that could not be proved, and if a root cannot be where it is said to be.
+    Raises ProofError with the time at which the proof failed, and if a root cannot be where it is assumed.
     """
     with arithmetic(3):
         known = [*(jet(function, arb(0))[:2] if starts else ()), *(jet(function, length)[:1] if ends else ())]
@@ -58,7 +58,7 @@ def check_positive(function: Function, length: arb, starts: bool = False, ends: 
 
 
 def _is_positive(function: Function, low: arb, high: arb, starts: bool, ends: bool) -> bool:
-    """Tell whether a function is known to be positive at all times from low to high, but a root at one end."""
+    """Tell whether a function is proved positive at all times from low to high, except for a root at one end."""
     time = around(low, high)
     value, slope, curvature = jet(function, time)
     # The mean value theorem, and the value itself: whichever decides.
@@ -70,7 +70,7 @@ def _is_positive(function: Function, low: arb, high: arb, starts: bool, ends: bo
 
 
 def bounds(function: Function, length: arb) -> arb:
-    """Return a ball that holds all values of a function from time 0 to the length of an arc."""
+    """Return a ball that contains all values of a function from time 0 to the length of an arc."""
     found = [jet(function, piece)[0] for piece in _pieces(length)]
     with arithmetic():
         return around(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))

@@ -1,4 +1,4 @@
-"""The linearized law: w(p) = a p, so that v is only a scale and every arc has a closed form."""
+"""The linearized law: w(p) = a p, so that v only sets the scale and every arc has a closed form."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class Linearized:
     reaches: ClassVar[tuple[float, ...]] = tuple(2.0**-k for k in range(8, 30))
 
     def weakening(self, rate: Any, a: Any) -> Any:
-        """Return w, by how much friction is below that at the velocity of the driver, in units of v."""
+        """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
         return a * rate
 
     def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
-        """Return the motion from a state as a function of time, as long as no event comes."""
+        """Return the motion from a state as a function of time, up to the next event."""
         return lambda time: _after(slips, state, a, time)
 
 
@@ -38,7 +38,7 @@ def _after(slips: tuple[bool, bool], state: State, a: Any, time: Any) -> State:
 
 
 def oscillation(stiffness: Any, a: Any, time: Any, position: Any, velocity: Any) -> tuple[Any, Any]:
-    """Return position and velocity after a time, z'' = −stiffness z + a z', for a < 2 √stiffness."""
+    """Return position and velocity after a time for z'' = −stiffness z + a z', with a < 2 √stiffness."""
     growth = a / 2
     frequency = (stiffness - growth * growth).sqrt()
     factor, angle = (growth * time).exp(), frequency * time
@@ -50,7 +50,7 @@ def oscillation(stiffness: Any, a: Any, time: Any, position: Any, velocity: Any)
 
 
 def _sliding(state: State, a: Any, time: Any) -> State:
-    """Return the state after all blocks have slipped: two normal modes x + w y, of stiffness 3 ∓ √3."""
+    """Return the state after all blocks have slipped: two normal modes x + w y with stiffness 3 ∓ √3."""
     root = arb(3).sqrt()
     x, y = state.position
     p, q = state.velocity
@@ -65,10 +65,10 @@ def _sliding(state: State, a: Any, time: Any) -> State:
 
 
 def _pulled(state: State, a: Any, time: Any, slipping: int) -> State:
-    """Return the state after one has slipped and the other has stuck.
+    """Return the state after the end blocks or the center have slipped and the other has stuck.
 
-    The one that sticks moves at the constant rate of the ground; the other oscillates about a point that follows it
-    half as fast, since COUPLING is half of STIFFNESS.
+    The stuck one moves at the constant velocity of the ground. The other oscillates about a point that follows it at
+    half the velocity, since COUPLING is half of STIFFNESS.
     """
     half = fmpq(1, 2)
     x, other = state.position[slipping], state.position[1 - slipping]

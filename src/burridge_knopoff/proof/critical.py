@@ -1,8 +1,8 @@
-"""Where synchrony is lost, proved: the a at which the transverse multiplier is 1, and that there is no other nearby.
+"""Proof of the loss of synchrony: the a at which the transverse multiplier is 1, and its uniqueness in a range of a.
 
-Near a_c the equations of the orbit and of the multiplier are solved together, for the orbit and a. Elsewhere the range
-of a is covered by balls; for all a of one ball there is an orbit, the orbits of neighbouring balls are the same where
-they touch, and the multiplier rises with a throughout: it is 1 once only.
+Near a_c the equations of the orbit and of the multiplier are solved together for the orbit and a. The rest of the range
+of a is covered by balls. For all a in a ball there is an orbit, the orbits of neighbouring balls agree where they
+touch, and the multiplier increases with a throughout: it equals 1 only once.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from burridge_knopoff.proof.krawczyk import (
 )
 from burridge_knopoff.proof.orbit import ProvedOrbit, arcs_of, equations
 
-# A range of a is halved into pieces of this width at most, and so often at most.
+# Largest width of the pieces of a range of a, and largest number of halvings.
 WIDEST = fmpq(1, 400)
 DEEPEST = 16
-# Half the width of the box around the orbit of a single a.
+# Half-width of the box around the orbit at a single a.
 CLOSE = 2.0**-40
 
 
 @dataclass(frozen=True, eq=False)
 class Critical:
-    """The loss of synchrony, proved.
+    """The proved loss of synchrony.
 
-    orbit : the synchronized orbit at a_c, with a_c as its a; all blocks do on it what its arcs say
-    unique : a ball of a in which there is no other such orbit with the multiplier 1 near this one
+    orbit : the synchronized orbit at a_c, with a_c as its a; its events are those of its arcs
+    unique : a ball of a in which no other such orbit near this one has the multiplier 1
     """
 
     orbit: ProvedOrbit
@@ -54,11 +54,11 @@ class Critical:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """The synchronized orbits for all a of a ball, proved.
+    """The proved synchronized orbits for all a in a ball.
 
-    orbit : for all of them at once
-    middle, direction : the unknowns of the orbit in the middle of the ball, and how fast they change with a
-    around : the box around that tangent in which, at each a, the orbit is the only one
+    orbit : enclosure of all of them
+    middle, direction : the unknowns of the orbit in the middle of the ball, and their derivative with respect to a
+    around : the box around that tangent in which, at each a, the orbit is unique
     """
 
     orbit: ProvedOrbit
@@ -67,7 +67,7 @@ class Piece:
     around: Sequence[arb]
 
     def check_holds(self, other: Enclosure, a: arb) -> None:
-        """Prove that an orbit which was found at an a of the ball is that of the piece; raises ProofError if not."""
+        """Prove that an orbit found at an a in the ball is that of the piece; raises ProofError if not."""
         with arithmetic():
             way = a - self.orbit.a.mid()
             box = _on_line(self.middle, self.direction, way, self.around)
@@ -76,10 +76,10 @@ class Piece:
 
 
 def prove_critical(orbit: PeriodicOrbit) -> Critical:
-    """Return the proof that the multiplier of the synchronized orbit passes 1, at an a near that of an orbit.
+    """Return the proof that the multiplier of the synchronized orbit crosses 1, at an a near that of an orbit.
 
     orbit : in double precision, near a_c
-    Raises ProofError, one line, where there is no proof of it.
+    Raises ProofError, one line, if the proof fails.
     """
     arcs, guess = arcs_of(orbit)
     system = equations(arcs, critical=True)
@@ -92,12 +92,12 @@ def prove_critical(orbit: PeriodicOrbit) -> Critical:
 
 
 def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
-    """Return the proofs that the synchronized orbit exists and that its multiplier rises, for all a from low to high.
+    """Return the proofs that the synchronized orbit exists and that its multiplier increases, for a from low to high.
 
-    There is one orbit in the box of each piece, and neighbouring pieces have the same one where they touch.
+    The box of each piece contains one orbit, and neighbouring pieces have the same orbit where they touch.
 
-    orbit : in double precision, at an a near the low end; the order of its events is that of all
-    Raises ProofError, one line, where there is no proof of it.
+    orbit : in double precision, at an a near the low end; the order of its events is assumed for the whole range
+    Raises ProofError, one line, if the proof fails.
     """
     arcs, guess = arcs_of(orbit)
     pieces: list[Piece] = []
@@ -106,7 +106,7 @@ def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
         first, last, depth = waiting.pop()
         half = (first + last) / 2
         try:
-            # Newton's method goes on from the piece before; a piece that is much wider is not tried.
+            # Newton's method starts from the previous piece; a much wider piece is not tried.
             if last - first > WIDEST:
                 raise ProofError("a piece too wide")
             piece = _piece(arcs, pieces[-1].middle if pieces else [arb(value) for value in guess], first, last)
@@ -134,7 +134,7 @@ def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -
         direction = [-moved[k, 0].mid() for k in count]
 
     def beside(unknown: Sequence[Any]) -> Sequence[Any]:
-        """Return the equations in the distance from the tangent to the family, which is far smaller than the way."""
+        """Return the equations in the distance from the tangent of the family, which is small over the piece."""
         *distance, at = unknown
         return system([*_on_line(middle, direction, at - center, distance), at])
 
@@ -158,7 +158,7 @@ def _on_line(middle: Sequence[arb], direction: Sequence[arb], way: Any, distance
 
 
 def _check_joined(left: Piece, right: Piece, a: fmpq) -> None:
-    """Prove that two pieces have the same orbit at the a at which they touch; raises ProofError if that fails."""
+    """Prove that two pieces have the same orbit at the a where they touch; raises ProofError if that fails."""
     system = equations(right.orbit.arcs)
     with arithmetic():
         point = arb(a)

@@ -1,4 +1,4 @@
-"""The flow of the arcs of a model: by its friction law."""
+"""The arcs' flow for the friction law of a model."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from burridge_knopoff.proof.taylor import Nonlinear
 
 
 def flow_of(model: Model) -> Flow:
-    """Return the flow under the law of a model; raises ProofError if it is not one of the paper's laws.
+    """Return the flow for the law of a model; raises ProofError if it is not one of the paper's laws.
 
-    The velocity of the driver is taken for the decimal that it is written as: 0.1, not the double beside it.
+    The driver velocity is taken as the decimal that was written: 0.1, not the nearest double.
     """
     if is_linearized(model):
         return Linearized()

@@ -1,9 +1,9 @@
-"""Krawczyk's operator: a box of numbers in which a system of equations has exactly one solution.
+"""Krawczyk's operator: a box in which a system of equations has exactly one solution.
 
-For equations F, a box X with the midpoint m, and any matrix C, the operator is K = m − C F(m) + (1 − C F'(X)) (X − m).
-If K lies in the interior of X, F has one zero in X, and it lies in K (R. Krawczyk 1969; W. Tucker, Validated Numerics,
-2011). C is the inverse of F'(m), up to rounding. F' comes from Arb's power series: a number with the coefficient 1
-beside it carries a derivative through the same code that computes the value.
+For equations F, a box X with midpoint m, and any matrix C, the operator is K = m − C F(m) + (1 − C F'(X)) (X − m). If K
+lies in the interior of X, then F has exactly one zero in X, and it lies in K (R. Krawczyk 1969; W. Tucker, Validated
+Numerics, 2011). C is the inverse of F'(m), up to rounding. F' comes from Arb's power series: a number with the
+coefficient 1 in first order carries a derivative through the code that computes the value.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from burridge_knopoff.proof.balls import ProofError, arithmetic
 #: Equations: as many numbers as there are unknowns, in balls or in power series.
 Equations = Callable[[Sequence[Any]], Sequence[Any]]
 
-# Newton's method doubles the digits of a guess this often: those of a double to more than there are.
+# Newton's method doubles the digits of a guess this many times: from double precision to more than the balls have.
 POLISHING = 6
-# A step this small has more than doubled its digits: to more than the remainders of any arc leave.
+# After a step this small, more digits are right than the remainders of any arc leave.
 POLISHED = 2.0**-60
-# A box shrinks to the square of its size, down to the rounding of the arithmetic; it is done when it no longer halves.
+# A box shrinks to the square of its size, down to rounding; the iteration ends when it no longer halves.
 SHRINKING = 12
 
 
 @dataclass(frozen=True)
 class Enclosure:
-    """A solution that is proved to exist.
+    """A proved solution.
 
-    inner : balls that hold it, one for each unknown
-    outer : balls in which it is the only one
+    inner : balls that contain it, one for each unknown
+    outer : balls in which it is unique
     """
 
     inner: tuple[arb, ...]
@@ -40,24 +40,24 @@ class Enclosure:
 
 
 def derivatives(function: Equations, at: Sequence[arb], chosen: Sequence[int] | None = None) -> arb_mat:
-    """Return the enclosure of the derivatives of each value (rows) with respect to each unknown (columns).
+    """Return an enclosure of the derivatives of each value (rows) with respect to each unknown (columns).
 
-    chosen : numbers of the unknowns if not all are wanted
+    chosen : indices of the unknowns, if not all are needed
     """
     columns = []
     with arithmetic(2):
         for column in range(len(at)) if chosen is None else chosen:
-            # What does not depend on that unknown is computed without series, which takes a third of the time.
+            # Values that do not depend on the unknown are computed without series, which takes a third of the time.
             point = [arb_series([value, 1]) if k == column else value for k, value in enumerate(at)]
             columns.append([arb_series(value)[1] for value in function(point)])
     return arb_mat(columns).transpose()
 
 
 def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[arb] = ()) -> list[arb]:
-    """Return a guess improved by Newton's method, as exact numbers; nothing is proved.
+    """Return a guess improved by Newton's method, as exact numbers; this proves nothing.
 
-    parameters : what the equations take after the unknowns, exact numbers
-    Raises ProofError where the derivatives cannot be inverted.
+    parameters : arguments of the equations after the unknowns, exact numbers
+    Raises ProofError if the derivatives cannot be inverted.
     """
     count = range(len(guess))
     with arithmetic():
@@ -74,10 +74,10 @@ def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[ar
 def enclose(
     equations: Equations, middle: Sequence[arb], radii: Sequence[Any], parameters: Sequence[arb] = ()
 ) -> Enclosure:
-    """Return the proof that equations have exactly one solution in a box, and where it lies.
+    """Return the proof that equations have exactly one solution in a box, and its enclosure.
 
     middle : of the box, exact numbers; radii : of the box, one for each unknown
-    parameters : what the equations take after the unknowns, balls; the proof is for all values in them
+    parameters : arguments of the equations after the unknowns, balls; the proof is for all values in them
     Raises ProofError if Krawczyk's operator does not map the box into its interior.
     """
     with arithmetic():
@@ -87,11 +87,11 @@ def enclose(
         for k, (box, mapped) in enumerate(zip(outer, inner, strict=True)):
             if not box.contains_interior(mapped):
                 raise ProofError(f"unknown {k + 1}: got {mapped}, expected it in the interior of {box}")
-        # The box is so much smaller by now that derivatives in its middle are better than those that it began with.
+        # The box is now so much smaller that derivatives at its midpoint are better than the first ones.
         inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
         for _ in range(SHRINKING):
             before, image = inner, _krawczyk(equations, inner, parameters, inverse)
-            # Both hold the solution, and so does what they have in common.
+            # Both contain the solution, hence so does their intersection.
             inner = [box.intersection(smaller) for box, smaller in zip(before, image, strict=True)]
             if all(2 * smaller.rad() > box.rad() for box, smaller in zip(before, inner, strict=True)):
                 break
@@ -101,10 +101,10 @@ def enclose(
 def widest(
     equations: Equations, middle: Sequence[arb], radii: Sequence[float], parameters: Sequence[arb] = ()
 ) -> Enclosure:
-    """Return the proof of `enclose` for the widest cube around a point that has one.
+    """Return the proof of `enclose` for the widest possible cube around a point.
 
-    radii : half-widths of the cubes, the widest first
-    Raises ProofError if even the last one has none.
+    radii : half-widths of the cubes, widest first
+    Raises ProofError if all of them fail.
     """
     for radius in radii[:-1]:
         try:
@@ -115,14 +115,14 @@ def widest(
 
 
 def inflated(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:
-    """Return half-widths of a box that Krawczyk's operator may map into itself: twice what it makes of its midpoint."""
+    """Return half-widths of a box that Krawczyk's operator may map into itself: twice the image of its midpoint."""
     with arithmetic():
         image = _krawczyk(equations, middle, parameters, _inverse(equations, middle, parameters))
         return [2 * abs(value - center).upper() for value, center in zip(image, middle, strict=True)]
 
 
 def _krawczyk(equations: Equations, box: Sequence[arb], parameters: Sequence[arb], inverse: arb_mat) -> list[arb]:
-    """Return Krawczyk's operator of a box, by the mean value theorem in the parameters as well."""
+    """Return Krawczyk's operator of a box, using the mean value theorem in the parameters too."""
     whole = [*box, *parameters]
     middle = [value.mid() for value in whole]
     unit = arb_mat([[int(i == k) for k in range(len(whole))] for i in range(len(box))])
@@ -133,7 +133,7 @@ def _krawczyk(equations: Equations, box: Sequence[arb], parameters: Sequence[arb
 
 
 def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> arb_mat:
-    """Return a matrix of exact numbers, the inverse of the derivatives up to their error."""
+    """Return an exact matrix, the inverse of the derivatives up to its error."""
     count = range(len(middle))
     derivative = derivatives(equations, [*middle, *(value.mid() for value in parameters)], count)
     exact = arb_mat([[derivative[i, k].mid() for k in count] for i in count])
@@ -144,9 +144,9 @@ def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[a
 
 
 def solved(matrix: arb_mat, values: arb_mat) -> arb_mat:
-    """Return the enclosure of the solutions of linear equations, for all matrices and values in their balls.
+    """Return an enclosure of the solutions of linear equations, for all matrices and values in their balls.
 
-    Raises ProofError if a matrix among them may be singular.
+    Raises ProofError if some matrix in the balls may be singular.
     """
     with arithmetic():
         try:

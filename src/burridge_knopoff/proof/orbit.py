@@ -1,9 +1,9 @@
-"""The synchronized orbit, proved: that it exists, its events, that no others come between them, its multipliers.
+"""Proof of the synchronized orbit: its existence, its events and the absence of others between them, its multipliers.
 
-The unknowns are the positions just after the first start of a period, when all blocks are at rest, and how long each
-arc takes. The equations are that each arc ends with its event, and that the positions return. Of the six multipliers
-one is that of the flow, three are 0 since three blocks stop, one is what a period makes of a small difference of
-blocks 1 and 3, and one what it makes of a shift of both.
+The unknowns are the positions just after the first start of a period, when all blocks are at rest, and the durations of
+the arcs. The equations require that each arc ends with its event, and that the positions return. Of the six
+multipliers, one is that of the flow, three are 0 since three blocks stop, one is the image of a small difference of
+blocks 1 and 3 after a period, and one that of a relative shift of the end blocks and the center.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ PLACES = 2
 
 
 def followed(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
-    """Return the states at the beginning of each arc and at the end of the period, and what is 0 as each arc ends.
+    """Return the states at the beginning of each arc and at the end of the period, and the equations of the ends.
 
-    unknown : positions x and y of blocks at rest, the duration of each arc, and a
+    unknown : positions x and y of the blocks at rest, the duration of each arc, and a
     """
     *orbit, a = unknown
     states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
     for arc, time in zip(arcs, orbit[PLACES:], strict=True):
-        # Only of the state before the event may be asked whether it is one: a stop makes the speed 0 anyway.
+        # The condition has to use the state before the event: a stop makes the speed 0 anyway.
         before = arc.after(states[-1], a, time)
         found.append(arc.margin(arc.ends, before, a))
         states.append(arc.last(before))
@@ -44,9 +44,9 @@ def followed(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], 
 
 
 def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
-    """Return the equations of a periodic orbit, in the unknowns of `followed`: events, and that positions return.
+    """Return the equations of a periodic orbit, in the unknowns of `followed`: the events, and the return of positions.
 
-    critical : whether the transverse multiplier is to be 1 as well
+    critical : whether the transverse multiplier has to be 1 as well
     """
 
     def values(unknown: Sequence[Any]) -> list[Any]:
@@ -58,9 +58,9 @@ def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
 
 
 def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
-    """Return the arcs of a synchronized orbit in double precision, and its unknowns: only a guess.
+    """Return the arcs of a synchronized orbit in double precision, and its unknowns, as a guess.
 
-    Raises ProofError unless all blocks stick at once, and each starts and stops once a period.
+    Raises ProofError unless all blocks stick at some time, and each starts and stops once a period.
     """
     events = [(time, block) for time, block, _ in orbit.events if block in (LATERAL, CENTER)]
     slips = [not stuck for stuck in orbit.reference.stuck[:2]]
@@ -71,7 +71,7 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
     if sorted(block for _, block in events) != [0, 0, 1, 1] or (False, False) not in before:
         raise ProofError(f"a = {orbit.model.a!r}: not covered: all blocks stick at once, and each stops once a period")
     first = before.index((False, False))
-    # A period from the first start on, to the next.
+    # A period, from the first start to the next.
     cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]
     slipping = before[first + 1 :] + before[: first + 1]
     flow_of_law = flow_of(orbit.model)
@@ -83,11 +83,11 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
 
 @dataclass(frozen=True, eq=False)
 class ProvedOrbit:
-    """A synchronized orbit that is proved to exist, for every a of a ball, and to be the only one in a box.
+    """A synchronized orbit that is proved to exist, and to be unique in a box, for every a in a ball.
 
-    arcs : from the first start of a period on
+    arcs : from the first start of a period
     a : friction parameter, a ball
-    enclosure : of the unknowns; its inner part may have been narrowed to hold a solution of more equations
+    enclosure : of the unknowns; its inner part may be narrower if it solves additional equations
     """
 
     arcs: tuple[Arc, ...]
@@ -107,7 +107,7 @@ class ProvedOrbit:
 
     @property
     def event_times(self) -> list[arb]:
-        """Times of the events that end each arc, since the first start of the period; the last is the period."""
+        """Times of the events that end each arc, after the first start of the period; the last is the period."""
         with arithmetic():
             return [sum(self.times[: k + 1], arb(0)) for k in range(len(self.times))]
 
@@ -117,16 +117,17 @@ class ProvedOrbit:
 
     @cached_property
     def multiplier(self) -> arb:
-        """The transverse Floquet multiplier μ: what a period makes of a small difference of blocks 1 and 3."""
+        """The transverse Floquet multiplier μ: the factor by which a small difference of blocks 1 and 3 changes."""
         with arithmetic():
             return followed(self.arcs, self._unknown)[0][-1].difference[0]
 
     @cached_property
     def symmetric_multiplier(self) -> arb:
-        """The multiplier of mirror-symmetric perturbations, all others of which are 0 or that of the flow.
+        """The multiplier of mirror-symmetric perturbations; all others of these are 0 or that of the flow.
 
-        When all blocks stick, a shift of all of them alike is one along the flow. What a period makes of x − y is the
-        multiplier: a start changes no perturbation, a stop takes the velocity away (docs/synchronization.md).
+        When all blocks stick, a common shift of all blocks is along the flow. The multiplier is the factor by which x −
+        y changes in a period: a start leaves perturbations unchanged, a stop removes the velocity
+        (docs/synchronization.md).
         """
 
         def apart(unknown: Sequence[Any]) -> list[Any]:
@@ -137,7 +138,7 @@ class ProvedOrbit:
 
     @cached_property
     def slope(self) -> arb:
-        """The derivative dμ/da along the family of orbits, for all a of the ball."""
+        """The derivative dμ/da along the family of orbits, for all a in the ball."""
         matrix = derivatives(equations(self.arcs, critical=True), self._unknown)
         count = len(self.enclosure.inner)
         orbit, last = range(count), [count]
@@ -147,9 +148,9 @@ class ProvedOrbit:
             return change[0, 0]
 
     def check_arcs(self) -> None:
-        """Prove that no block stops or starts inside an arc, and that every event passes through 0 at a rate.
+        """Prove that no block stops or starts inside an arc, and that every event crosses 0 with nonzero slope.
 
-        Raises ProofError, one line: which block, on which arc, when.
+        Raises ProofError, one line, with the block, arc and time.
         """
         for k, (arc, state, time) in enumerate(self._each_arc()):
             started = self.arcs[k - 1].ends if arc.slips[self.arcs[k - 1].ends] else None
@@ -161,11 +162,11 @@ class ProvedOrbit:
                     raise ProofError(f"{NAMES[block]}, {arc.name}: not proved to go on as they do: {error}") from None
 
     def fastest(self) -> arb:
-        """Return a ball that holds all speeds U'/v of slipping blocks."""
+        """Return a ball that contains all speeds U'/v of slipping blocks."""
         return self._hull(True)
 
     def tightest(self) -> arb:
-        """Return a ball that holds (1 − s)/v, s the spring force, of all blocks that stick."""
+        """Return a ball that contains (1 − s)/v, with spring force s, of all stuck blocks."""
         return self._hull(False)
 
     def _hull(self, slipping: bool) -> arb:
@@ -179,7 +180,7 @@ class ProvedOrbit:
             return reduce(arb.union, found)
 
     def _margin(self, arc: Arc, state: State, block: int) -> Function:
-        """Return the margin of a block as a function of the time since the state at the beginning of an arc."""
+        """Return the margin of a block as a function of time since the beginning of an arc."""
         path = arc.flow.path(arc.slips, state, self.a)
         return lambda time: arc.margin(block, path(time), self.a)
 
@@ -194,7 +195,7 @@ def prove_orbit(orbit: PeriodicOrbit, a: arb) -> ProvedOrbit:
     """Return the proof that there is a synchronized orbit near one in double precision.
 
     a : friction parameter, a narrow ball around that of the orbit
-    Raises ProofError, one line, where there is no proof of it.
+    Raises ProofError, one line, if the proof fails.
     """
     arcs, guess = arcs_of(orbit)
     middle = polished(equations(arcs), guess, [a.mid()])

@@ -1,4 +1,4 @@
-"""What the proofs are about: the paper's chain under its two laws."""
+"""The scope of the proofs: the paper's chain and its two laws."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 
-#: The v of the proofs under the nonlinear law: the paper's.
+#: The v of the proofs for the nonlinear law: the paper's.
 NONLINEAR_V = 0.1
-#: Under the linearized law v is only a scale, but for symmetric contact: the largest v for which stuck blocks hold,
-#: which `summaries/proof.py` shows. On these orbits their spring force differs from the static friction by about v.
+#: For the linearized law v only sets the scale, except for symmetric contact: the largest v at which stuck blocks hold,
+#: as `summaries/proof.py` shows. On these orbits their spring force differs from the static friction by about v.
 LARGEST_V = 1.0
 
 
@@ -20,7 +20,7 @@ def is_linearized(model: Model) -> bool:
 
 
 def is_covered(model: Model) -> bool:
-    """Tell whether the proofs are about a model: its chain, law, v and contact; a does not matter."""
+    """Tell whether the proofs cover a model: its chain, law, v and contact; a does not matter."""
     springs = model.chain.is_like(Chain(3))
     if is_linearized(model):
         return bool(springs and (model.contact == "one_sided" or model.v <= LARGEST_V))

@@ -1,10 +1,10 @@
-"""The nonlinear law: arcs by Taylor series with a rigorous remainder, stepped in time.
+"""The nonlinear law: arcs by Taylor series with a rigorous remainder, in time steps.
 
-With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). A step needs a box that holds the solution all
-the while: if Picard's integral operator maps a box into itself, the solution is in it. The last coefficient of the
-series over that box, times the last power of time, holds what the series leaves out (W. Tucker, Validated Numerics,
-2011). Numbers may be power series in another quantity: then the derivative by that is enclosed as well, which obeys
-the derivative of the same equations.
+With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). A step needs a box that contains the solution
+throughout: if Picard's integral operator maps a box into itself, the solution is in it. The last coefficient of the
+series over that box, times the last power of time, bounds the remainder of the series (W. Tucker, Validated Numerics,
+2011). Numbers may be power series in another quantity: then the derivative with respect to it is enclosed as well,
+which obeys the derivative of the same equations.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from flint import arb, arb_series, fmpq
 from burridge_knopoff.proof.arcs import COUPLING, LATERAL, STIFFNESS, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
 
-#: Length of a step, and terms of the series in it: what they leave out is about 1e-22 on these orbits.
+#: Length of a step, and number of terms of its series; the remainder is about 1e-22 on these orbits.
 STEP = fmpq(1, 4)
 ORDER = 24
 
-# No arc lasts longer.
+# Upper bound on the length of an arc.
 LONGEST = 100
 
-# The box of a step is looked for by so many widenings, each by this share and at least by the other number.
+# The box of a step is searched by this many widenings, each by this fraction and at least by the other number.
 WIDENINGS = 60
 SHARE = 0.25
 LEAST = 2.0**-120
@@ -35,20 +35,20 @@ LEAST = 2.0**-120
 
 @dataclass(frozen=True)
 class Nonlinear:
-    """Arcs under the nonlinear law, drawn at a velocity v, a ball."""
+    """Arcs for the nonlinear law at a driver velocity v, a ball."""
 
-    # Boxes widen a million times on their way through a period in steps, and must stay small all the while.
+    # Boxes widen a million times over the steps of a period, and must stay small all the same.
     reaches: ClassVar[tuple[float, ...]] = (2.0**-26, 2.0**-32)
 
     v: arb
 
     def weakening(self, rate: Any, a: Any) -> Any:
-        """Return w, by how much friction is below that at the velocity of the driver, in units of v."""
+        """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
         b = a * self.v
         return a * rate / ((1 + b) * (1 + b + b * rate))
 
     def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
-        """Return the motion from a state as a function of time, as long as no event comes."""
+        """Return the motion from a state as a function of time, up to the next event."""
         numbers = [*state.position, *state.velocity, *state.difference, a]
         terms = 2 if any(isinstance(value, arb_series) for value in numbers) else 1
         with arithmetic(terms):
@@ -60,9 +60,9 @@ class Nonlinear:
         x, y, p, q, d, e = ([value] for value in start)
         b = a * self.v
         strength = a / (1 + b)
-        # 1 + b + b p at the start, of both.
+        # 1 + b + b p at the start, for end blocks and center.
         heads = [_positive(1 + b + b * rate[0]) if moves else None for rate, moves in zip((p, q), slips, strict=True)]
-        # p/(1 + b + b p) of both, and 1/(1 + b + b p) of the end blocks, whose square the difference needs.
+        # p/(1 + b + b p) for both, and 1/(1 + b + b p) for the end blocks, whose square the difference needs.
         ratios: list[list[Any]] = [[], []]
         inverse: list[Any] = []
         square: list[Any] = []
@@ -93,7 +93,7 @@ class Nonlinear:
 
 @dataclass
 class _Path:
-    """A motion, stepped as far as it has been asked for.
+    """A motion, integrated as far as requested.
 
     numbers : x, y, x', y', d, d' at the beginning, and a; pieces : coefficients of each step, the last its remainder
     """
@@ -116,7 +116,7 @@ class _Path:
         assert found is not None
         a = self.numbers[-1]
         if isinstance(time, arb_series):
-            # The first terms of the series around that time: all that a power series of time asks for.
+            # The first terms of the series around that time, which are all that a power series of time needs.
             rest = time - whole
             coefficients = self.law.series(self.slips, found, a, 2)
             found = [one[0] + one[1] * rest + one[2] * rest * rest for one in coefficients]
@@ -125,7 +125,7 @@ class _Path:
         return State((x, y), rates, (d, e if self.slips[LATERAL] else 0))
 
     def _within(self, number: int, time: arb) -> list[Any]:
-        """Return the state at those times of a ball that lie in a step."""
+        """Return the state at the times of a ball that lie in a step."""
         while len(self.pieces) <= number:
             with arithmetic(self.terms):
                 self._step()
@@ -133,14 +133,14 @@ class _Path:
         with arithmetic(self.terms):
             begin = time.lower() if time.lower() > low else arb(low)
             end = time.upper() if time.upper() < high else arb(high)
-            # A ball around both ends may reach beyond the step by its rounding, which the margin of the box allows.
+            # By rounding, a ball around both ends may reach beyond the step; the margin of the box allows for it.
             since = around(begin, end) - low
             return [_value(coefficients, since) for coefficients in self.pieces[number]]
 
     def _step(self) -> None:
-        """Make one step more; raises ProofError if there is no box that holds it."""
+        """Add a step; raises ProofError if no box is found that contains it."""
         *start, a = self.numbers if not self.pieces else [*self._last(), self.numbers[-1]]
-        # A little longer than the step: rounding of times must not lead out of it.
+        # Slightly longer than the step, so that rounded times stay inside.
         span = around(0, arb(STEP) * fmpq(1001, 1000))
         box = [_value(one, span) for one in self.law.series(self.slips, start, a, 3)]
         for _ in range(WIDENINGS):
@@ -161,7 +161,7 @@ class _Path:
 
 
 def _positive(value: Any) -> Any:
-    """Return 1 + aU'; raises ProofError where it may come to 0, at which friction is not defined."""
+    """Return 1 + aU'; raises ProofError where it may vanish and friction is not defined."""
     if not _parts(value)[0] > 0:
         raise ProofError(f"1 + aU': got {_parts(value)[0]}, expected above 0")
     return value

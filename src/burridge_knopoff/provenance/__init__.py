@@ -1,1 +1,1 @@
-"""Where a result comes from: sources and their fingerprint, the command of a run, seals, and files written whole."""
+"""The origin of a result: its sources and their fingerprint, the command of a run, seals, and atomic writing."""

@@ -1,16 +1,16 @@
-"""Where two commands that make runs differ."""
+"""The difference between the commands of two runs."""
 
 from __future__ import annotations
 
 import re
 import shlex
 
-# A number of a law goes by its name too: `number sigma`.
+# A number of a law includes its name: `number sigma`.
 _OPTION = re.compile(r"--(number \w+|[\w-]+)[ =](.*?)(?= --|$)")
 
 
 def difference(found: str, expected: str) -> str:
-    """Return in words where two commands differ: `--a 0.08 instead of --a 0.05`."""
+    """Return the difference of two commands in words: `--a 0.08 instead of --a 0.05`."""
     one, other = (dict(_OPTION.findall(" ".join(shlex.split(text)))) for text in (found, expected))
     for key in [*other, *one]:
         if one.get(key) != other.get(key):

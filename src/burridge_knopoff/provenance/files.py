@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""Atomic writing of files: whole or not at all."""
 
 from __future__ import annotations
 
@@ -9,43 +9,43 @@ import secrets
 from collections.abc import Callable
 from pathlib import Path
 
-#: How often a file is written if another process takes its temporary file away.
+#: Number of attempts to write a file if another process removes its temporary file.
 ATTEMPTS = 3
-#: Bytes that are written in addition to ask a disk why it takes no more.
+#: Bytes written to a disk to find out why it refuses more.
 PROBE = 1 << 20
 
 
 def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
     """Let `write` fill a temporary file beside `path`, then move it into place; leave nothing behind if it fails.
 
-    Temporary files of `path` that a killed process has left are removed as well. Two processes that write the same
-    file at the same time do no harm: the last one stays, whole.
+    Temporary files of `path` left by killed processes are removed as well. Two processes may write the same file at the
+    same time: the last one stays, whole.
 
     Raises OSError, one line that names the file, if it or its folder cannot be written.
     """
     check_target(path)
-    # A link stays, and the file that it leads to is replaced.
+    # A link stays; the file that it points to is replaced.
     path = Path(os.path.realpath(path))
-    # The suffix stays last: matplotlib and others tell the format from it.
+    # Keep the suffix: matplotlib and others derive the format from it.
     name = ".{}.part-{}{}"
     for attempts_left in reversed(range(ATTEMPTS)):
         temporary = path.with_name(name.format(path.stem, secrets.token_hex(4), path.suffix))
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             write(str(temporary))
-            # The move could reach the disk before the content, and a power cut leave an empty file.
+            # Otherwise the move could reach the disk before the content, and a power failure leave an empty file.
             with temporary.open("rb") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)
             break
         except (OSError, RuntimeError) as error:
-            # Another process that writes the same file has removed this one, taking its owner for dead.
+            # Another process that writes the same file has removed this one, as if left by a killed process.
             if not (isinstance(error, FileNotFoundError) and attempts_left):
                 raise OSError(f"{path}: cannot be written: {_reason(error, temporary)}") from error
         finally:
             _remove(temporary)
-    # Whether the owners of others live cannot be known: on a cluster they run on other machines. One that does live
-    # writes once more.
+    # It is not known whether the processes of other temporary files still run: on a cluster they run on other machines.
+    # A process that does run writes its file again.
     _remove(*path.parent.glob(name.format(glob.escape(path.stem), "[0-9a-f]" * 8, glob.escape(path.suffix))))
 
 
@@ -56,8 +56,8 @@ def _remove(*paths: Path) -> None:
 
 
 def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
-    """Return why a file could not be written."""
-    # netCDF4 tells a full disk as "NetCDF: HDF error" or "Permission denied": whether the disk takes more tells.
+    """Return the reason why a file could not be written."""
+    # netCDF4 reports a full disk as "NetCDF: HDF error" or "Permission denied"; trying to write more bytes tells.
     try:
         with temporary.open("ab", buffering=0) as file:
             file.write(bytes(PROBE))
@@ -75,7 +75,7 @@ def write_text(path: str | Path, text: str) -> None:
 
 
 def check_target(path: str | Path) -> None:
-    """Raise OSError, one line, if a file of that name could not be written: better before hours of work than after."""
+    """Raise OSError, one line, if a file of that name could not be written: before hours of work, not after."""
     path = Path(os.path.realpath(path))
     try:
         if path.exists() and not path.is_file():
@@ -86,9 +86,9 @@ def check_target(path: str | Path) -> None:
 
 
 def check_folder(path: str | Path, *, inside: bool = False) -> None:
-    """Raise OSError, one line that names the folder, if no file could be written into a folder, there or not yet.
+    """Raise OSError, one line that names the folder, if no file could be written in it, whether it exists or not.
 
-    inside : look at all folders in it as well
+    inside : check all its subfolders as well
     """
     for folder in (nearest_folder(path), *(Path(folder) for folder, _, _ in (os.walk(path) if inside else ()))):
         if not os.access(folder, os.W_OK | os.X_OK):
@@ -98,9 +98,9 @@ def check_folder(path: str | Path, *, inside: bool = False) -> None:
 
 
 def nearest_folder(path: str | Path) -> Path:
-    """Return a folder or, if it is not there yet, the nearest one above it.
+    """Return a folder or, if it does not exist, the nearest existing one above it.
 
-    Raises OSError, one line, if a file or a link that leads nowhere is in its place.
+    Raises OSError, one line, if a file or a broken link is in its place.
     """
     folder = Path(path)
     while not os.path.exists(folder):
@@ -113,6 +113,6 @@ def nearest_folder(path: str | Path) -> Path:
 
 
 def display_path(path: str | Path) -> str:
-    """Return a path as a message should show it: relative to the current folder where it lies below it."""
+    """Return a path for a message: relative to the current folder if it lies inside."""
     path = Path(path).resolve()
     return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)

@@ -1,4 +1,4 @@
-"""Whether the compiled kernel is that of the sources beside it, and runs on this processor: what a build records."""
+"""Whether the compiled kernel matches the sources beside it and runs on this processor, by the record of its build."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from burridge_knopoff.provenance.processor import compiled_to, lacking
 from burridge_knopoff.provenance.sources import COMPILATION, PACKAGE, code_digest
 
 KERNEL = PACKAGE / "kernel"
-#: Beside the compiled modules: what they were compiled from and to, see `current_build`.
+#: File beside the compiled modules with their sources and instruction sets, see `current_build`.
 RECORD = "build.json"
 
 _CHECKOUT = PACKAGE.parent.parent
@@ -19,7 +19,7 @@ REBUILD = "make kernel" if (_CHECKOUT / "Makefile").is_file() else "pip install 
 
 
 class KernelError(ImportError):
-    """A kernel that must not be used; the message is one line with the command that compiles it."""
+    """A kernel that must not be used; the message is one line with the command that compiles it again."""
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"{reason}: run `{REBUILD}`")
@@ -32,17 +32,17 @@ def kernel_sources() -> dict[str, str]:
 
 
 def current_build() -> dict[str, Any]:
-    """Return what a build here and now is made of: its sources, and the instructions that it may use."""
+    """Return what a build now would be made of: its sources, and the instruction sets that it may use."""
     return {"sources": kernel_sources(), "instructions": compiled_to(vector_flags())}
 
 
 def write_record(folder: Path) -> None:
-    """Record what has been compiled into the modules in this folder."""
+    """Record what the modules in this folder were compiled from."""
     (folder / RECORD).write_text(json.dumps(current_build(), indent=1) + "\n", encoding="utf-8")
 
 
 def recorded_build() -> dict[str, Any] | None:
-    """Return what the kernel was made of, in the form of `current_build`; None if that cannot be read."""
+    """Return the record of the kernel's build, in the form of `current_build`; None if it cannot be read."""
     try:
         record = json.loads((KERNEL / RECORD).read_text(encoding="utf-8"))
         return {"sources": dict(record["sources"]), "instructions": list(record["instructions"])}
@@ -51,9 +51,9 @@ def recorded_build() -> dict[str, Any] | None:
 
 
 def check_kernel(*, compiled: bool = False) -> None:
-    """Raise KernelError if the compiled kernel is not that of the sources on disk, or for another processor.
+    """Raise KernelError if the compiled kernel does not match the sources on disk, or needs another processor.
 
-    compiled : whether a kernel that is not compiled at all, a hundred times slower as Python, is refused as well
+    compiled : refuse an uncompiled kernel too, which in pure Python is a hundred times slower
     """
     if not any(path.suffix in (".so", ".pyd") for path in KERNEL.iterdir()):
         if compiled:
@@ -65,6 +65,6 @@ def check_kernel(*, compiled: bool = False) -> None:
     changed = {name for name, _ in recorded["sources"].items() ^ kernel_sources().items()}
     if changed:
         raise KernelError(f"{min(changed)}: has changed since the kernel was compiled")
-    # Its first such instruction would end Python by a signal (SIGILL), without a word.
+    # Its first missing instruction would end Python with a signal (SIGILL), without a message.
     if missing := lacking(recorded["instructions"]):
         raise KernelError(f"the kernel was compiled for a processor with {missing[0]}, which this one lacks")

@@ -1,4 +1,4 @@
-"""What the last run of a study was about, recorded beside its results: its config, how to run it again, its files."""
+"""The record of the last run of a study, beside its results: its config, the command to repeat it, its files."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _TYPES = {
 
 @cache
 def git_commit() -> str:
-    """Return the commit that is checked out around the package, or "unknown" outside a checkout.
+    """Return the commit checked out around the package, or "unknown" outside a checkout.
 
-    Where files differ from that commit it ends with "-dirty".
+    It ends with "-dirty" if files differ from that commit.
     """
     checkout = PACKAGE.parent.parent
-    # The checkout may lie in the folder of another user.
+    # The checkout may be owned by another user.
     command = ["git", "-c", "safe.directory=*", "describe", "--always", "--abbrev=40", "--exclude=*", "--dirty"]
     with contextlib.suppress(OSError, subprocess.CalledProcessError):
         if (checkout / ".git").exists():
@@ -48,12 +48,12 @@ def write_study_record(
     arguments: str,
     files: Mapping[str, Mapping[str, Any]],
 ) -> None:
-    """Record a study in its folder of results; a record that says the same already stays untouched.
+    """Record a study in its folder of results; a record with the same content stays untouched.
 
     config, grid : with all defaults, and {name in file names: value of a}
-    config_file, given : its config as it was given, and what that file holds
-    arguments : what `snakemake` is to be told besides its targets, as `--configfile config/mine.yaml`
-    files : {name below the folder: what the file should be, see `provenance.seal`}, without points, whose commands tell
+    config_file, given : its config as it was given, and the content of that file
+    arguments : arguments of `snakemake` besides its targets, such as `--configfile config/mine.yaml`
+    files : {name in the folder: expected content, see `provenance.seal`}, without points, which their commands describe
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
@@ -70,9 +70,9 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     arguments, config_file : as they were recorded
     given, config : the config as it was given, and with all defaults
     grid : {name in file names: value of a}
-    files : {name below the folder: what the file should be}, but for points
+    files : {name in the folder: expected content}, without points
 
-    Raises ValueError, one line, if there is none.
+    Raises ValueError, one line, if there is no record.
     """
     path = Path(results, NAME)
     try:
@@ -88,12 +88,12 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
 
 
 def study_folder(path: str | Path) -> Path | None:
-    """Return the folder of results in which a file lies, None if it lies in none."""
+    """Return the folder of results that contains a file, or None."""
     return next((folder for folder in Path(path).absolute().parents if (folder / NAME).is_file()), None)
 
 
 def recorded_file(path: str | Path) -> dict[str, Any] | None:
-    """Return what a file of a study should be by the record of its last run; None if that does not know the file."""
+    """Return the expected content of a file from the record of its study's last run; None if it is not recorded."""
     folder = study_folder(path)
     if folder is None:
         return None
@@ -103,12 +103,12 @@ def recorded_file(path: str | Path) -> dict[str, Any] | None:
 
 
 def check_owner(results: str | Path, config_file: str | Path, given: dict[str, Any]) -> None:
-    """Refuse a folder of results for a config file if another file, with another content, has made what lies there.
+    """Refuse a folder of results whose content was made from another config file with another content.
 
-    A config that was edited keeps its folder, and so does one that was moved or copied and not edited since.
+    A config that was edited keeps its folder, as does one that was moved or copied without an edit.
 
-    given : what the config file holds
-    Raises ValueError, one line, with what differs and what to do.
+    given : content of the config file
+    Raises ValueError, one line, with the differences and the remedy.
     """
     try:
         record = read_study_record(results)
@@ -126,15 +126,15 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
 
 
 def remake_command(study_file: str | Path, *paths: str | Path, listed: str = "") -> str:
-    """Return the command that makes files again, and all that depends on them, wherever it is pasted.
+    """Return the command that remakes files and everything that depends on them, from any folder.
 
     study_file : a file in the results of their study
-    paths : the files, if it is not that one
-    listed : a command that prints their paths, from where `snakemake` runs, if there are too many of them
+    paths : the files, if other than that one
+    listed : if there are too many paths, a command that prints them, relative to where `snakemake` runs
     """
     place, arguments, named = "", "", [str(path) for path in paths or [study_file]]
     if folder := study_folder(study_file):
-        # Snakemake knows files by their paths from where it was called for results/<study>.
+        # Snakemake identifies files by their paths from the folder where it was called for results/<study>.
         root = folder.parents[1]
         named = [os.path.relpath(name, root) for name in named]
         place = "" if root.resolve() == Path.cwd() else f"cd {shlex.quote(str(root))} && "

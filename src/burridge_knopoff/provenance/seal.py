@@ -1,13 +1,13 @@
-"""The seal of a file of results: what the file is, how its run ended, and the SHA-256 of its bytes.
+"""The seal of a file of results: a description of its content, the status of its run, and the SHA-256 of its bytes.
 
-HDF5 itself sees neither a changed number nor noise over a part of a file, and nothing in a picture or a text says which
-study it belongs to. The seal is one line. In a netCDF file it is the last line, after the HDF5 data: netCDF programs do
-not read past the end that HDF5 has noted. The seal of a text or a picture lies beside it, in `.<name>.seal`.
+HDF5 itself notices neither a changed number nor overwritten bytes, and nothing in a picture or a text says which study
+it belongs to. The seal is one line. In a netCDF file it is the last line, after the HDF5 data, since netCDF programs do
+not read past the end recorded by HDF5. The seal of a text or a picture lies beside it, in `.<name>.seal`.
 
-A mapping in the types of JSON says what the file is. For a point it holds the `bk simulate` command and the fingerprint
-of the sources. For every other file of a study it holds the name of the file, the params of its rule (the keys of the
-config and the sources that decide it), and for each input a digest of what that is. The workflow records in study.json
-what the files of a study should be, and `check_seal` compares.
+The description is a mapping in the types of JSON. For a point it has the `bk simulate` command and the fingerprint of
+the sources. For any other file of a study it has the name of the file, the params of its rule (the keys of the config
+and the sources that decide it), and a digest of the description of each input. The workflow records the expected
+descriptions of all files in study.json, and `check_seal` compares.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from burridge_knopoff.provenance.record import recorded_file, remake_command, st
 
 _MARK = b"\n#seal "
 _SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
-#: Suffixes of the files that hold their seals: netCDF, and what is kept for another run.
+#: Suffixes of the files that contain their seals: netCDF files and cached results.
 _INSIDE = (".nc", "")
-#: What is told last of what differs: it may follow from the others.
+#: Differences reported last, since they may follow from others.
 _LAST = ("inputs", "sources")
-#: Characters of a value in a message.
+#: Maximum length of a value in a message.
 _LONGEST = 60
 
 
 class BadFile(ValueError):
-    """A file of results that must not be used; the message is one line: file, reason, command that makes it again.
+    """A file of results that must not be used; the message is one line: file, reason, command that remakes it.
 
-    kind : missing, corrupt, or stale if it is whole
+    kind : missing, corrupt, or stale if the file is intact
     """
 
     def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
@@ -51,12 +51,12 @@ def identity(*parts: str) -> str:
 
 
 def canonical(about: Any) -> str:
-    """Return what a file is as one line of JSON; the order counts, as that of the laws does in a summary."""
+    """Return a description as one line of JSON; order counts, such as that of the laws in a summary."""
     return json.dumps(about, separators=(",", ":"))
 
 
 def seal_path(path: str | Path) -> Path:
-    """Return the file that holds the seal of a file: itself or, of a text or a picture, one beside it."""
+    """Return the file that contains the seal: the file itself or, for a text or a picture, one beside it."""
     path = Path(path)
     return path if path.suffix in _INSIDE else path.with_name(f".{path.name}.seal")
 
@@ -66,7 +66,7 @@ def write_sealed(
 ) -> None:
     """Let `write` fill a file and seal it, whole or not at all; see `write_whole`.
 
-    about : what the file is, in the types of JSON
+    about : description of the content, in the types of JSON
     status : how its run ended
     """
     head = f" {canonical(about)} {status} ".encode()
@@ -96,15 +96,15 @@ def write_sealed_text(path: str | Path, text: str, about: Mapping[str, Any]) -> 
 
 
 def read_seal(path: str | Path) -> tuple[dict[str, Any], str]:
-    """Check all bytes of a file against its seal; return what the file is, and how its run ended.
+    """Check all bytes of a file against its seal; return its description and the status of its run.
 
-    Raises BadFile if the file is not there, has no seal, or is not what was sealed.
+    Raises BadFile if the file does not exist, has no seal, or has changed since it was sealed.
     """
     return read_sealed(path)[1:]
 
 
 def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
-    """Return the content of a file without its seal, what the file is, and how its run ended; see `read_seal`."""
+    """Return the content of a file without its seal, its description, and the status of its run; see `read_seal`."""
     path = Path(path)
     try:
         content = path.read_bytes()
@@ -134,13 +134,13 @@ def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
 
 
 def check_seal(path: str | Path, about: Mapping[str, Any] | None = None, *, any_sources: bool = False) -> str:
-    """Check that a file is whole and the one that it should be; return how its run ended.
+    """Check that a file is intact and the expected one; return the status of its run.
 
-    about : what it should be; if None, what the record of its study says, and nothing outside a study
-    any_sources : whether other sources may have made it
+    about : expected description; by default from the record of its study, and nothing outside a study
+    any_sources : accept a file made by other sources
 
-    Raises BadFile, one line with what differs: of the file or, if it was made from a file that is not as it should be
-    either, of that one.
+    Raises BadFile, one line with the difference. If the file was made from another file that is wrong too, the error is
+    about that one.
     """
     found, status = read_seal(path)
     expected = recorded_file(path) if about is None else json.loads(canonical(about))
@@ -163,16 +163,16 @@ def _differing(found: Mapping[str, Any], expected: Mapping[str, Any]) -> list[st
 
 
 def _beside(path: str | Path, other: Path) -> Path:
-    """Return the path of another file of a study as that of the first one is written."""
+    """Return the path of another file of a study, written in the same way as that of the first."""
     return other if Path(path).is_absolute() else Path(os.path.relpath(other))
 
 
 def _difference(key: str, found: Any, expected: Any) -> str:
-    """Return in words how two files differ in a key."""
+    """Return the difference between two files in a key, in words."""
     if key == "command" and found and expected:
         return f"is another run: {difference(found, expected)}"
     if key == "sources" and found and expected:
-        return f"was made by other sources than those of now ({found}, now {expected})"
+        return f"was made by other sources ({found}, now {expected})"
     place = [key]
     while isinstance(found, dict) and isinstance(expected, dict):
         if keys := _differing(found, expected):

@@ -1,1 +1,1 @@
-"""The report of a study: one HTML file that opens offline, from summaries, figures and the verdicts on the paper."""
+"""The report of a study: one HTML file, readable offline, from summaries, figures and verdicts on the paper."""

@@ -1,4 +1,4 @@
-"""Numbers as the scripts of the page need them: as JSON inside HTML."""
+"""Numbers for the scripts of the page: JSON inside HTML."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from burridge_knopoff.study.formatting import text
 
 
 def exact(value: float) -> float | str | None:
-    """Return a number as it is, infinities as text and NaN as None: JSON knows neither."""
+    """Return a number unchanged, an infinity as text and NaN as None, since JSON has neither."""
     value = float(value)
     if math.isinf(value):
         return text(value)
@@ -20,9 +20,9 @@ def exact(value: float) -> float | str | None:
 
 
 def embedded_json(data: Any) -> Markup:
-    """Return JSON that can stand in a script element: nothing in it can end the element or begin a comment.
+    """Return JSON for a script element: nothing in it can end the element or start a comment.
 
-    Raises ValueError where a number is not finite.
+    Raises ValueError if a number is not finite.
     """
     plain = json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     for character in "<>&\u2028\u2029":

@@ -1,4 +1,4 @@
-"""What a study asked for, in the words of its config, and where its numbers come from."""
+"""The setting of a study in the words of its config, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.formatting import counted, friction_words, text
 from burridge_knopoff.study.study import Study, all_points
 
-#: Distributions whose versions the report states.
+#: Distributions whose versions are reported.
 LIBRARIES = (
     *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
     *("pyyaml", "jinja2", "plotly", "pillow"),
@@ -27,14 +27,14 @@ LIBRARIES = (
 
 
 def opening(study: Study) -> str:
-    """Return what the study is about, in a line."""
+    """Describe the study in a line."""
     config, laws = study.config, study.laws
     words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
     return f"{counted(study.blocks, 'block')}, v = {text(config['v'])}, a = {_grid(config['a'])}, {words}"
 
 
 def what_was_run(study: Study) -> list[tuple[str, str]]:
-    """Return names and values of what decides the runs."""
+    """Return names and values of the settings that decide the runs."""
     config = study.config
     values = list(study.grid.values())
     solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
@@ -57,17 +57,17 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
             f"transient {text(transient)}, then ⟨J⟩ over τ = {text(transient)} to {text(transient + window)} in "
             f"{config['batches']} batches",
         ),
-        ("Synchronized", f"where ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
+        ("Synchronized", f"if ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
         ("Runs", str(len(all_points(study)))),
         *without,
     ]
 
 
 def chain_text(chain: Chain) -> str:
-    """Return the springs and the static friction of a chain in words."""
+    """Describe the springs and the static friction of a chain."""
     parts = [f"coupling {_strengths(chain.coupling)}"]
     parts.append(
-        "pulling by as many springs as a block has neighbours"
+        "pulling as many springs as the block has neighbours"
         if chain.pulling == NEIGHBOURS
         else f"pulling {_strengths(chain.pulling)}"
     )
@@ -106,7 +106,7 @@ def config_text(study: Study) -> str:
 
 
 def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
-    """Return which software made each summary, as its file says."""
+    """Return the software that made each summary, from its file."""
     return [
         {"name": f"{name}.nc", **{key: str(dataset.attrs.get(key, "–")) for key in provenance(__name__)}}
         for name, dataset in summaries.items()
@@ -131,7 +131,7 @@ def software() -> list[tuple[str, str]]:
 
 
 def foreign_settings(dataset: xarray.Dataset, study: Study) -> list[str]:
-    """Return which settings of longer chains differ from the study's: they were made before a change of it."""
+    """Return the settings of longer chains that differ from the study's, which has changed since they were made."""
     chains, first = study.config["chains"], float(dataset["a"].values[0])
     own = {
         **study.config["chain"],

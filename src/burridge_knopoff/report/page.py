@@ -1,4 +1,4 @@
-"""The page: everything that it shows, put into its template."""
+"""The page: collects its content and fills in the template."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ PLACED = (
     "chains",
 )
 
-#: The result of an optional stage, which may be older than the study.
+#: A result with a target of its own, which may be older than the study.
 OPTIONAL = "chains"
 
 
 @dataclass(frozen=True)
 class Sources:
-    """The files that a report is made of.
+    """The files behind a report.
 
     claims : the verdicts, None if the study has none
     summaries, figures : {name: path} of netCDF files and of PNG pictures
@@ -68,8 +68,8 @@ def write_report(
 ) -> None:
     """Write the report of a study as one HTML file.
 
-    arguments : that name the study to `snakemake` in the commands of the report, none for the default one
-    about : what the file is, for its seal
+    arguments : arguments of `snakemake` that select the study in the report's commands; none for the default study
+    about : description of the file, for its seal
     Raises ValueError, one line that names the file, if a source cannot be read.
     """
     write_sealed_text(path, render(study, sources, arguments), about)
@@ -83,11 +83,11 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         try:
             summaries[name] = open_summary(path)
         except ValueError as error:
-            # Made by a target of its own, it is none of what the run of a study brings up to date.
+            # A target of its own makes it, so that a run of the study does not update it.
             if name != OPTIONAL:
                 raise
             left_out = str(error)
-    # One after the other: each takes some 100 MB while it is compressed.
+    # One after the other: compressing each takes about 100 MB.
     pictures = {
         name: read_picture(path) for name, path in sources.figures.items() if not (left_out and name == OPTIONAL)
     }
@@ -144,7 +144,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
 
 
 def _section_words(study: Study) -> str:
-    """Return of what W consists."""
+    """Describe W."""
     section = study.settings(study.laws[0]).section
     return f"the co-moving position of block {section.block}" if section.block else "the sum of the co-moving positions"
 
@@ -158,7 +158,7 @@ def _data(commands: Commands, summaries: Mapping[str, xarray.Dataset], dark: Map
 def _of(
     summaries: Mapping[str, xarray.Dataset], name: str, make: Callable[[xarray.Dataset], Any], nothing: Any = None
 ) -> Any:
-    """Return what is made of a summary, or what stands for it in a study that lacks this one."""
+    """Return what `make` makes of a summary, or a substitute if the study does not have it."""
     return make(summaries[name]) if name in summaries else nothing
 
 
@@ -189,5 +189,5 @@ def _static(name: str) -> Markup:
 def _plotly() -> Markup:
     from plotly.offline import get_plotlyjs
 
-    # The sequence may stand in a string of the script; in HTML it would end the element.
+    # The sequence may occur in a string of the script; in HTML it would end the element.
     return Markup(get_plotlyjs().replace("</script", "<\\/script"))

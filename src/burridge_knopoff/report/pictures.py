@@ -1,4 +1,4 @@
-"""The figures of a study as pictures inside the page, each once and pixel by pixel."""
+"""The figures of a study as pictures inside the page, without loss."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Picture:
 
 
 def read_picture(path: str | Path) -> Picture:
-    """Read a figure; its pixels are kept, in a format that takes less than half the room of PNG.
+    """Read a figure and convert it without loss to a format that takes less than half the size of PNG.
 
-    The effort is chosen for speed and memory: all of it would save a fifth of the room, in twenty times the time.
+    The effort balances speed and memory: the maximum would save a fifth of the size in twenty times the time.
 
-    Raises BadFile if it is not a picture, ValueError if no figure of that name is known.
+    Raises BadFile if the file is not a picture, ValueError if no figure has its name.
     """
     name = Path(path).stem
     try:

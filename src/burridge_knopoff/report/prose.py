@@ -7,11 +7,11 @@ import re
 from markupsafe import Markup, escape
 
 _CODE = re.compile("`([^`]+)`")
-# One letter before the underscore: names such as one_sided are words.
+# A single letter before the underscore: names such as one_sided are words.
 _SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΑ-Ω])_(\w)(?!\w)")
 
 
 def prose(sentence: str) -> Markup:
-    """Return a sentence as HTML, everything in it escaped but what this adds."""
+    """Convert a sentence to HTML, with everything else in it escaped."""
     html = _SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(sentence)))
     return Markup(_CODE.sub(r"<code>\1</code>", html))

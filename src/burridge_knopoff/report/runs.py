@@ -1,4 +1,4 @@
-"""The runs of a study one by one: what each found, where its file lies, and the commands that make it again."""
+"""The runs of a study one by one: results, paths of the files, and the commands that repeat them."""
 
 from __future__ import annotations
 
@@ -22,41 +22,41 @@ from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
 
 @dataclass(frozen=True)
 class Commands:
-    """What a person types in the folder of the checkout to make one run again.
+    """The commands that repeat a run, typed in the folder of the checkout.
 
-    arguments : that name the study to `snakemake`, none for the default one
+    arguments : arguments of `snakemake` that select the study; none for the default study
     """
 
     study: Study
     arguments: Sequence[str] = ()
 
     def point(self, law: str, initial: str, a: str) -> str:
-        """Return the path of a point file below the results of the study."""
+        """Return the path of a point file in the results of the study."""
         return f"points/{POINT.format(law=law, initial=initial, a=a)}"
 
     def snakemake(self, law: str, initial: str, a: str) -> str:
-        """Return the command that makes the point file again; the target stands before --config."""
+        """Return the command that remakes the point file; the target comes before --config."""
         return self.of_study("-c1", "--force", f"results/{self.study.name}/{self.point(law, initial, a)}")
 
     def of_study(self, *words: str) -> str:
-        """Return the command of Snakemake with these words, for the config of the study."""
+        """Return a Snakemake command with these words for the study."""
         return shlex.join(["snakemake", *words, *self.arguments])
 
     def simulate(self, law: str, initial: str, a: str) -> str:
-        """Return the command of the same run by hand; it writes a copy of the point file into the current folder."""
+        """Return the command of the same run by hand, which writes a copy of the point file to the current folder."""
         return f"{self.study.command(law, initial, a)} --out {law}_{initial}_a{a}.nc"
 
 
 def embedded_runs(
     commands: Commands, mean_distance: xarray.Dataset, lyapunov: xarray.Dataset, agreement: xarray.Dataset
 ) -> dict[str, Any]:
-    """Return what the page knows of every run, values exact, arrays over (law, initial, a).
+    """Return the page's data of every run, with exact values; arrays over (law, initial, a).
 
-    `agrees` are the verdicts of `agreement` on the other laws, over (other law, initial, a). Kinds of motion and
-    periods are those of `agreement`, of the attractor that the run has come to.
+    `agrees` are the answers of `agreement` on the other laws, over (other law, initial, a). Kinds of motion and periods
+    come from `agreement`, for the attractor that the run has reached.
 
-    `first` are the indices of the run that is shown at first, the one of the figures of single runs.
-    `simulate` holds for each law and initial state the command in two parts, with `--a` and its value between them.
+    `first` are the indices of the run shown first, which is that of the figures of single runs.
+    `simulate` has the command for each law and initial state in two parts; `--a` and its value go between them.
     """
     study = commands.study
     names = list(study.grid)
@@ -106,7 +106,7 @@ def _with_errors(values: np.ndarray, errors: np.ndarray) -> Any:
 
 
 def _halves(commands: Commands, law: str, initial: str) -> list[str]:
-    """Split the command of a run at its value of a, which is all that differs along the grid but for the file name."""
+    """Split the command of a run at its value of a; along the grid, only this and the file name change."""
     name, value = next(iter(commands.study.grid.items()))
     command = commands.simulate(law, initial, name).removesuffix(f"{name}.nc")
     before, after = command.split(f" --a {value!r} ", 1)

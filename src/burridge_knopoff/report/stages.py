@@ -1,4 +1,4 @@
-"""Run time and memory of each stage of a study, from the files that Snakemake's benchmark directive writes."""
+"""Run time and memory of each stage of a study, from Snakemake's benchmark files."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-#: The report cannot tell of the job that is writing it.
+#: The report cannot include the job that writes it.
 SKIPPED = ("report",)
 
-#: The first letters of files that are one stage together, and its name.
+#: Prefixes of files that form one stage, with its name.
 JOINED = {"figure_": "figures"}
 
 
@@ -23,9 +23,9 @@ MEBIBYTE = 1.048576
 class Stage:
     """The jobs of one stage, as far as they were measured.
 
-    wall, cpu : sums over the jobs, in seconds; cpu_jobs : jobs whose CPU time is known
-    memory : of the job that takes most, in MB: what its processes share is counted once, where the system can tell, or
-        for each of them; 0 if nothing is known
+    wall, cpu : sums over the jobs, in seconds; cpu_jobs : number of jobs with a known CPU time
+    memory : largest memory of a job, in MB; memory shared by its processes is counted once if the system can tell, else
+        for each process; 0 if unknown
     """
 
     name: str
@@ -39,11 +39,11 @@ class Stage:
 def read_stages(
     folder: str | Path, *, joined: Mapping[str, str] = JOINED, skipped: Collection[str] = SKIPPED
 ) -> list[Stage]:
-    """Return the stages of a folder of benchmark files, the longest wall time first; none if there is no folder.
+    """Return the stages in a folder of benchmark files, longest wall time first; none without the folder.
 
-    All files of a subfolder are one stage, and so is the file that has its name.
+    The files of a subfolder form one stage, together with the file of the same name.
 
-    joined : {first letters of files that are one stage: its name}; skipped : names of stages that are left out
+    joined : {prefix of files that form one stage: its name}; skipped : names of stages to leave out
     """
     stages: dict[str, Stage] = {}
     for path in sorted(Path(folder).rglob("*.tsv")):
@@ -60,10 +60,10 @@ def read_stages(
 
 
 def job_costs(path: Path) -> Iterator[tuple[float, float, float]]:
-    """Yield wall time, CPU time and MB of the jobs in a file; what cannot be read is left out: it is no result."""
+    """Yield wall time, CPU time and MB of the jobs in a file; unreadable lines are left out."""
     with suppress(OSError, ValueError, KeyError, csv.Error), path.open(encoding="utf-8") as file:
         for row in csv.DictReader(file, delimiter="\t", restval=""):
-            # A job that ends before the first look at it has NA or -.
+            # A job that ends before it is first measured has NA or -.
             rest = (row.get(key, "") for key in ("cpu_time", "max_pss", "max_rss"))
             cpu, shared_once, resident = (float(text) if text[:1].isdigit() else 0.0 for text in rest)
             yield float(row["s"]), cpu, MEBIBYTE * (shared_once or resident)

@@ -1,4 +1,4 @@
-"""Tables of the page: what each branch of attractors, each transition and each chain amounts to."""
+"""Tables of the page: branches of attractors, transitions of the synchronized orbit, longer chains."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
-    """Return a row for each law and branch: where it exists, ⟨J⟩, kinds of motion, and its largest basin fraction."""
+    """Return a row for each law and branch: range of a, ⟨J⟩, kinds of motion, and largest basin fraction."""
     rows = []
     names = branch_names(attractors)
     a = attractors["a"].values
@@ -47,7 +47,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
 
 
 def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
-    """Return names and values, a column for each law, of the transitions of the synchronized orbit; {} without one."""
+    """Return the transitions of the synchronized orbit, a row each and a column for each law; {} without an orbit."""
     if not (orbits["status"].values == OrbitStatus.FOUND).any():
         return {}
     laws = [str(law) for law in orbits["law"].values]
@@ -57,7 +57,7 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
         for law in laws:
             one = orbits.sel(law=law)
             number = one[value].item()
-            # Errors of a few units of the last digit say no more than that all digits shown hold.
+            # An error of a few units in the last digit says no more than that all digits shown are right.
             cells.append(with_error(number, one[error].item()) if error else _long(number))
         return {"name": name, "cells": cells}
 
@@ -89,7 +89,7 @@ def _meaning(item: IntEnum) -> str:
 
 
 def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:
-    """Return a row for each law and number of blocks: the most states that synchronize at any a, and at which a any."""
+    """Return a row for each law and number of blocks: the largest synchronized fraction, and where any synchronize."""
     rows = []
     a, states = chains["a"].values, chains.sizes["state"]
     for law in chains["law"].values:
@@ -97,7 +97,7 @@ def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:
             one = chains.sel(law=law, blocks=blocks)
             fraction = one["synchronized_fraction"].values
             ends = one["synchronized_low"].values, one["synchronized_high"].values
-            # Among equal fractions the one that is known best.
+            # Of equal fractions, the one known best.
             best = min(range(len(a)), key=lambda k: (-fraction[k], ends[1][k]))
             low, high = (end[best] for end in ends)
             some = a[fraction > 0.0]

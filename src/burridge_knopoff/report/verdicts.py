@@ -11,7 +11,7 @@ from burridge_knopoff.claims.formats import by_topic, untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
 from burridge_knopoff.provenance.seal import BadFile
 
-#: Every verdict, with the sign that stands beside its name: the page never tells them by colour alone.
+#: Every verdict with a sign, so that the page does not distinguish them by colour alone.
 SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", NOT_TESTABLE: "–"}
 
 
@@ -20,9 +20,9 @@ class Verdicts:
     """The judged statements of the paper.
 
     counts : {verdict: number of statements}, every verdict in the order of SIGNS
-    independent : the same of the statements that neither repeat others nor follow from them
-    topics : {topic: its claims}, each claim a mapping as in the file, without those that cannot be judged
-    untestable : {reason: claims that cannot be judged for it}
+    independent : the same for statements that neither repeat nor follow from others
+    topics : {topic: its claims}, each claim a mapping as in the file; only claims that can be judged
+    untestable : {reason: claims that cannot be judged for this reason}
     setting : v, contact and start for which they were judged, with the provenance
     """
 
@@ -34,9 +34,9 @@ class Verdicts:
 
 
 def read_verdicts(path: str | Path | None) -> Verdicts:
-    """Read the verdicts; a study that judges nothing has no file of them.
+    """Read the verdicts from a file; a study without claims has none.
 
-    Raises BadFile if it is not what the rule `claims` wrote.
+    Raises BadFile if the rule `claims` did not write the file.
     """
     if path is None:
         return Verdicts({}, {}, {}, {}, {})

@@ -1,1 +1,1 @@
-"""Runs: a solver of a model, its settings, and the trajectory that it leaves."""
+"""Runs: settings, the solver that moves a model, and the resulting trajectory."""

@@ -1,7 +1,7 @@
-"""Results of long calls, kept in a folder: a run that was killed, or has a little more to do, does only what is left.
+"""Cache of the results of long calls in a folder. A run that was killed or extended computes only what is missing.
 
-A result is known by all that decides it: the code of the function and of what that imports, the versions of NumPy and
-SciPy, and the arguments by value.
+The key of a result is everything that decides it: the code of the function and of the modules it imports, the versions
+of NumPy and SciPy, and the values of the arguments.
 """
 
 from __future__ import annotations
@@ -26,10 +26,9 @@ _DIGIT = "[0-9a-f]"
 
 
 def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
-    """Return the result of a call, the file that keeps it, and whether it was read from there.
+    """Return the result of a call, its file in the cache, and whether the result was read from there.
 
-    A file that is damaged, or keeps another result, counts as none. Raises OSError, one line, if the file cannot be
-    written.
+    A file that is damaged or holds another result is ignored. Raises OSError, one line, if the file cannot be written.
     """
     digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
     for part in _parts([function, *items]):
@@ -47,9 +46,9 @@ def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, 
 
 
 def forget(folder: Path, asked: Collection[Path]) -> None:
-    """Delete what is kept in the folders of a folder, and nothing else, but for the files that were asked for.
+    """Delete the cached results in the subfolders of a folder, except the files in `asked`; other files stay.
 
-    Also what is kept beside it, in folders that other settings have named by 16 hexadecimal digits.
+    Neighbouring caches of other settings, whose folders are named by 16 hexadecimal digits, are deleted too.
     """
     result = f"*/{32 * _DIGIT}"
     for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
@@ -58,7 +57,7 @@ def forget(folder: Path, asked: Collection[Path]) -> None:
 
 
 def _parts(value: Any) -> Iterator[bytes]:
-    """Return what two equal values, and no others, have alike, whatever else they hold or share."""
+    """Yield bytes that are equal for equal values and only for these, however the values share objects."""
     match value:
         case np.ndarray():
             yield f"{value.dtype}{value.shape}".encode()
@@ -76,5 +75,5 @@ def _parts(value: Any) -> Iterator[bytes]:
             for item in fields(value):
                 yield from _parts(getattr(value, item.name))
         case _:
-            # With an end: 12 and 3 are not 1 and 23.
+            # The comma separates: 12 and 3 are not 1 and 23.
             yield f"{value!r},".encode()

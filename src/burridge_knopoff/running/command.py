@@ -1,4 +1,4 @@
-"""The `bk simulate` command that makes a run: it says all that decides a point, and nothing twice."""
+"""The `bk simulate` command of a run. It names every setting that decides the result, each once."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 
-#: Options of the chain, and the field of `Chain` that each is.
+#: Options of the chain, with the field of `Chain` that each one sets.
 CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
 
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
-    """Return the command that makes this run again, quoted for a shell; what has its default is left out."""
+    """Return the command that repeats this run, quoted for a shell; settings with their default are left out."""
     words = ["bk", "simulate", *_law(model.law), "--a", repr(model.law.a)]
     words += [*_changed(model.chain), *_changed(model), "--initial", initial.name]
     words += [f"--{key}={_text(getattr(initial, key))}" for key in fields_of(InitialState)]
@@ -27,7 +27,7 @@ def simulate_command(model: Model, initial: InitialState, settings: Settings) ->
 
 
 def _law(law: Law) -> Iterator[str]:
-    """Yield the options of a law: a name that is built in or a formula, its own name, and the numbers that matter."""
+    """Yield the options of a law: a built-in name or a formula, its own name, and the numbers that matter."""
     kind = next((name for name, built_in in LAWS.items() if type(law) is built_in), "")
     usual = law.defaults if kind else {}
     yield from ("--law", kind) if kind else (f"--formula={law.formula}",)
@@ -41,7 +41,7 @@ def _law(law: Law) -> Iterator[str]:
 def _changed(part: Any) -> Iterator[str]:
     for key, field in fields_of(type(part)).items():
         value = getattr(part, key)
-        # The number of blocks is that of positions.
+        # The number of blocks follows from the number of positions.
         if value != field.default and key != "blocks":
             yield from (f"--{key.replace('_', '-')}", _text(value))
 

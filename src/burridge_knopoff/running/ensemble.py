@@ -1,4 +1,4 @@
-"""Many trajectories of one model at once, for labels and long searches: several times faster than one by one."""
+"""Ensembles: many trajectories of one model at once, several times faster than one by one."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from burridge_knopoff.running.runner import EVENTS_PER_BLOCK_AND_UNIT
 
 
 def new_ensemble(model: Model) -> Ensemble:
-    """Return what moves many trajectories of a model at once; one thread at a time may use it."""
+    """Return an ensemble that moves many trajectories of a model at once; one thread at a time may use it."""
     chain, law = model.chain, model.law
     codes, constants = law.tape.table
     used = slice(law.tape.value)

@@ -1,8 +1,8 @@
-"""Values of Python as bytes and back: a line of JSON, and after it the bytes of all arrays.
+"""Serialization of Python values: a line of JSON, followed by the bytes of all arrays.
 
-Reading runs no code from the file, as reading a pickle would. None, truth values, numbers, texts, bytes, enumerations,
-lists, tuples, mappings, NumPy's arrays and numbers can be written, and objects by their attributes. An array or object
-that stands in several places is one object again after reading.
+Unlike a pickle, the file runs no code when it is read. Supported are None, booleans, numbers, texts, bytes,
+enumerations, lists, tuples, mappings, NumPy arrays and numbers, and objects by their attributes. An array or object
+that occurs in several places is a single object again after reading.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def pack(value: Any) -> bytes:
     """Return a value as bytes; raises TypeError for an array of objects or an object without attributes."""
     objects: list[Any] = []
     arrays: list[bytes] = []
-    # With the objects themselves: an address is that of one object only while that lives.
+    # Keep the objects: an address identifies an object only while the object exists.
     known: dict[int, tuple[Any, int]] = {}
 
     def packed(value: Any) -> Any:
@@ -54,7 +54,7 @@ def pack(value: Any) -> bytes:
         return ["array", value.dtype.str, list(value.shape), order]
 
     def attributes(value: Any) -> Any:
-        # What is computed from the others when it is asked for is left out.
+        # Leave out cached properties, which are computed from the other attributes on demand.
         own = {
             name: item
             for name, item in vars(value).items()
@@ -67,9 +67,9 @@ def pack(value: Any) -> bytes:
 
 
 def unpack(content: bytes) -> Any:
-    """Return the value that `pack` has written; raises ValueError, LookupError or AttributeError if it is not one.
+    """Return the value written by `pack`; raises ValueError, LookupError or AttributeError for other content.
 
-    Objects are of the classes of modules that have been imported.
+    The classes of objects have to be in modules that have been imported.
     """
     line, _, data = content.partition(b"\n")
     top, packed_objects = json.loads(line)

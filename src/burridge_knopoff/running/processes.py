@@ -1,4 +1,4 @@
-"""Work shared out among processes, with the same results whatever their number."""
+"""Work shared among processes; the results do not depend on the number of processes."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ _LOG = logging.getLogger(__name__)
 
 @contextmanager
 def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
-    """Give what calls a function for each item of one or several sequences, in so many processes at once.
+    """Yield a function `each` that maps a function over one or several sequences, in several processes at once.
 
-    folder : where results are cached for another run, see `running.cache`; None caches none. Entries that no call has
-        asked for are deleted at the end
+    folder : cache of the results for later runs, see `running.cache`; None for no cache. At the end, cached results
+    that
+        no call has asked for are deleted
 
-    `each(what, function, *sequences)` returns the list of results. What calls of the same name in a row have taken, in
-    seconds, is logged. Function, items and results have to be picklable, and a call must not rely on what another one
-    has changed.
+    `each(what, function, *sequences)` returns the list of results and logs how long the calls took, in seconds; calls
+    in a row with the same `what` are logged together. Function, items and results have to be picklable. A call must not
+    rely on what another call has changed.
     """
     asked: set[Path] = set()
     taken: list[tuple[float, bool]] = []
@@ -48,7 +49,7 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
     if processes == 1:
         yield partial(each, map)
     else:
-        # A fresh interpreter would run the script of the caller once more.
+        # A fresh interpreter would run the caller's script again.
         with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
             yield partial(each, pool.map)
     _log(last, taken)
@@ -57,7 +58,7 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
 
 
 def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
-    """Say how many calls there were, what they have taken in all and the longest, and how many were kept."""
+    """Log the number of calls, their total and longest time, and how many results came from the cache."""
     if taken:
         seconds, was_read = zip(*taken, strict=True)
         text = f"{what}: {len(taken)}, {sum(seconds):.1f} s, the longest {max(seconds):.1f} s"
@@ -65,14 +66,14 @@ def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
 
 
 def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
-    """Return the result of a call, the seconds that it took, the file that keeps it, and whether it was there."""
+    """Return the result of a call, the seconds it took, its file in the cache, and whether it was read from there."""
     begin = time.perf_counter()
     result, path, was_read = kept(folder, function, *items) if folder else (function(*items), None, False)
     return result, time.perf_counter() - begin, path, was_read
 
 
 def _end_with_parent() -> None:
-    """Let a process not outlive the one that shares out the work, if that is killed."""
+    """End this process when the process that shares the work out is killed."""
 
     def end() -> None:
         if (parent := parent_process()) is not None:

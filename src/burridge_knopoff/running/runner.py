@@ -1,4 +1,4 @@
-"""The one way to move a model: a solver that begins at an instant, runs on, and says how that ended."""
+"""The runner: a solver of one model that starts from an instant, integrates, and reports how the run ended."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NEVER = 1e300
 
 RK4_ORDER = 3
 
-# Real sequences stay far below: a block needs at least about a time unit for a slip.
+# Real motion stays far below: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
 STEP_LIMIT = 10**10
 
@@ -34,15 +34,15 @@ class Runner:
     """A solver of one model.
 
     solver : series, map (closed form) or rk4
-    step : of rk4
-    events_from : time from which the states of events are kept; before it only time, block and kind
-    keep_events : whether events are kept; else they are only counted
-    stops_only : whether of these only the stops from `events_from` on are kept
-    observer : what measures the run; without one nothing is measured
+    step : time step of rk4
+    events_from : time from which events are kept with the state; earlier events have time, block and kind only
+    keep_events : whether events are kept; otherwise they are only counted
+    stops_only : whether only the stops from `events_from` on are kept
+    observer : measures the run; without it nothing is measured
     exponents : perturbations from which Lyapunov exponents are computed
-    perturbations : tangent vectors to carry along as they are, columns of shape (2 blocks, vectors)
+    perturbations : tangent vectors to carry along unchanged by the solver, columns of shape (2 blocks, vectors)
 
-    Raises ValueError if the model has no closed form and the solver needs one.
+    Raises ValueError if the solver needs a closed form and the model has none.
     """
 
     def __init__(
@@ -61,11 +61,11 @@ class Runner:
         instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
-                "solver: got 'map', expected series | rk4: map needs a closed form, that of a friction law that is a "
-                "straight line, not too steep, in a uniform chain with open ends"
+                "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
+                "too steep, in a uniform chain with open ends"
             )
         self.model = model
-        # What decides its steps: a run continues step by step only under the same.
+        # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
         self.solver = model, solver, step if solver == "rk4" else None
         blocks = model.blocks
         order = RK4_ORDER if solver == "rk4" else SERIES_ORDER
@@ -87,31 +87,31 @@ class Runner:
             self.carry(perturbations)
 
     def begin(self, at: ChainState) -> None:
-        """Begin from an instant, at its time; raises ValueError if it is none of the model's blocks."""
+        """Start from an instant, at its time; raises ValueError if its number of blocks is not the model's."""
         blocks = self.model.blocks
         if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
-            raise refusal("state", at, f"an ChainState of {blocks} blocks")
+            raise refusal("state", at, f"a ChainState of {blocks} blocks")
         self.kernel.begin(at.position, at.velocity, at.stuck, at.time)
         if at.last_step is not None and at.last_step[0] == self.solver:
             self.kernel.resume(at.last_step[1], at.time)
 
     def final(self) -> ChainState:
-        """Return the state at the end of a completed run, from which another one continues with the same steps."""
+        """Return the state at the end of a completed run, from which a run continues with the same steps."""
         at = replace(self.state(), time=self.clock)
         object.__setattr__(at, "last_step", (self.solver, self.kernel.mark()))
         return at
 
     def carry(self, perturbations: np.ndarray) -> None:
-        """Carry the columns of a matrix (2 blocks, vectors) along from now on, never orthonormalised."""
+        """Carry the columns of a matrix (2 blocks, vectors) along from now on, without orthonormalising them."""
         self.exponents.carry(perturbations)
 
     def run(self, until: float | None = None, halting_block: int = -1) -> Status:
-        """Run on to a time, or to the end of the observer's window, and return how that ended.
+        """Integrate to a time, or to the end of the observer's window, and return the status.
 
-        halting_block : a block at each of whose stops the run halts; it goes on from there with the next call
+        halting_block : halt at each stop of this block; the next call continues from there
 
-        Raises ValueError for either with `rk4`, which knows the observer's window only, and if it would keep more than
-        MOST_NUMBERS of its events.
+        Raises ValueError if `rk4` is given either argument, since it only integrates the observer's window, and if the
+        run would keep more than MOST_NUMBERS numbers.
         """
         if isinstance(self.kernel, EventDriven):
             self.kernel.halting_block = halting_block
@@ -130,7 +130,7 @@ class Runner:
         return status
 
     def after(self, at: ChainState, time: float) -> ChainState | None:
-        """Return the state that an instant comes to after a time, None if the run fails."""
+        """Return the state a given time after an instant, or None if the run fails."""
         self.begin(at)
         return self.state() if self.run(time) == Status.COMPLETED else None
 
@@ -146,11 +146,11 @@ class Runner:
 
     @property
     def perturbations(self) -> np.ndarray:
-        """The perturbations that are carried along, columns of shape (2 blocks, vectors)."""
+        """The perturbations carried along, columns of shape (2 blocks, vectors)."""
         return self.exponents.tangent.matrix()
 
     def events(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return time, block (0 …) and kind (0 stop, 1 start) of the events that were kept."""
+        """Return time, block (0 …) and kind (0 stop, 1 start) of the events kept."""
         values = self.log.events.values()
         return self.log.events.times(), values[:, 0].astype(int) - 1, values[:, 1].astype(int)
 
@@ -164,13 +164,13 @@ def new_observer(
     section_only: bool = False,
     section: Section = SUM,
 ) -> Observer:
-    """Return what measures a run of a model: J averaged over batches, J and states at given times; see `Observer`."""
+    """Return the observer of a run: J averaged over batches, J and states at given times; see `Observer`."""
     apart = float(model.sliding_offset[-1] - model.sliding_offset[0])
     return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time, section_only, section.block)
 
 
 def new_friction(model: Model, order: int) -> Friction:
-    """Return the friction on the blocks of a model, for Taylor series of an order."""
+    """Return the friction on the blocks of a model, for Taylor series of a given order."""
     law, thresholds = model.law, model.chain.thresholds
     slopes = -float(law.slope(0.0)), float(thresholds.max()) * law.steepest
     columns = -(-model.blocks // WIDTH)

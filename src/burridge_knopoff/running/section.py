@@ -1,4 +1,4 @@
-"""The Poincaré section W = 0 on which a motion is seen."""
+"""The Poincaré section W = 0."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ SECTION_KEYS = Keys(
             "one block, for motion in which the sum never crosses 0",
             "sum",
         ),
-        "block": Field(Whole(0, MAXIMUM_BLOCKS), "number n of that block, from 1 on; 0 with of: sum", 0),
+        "block": Field(Whole(0, MAXIMUM_BLOCKS), "number n of that block, from 1; 0 with of: sum", 0),
     }
 )
 
 
 @dataclass(frozen=True)
 class Section:
-    """Which W makes the section W = 0.
+    """The choice of W in the section W = 0.
 
-    of : sum, of the co-moving positions x_i of all blocks, or block, x_n of one
-    block : its number n, from 1 on; 0 with sum
+    of : sum, W is the sum of the co-moving positions x_i of all blocks; or block, W is x_n of one block
+    block : number n of that block, from 1; 0 with sum
 
     Raises ValueError, one line, for anything out of range.
 
@@ -58,7 +58,7 @@ class Section:
 
 
 class SectionRange(Range):
-    """A section: one, its keys, or its words, as on a command line."""
+    """A section: a `Section`, its keys, or a word as on a command line."""
 
     def _fit(self, value: Any, key: str) -> Section | None:
         if isinstance(value, Section):
@@ -72,5 +72,5 @@ class SectionRange(Range):
         return "sum | block=NUMBER"
 
 
-#: That of the paper.
+#: The paper's section.
 SUM = Section()

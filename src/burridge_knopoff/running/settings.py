@@ -1,4 +1,4 @@
-"""The settings of one run, besides the model and the initial state."""
+"""The settings of a run, besides the model and the initial state."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from burridge_knopoff.values import MOST_NUMBERS, refusal
 SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")
 
-#: The longest time that a setting may ask for.
+#: The longest time allowed in a setting.
 LONGEST = 1e9
 DURATION = Number(0.0, LONGEST)
 #: The same, above 0.
 TIME = Number(0.0, LONGEST, above=True)
 INTERVAL = Number(1e-6, LONGEST)
 
-#: Steps of rk4 times blocks, at most: an hour of work.
+#: Limit on the number of rk4 steps times the number of blocks: about an hour of work.
 MOST_STEPS = 1e10
 
-#: Lyapunov exponents of a run by default; one block has but two.
+#: Default number of Lyapunov exponents of a run; a single block has only two.
 DEFAULT_EXPONENTS = 3
 
-#: Step of rk4 times the fastest oscillation, at most: ⟨J⟩ of the paper's runs is then within 5e-4 of that of `series`.
+#: Limit on rk4's step times the highest frequency: ⟨J⟩ of the paper's runs then agrees with `series` within 5e-4.
 LONGEST_STEP = 0.25
 
 
 @settings
 @dataclass(frozen=True)
 class Settings:
-    """How a run begins, how it is computed, and what is kept of it; times in units of 1/ω.
+    """How a run starts, how it is integrated and what is recorded; times in units of 1/ω.
 
     Raises ValueError, one line, for anything out of range.
 
@@ -53,32 +53,32 @@ class Settings:
     batches: Annotated[
         int,
         Whole(2, 10_000),
-        "equal batches of the window for the standard error of <J>; each should last 1000 or more in chaos",
+        "equal batches of the window, for the standard error of <J>; each should last 1000 or more in chaotic motion",
     ] = 7
-    sampling: Annotated[float, INTERVAL, "interval of the samples of J"] = 5.0
+    sampling: Annotated[float, INTERVAL, "sampling interval of J"] = 5.0
     trajectory: Annotated[
-        float, DURATION, "length of the last part of the run of which positions and velocities are kept"
+        float, DURATION, "length of the final part of the run whose positions and velocities are recorded"
     ] = 30.0
-    trajectory_sampling: Annotated[float, INTERVAL, "interval of those positions and velocities"] = 0.05
+    trajectory_sampling: Annotated[float, INTERVAL, "sampling interval of these positions and velocities"] = 0.05
     events: Annotated[
         str,
         OneOf(EVENTS),
-        "window: all events, those of the last event_window with the states of all blocks | all: all with states | "
+        "window: all events, with the states of all blocks in the last event_window | all: all events with states | "
         "none: no events",
     ] = "window"
     event_window: Annotated[
-        float, DURATION, "length of the last part of the window whose events are kept with states"
+        float, DURATION, "length of the final part of the window whose events are recorded with states"
     ] = 1500.0
     section: Annotated[
-        Section, SectionRange(), "the Poincare section W = 0, of W = sum, of all x_i, or x_n of one block n: block=n"
+        Section, SectionRange(), "the Poincare section W = 0: sum, W is the sum of all x_i; block=n, W is x_n"
     ] = SUM
     lyapunov_exponents: Annotated[
         int,
         Whole(0, 2 * MAXIMUM_BLOCKS),
-        "Lyapunov exponents, the largest first, at most two a block; rk4 computes none",
+        "number of Lyapunov exponents, largest first, at most two a block; rk4 computes none",
     ] = DEFAULT_EXPONENTS
     lyapunov_alignment: Annotated[
-        float, DURATION, "time before the window in which perturbations turn into the directions that grow most"
+        float, DURATION, "time before the window in which perturbations align with the fastest-growing directions"
     ] = 1000.0
 
     def __post_init__(self) -> None:
@@ -91,7 +91,7 @@ class Settings:
                 raise refusal(key, getattr(self, key), "at most 1e7 samples in a run")
 
     def check_chain(self, chain: Chain) -> None:
-        """Raise ValueError if the settings do not fit a chain, or ask for more than can be done."""
+        """Raise ValueError if the settings do not fit the chain or exceed what a run can compute or hold."""
         blocks = chain.blocks
         if self.lyapunov_exponents > max(2 * blocks, DEFAULT_EXPONENTS):
             raise refusal("lyapunov_exponents", self.lyapunov_exponents, f"at most {2 * blocks}, two a block")
@@ -101,14 +101,14 @@ class Settings:
             raise refusal("step", self.step, f"at most {longest:.3g} in this chain: longer steps miss events")
         if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
             raise refusal("step", self.step, f"at most {MOST_STEPS / blocks:.3g} steps in transient and window")
-        # How many events there will be is not known: their tables have the same limit, and end a run that passes it.
+        # The number of events is not known beforehand. Their tables have the same limit; a run that reaches it ends.
         numbers = (2.0 * blocks + 1.0) * min(self.trajectory, self.duration) / self.trajectory_sampling
         if numbers > MOST_NUMBERS:
             allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
             raise refusal("trajectory_sampling", self.trajectory_sampling, allowed)
 
     def exponents_of(self, chain: Chain) -> int:
-        """Return how many Lyapunov exponents are computed."""
+        """Return the number of Lyapunov exponents that are computed."""
         return min(self.lyapunov_exponents, 2 * chain.blocks)
 
     @property

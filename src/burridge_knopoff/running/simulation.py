@@ -24,10 +24,10 @@ def run(
 ) -> Trajectory:
     """Run one simulation of a model and return its trajectory.
 
-    initial : where it begins; an instant is one in the middle of a motion, whatever `start` says, and times count on
-        from its own
-    section_only : whether ⟨J⟩, and what is least in friction and spring force, is left out (NaN): an eighth of the time
-    stops_only : whether only stops in the event window are kept, none of the other events: half of the memory
+    initial : initial state, or an instant of an earlier motion. From an instant the clock starts at its time, and
+        `start` is ignored
+    section_only : leave out ⟨J⟩ and the least friction and spring force (NaN), which takes an eighth of the time
+    stops_only : keep only the stops in the event window and no other events, which halves the memory
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
@@ -44,7 +44,7 @@ def run(
 
 
 def _prepare(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
-    """Return a solver that measures what the settings ask for, in a run that begins at a time."""
+    """Return a solver for a run that starts at a time, with the observers that the settings ask for."""
     duration = settings.duration
     end = time + duration
     edge = time + settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches

@@ -1,10 +1,10 @@
-"""How a run ended, in the numbers of the kernel, for all that reads results and needs no kernel."""
+"""How a run ended, in the numbers of the kernel; readers of results need no compiled kernel for it."""
 
 from enum import IntEnum
 
 
 class Status(IntEnum):
-    """HALTED at a stop of the block to halt at, FULL if it would keep too much; the others are in files."""
+    """HALTED: at a stop of the halting block. FULL: too much to keep. The others also occur in files."""
 
     HALTED = -2
     FULL = -1
@@ -14,8 +14,8 @@ class Status(IntEnum):
     DIVERGED = 3
 
 
-#: How runs end, in words, by the number in files.
+#: The words for the status numbers in files.
 ENDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}
 
-#: Of a command whose run did not complete, but whose results are written.
+#: Exit code of a command that wrote its results although its run did not complete.
 EXIT_CODE = 3

@@ -1,4 +1,4 @@
-"""What a run leaves: its observables, with errors, named as in the point files."""
+"""The result of a run: observables with errors, named as in the point files."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from burridge_knopoff.running.status import Status
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """What a run left: model, initial state, settings, status, and observables; arrays have the names of point files.
+    """Result of a run: model, initial state, settings, status, and observables; arrays have the names of point files.
 
-    `final` is the state at its end, from which `simulate(model, run.final)` continues: times count on, and both runs
-    together have the events and crossings of one long run, bit for bit. `initially_slipping` tells which blocks slip
-    at the beginning, before the first event: the slips of a block are these and its starts.
+    `final` is the state at the end. `simulate(model, run.final)` continues from it on the same clock, and both runs
+    together have the events and crossings of one long run, bit for bit. `initially_slipping` says which blocks slip at
+    the beginning, before the first event. The slips of a block are this one and those that begin at its starts.
 
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
     Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`,
     `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
     `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
-    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` one more dimension of batches
-    in front. docs/data.md has a line on each. Averages are NaN unless `status` is completed.
+    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` have batches as their first
+    dimension. docs/data.md describes each. Averages are NaN unless `status` is completed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
@@ -86,7 +86,7 @@ class Trajectory:
 def collect(
     model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: ChainState, status: Status
 ) -> Trajectory:
-    """Return what a run has left that began at an instant."""
+    """Return the trajectory of a run that started at an instant."""
     measured = runner.observer.results()
     n = model.blocks
     offset = model.sliding_offset
@@ -141,11 +141,12 @@ def collect(
 
 
 def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str, Any]:
-    """Return the Lyapunov exponents, their errors and their batch values; NaN where there are none.
+    """Return the Lyapunov exponents, their errors and their batch values; NaN for those not computed.
 
-    The standard error of the batches, which falls like the root of the window, is right for chaos. In regular motion
-    perturbations may grow like a power of time: from an alignment A through a window T one that grows linearly gains
-    ln(1 + T/(1 + A)), which in a run of that length looks like an exponent of that over T. Both go into the error.
+    For chaos the standard error of the batches is right; it falls as the square root of the window. In regular motion
+    a perturbation may grow as a power of time. If it grows linearly, then after an alignment A and over a window T it
+    gains ln(1 + T/(1 + A)), which a run of this length cannot tell from an exponent of that over T. The error includes
+    both.
     """
     count = settings.exponents_of(runner.model.chain)
     batch = np.full((settings.batches, count), np.nan)

@@ -1,1 +1,1 @@
-"""What is in a file of results: in a page of words, and as a picture."""
+"""Descriptions and pictures of files of results."""

@@ -1,4 +1,4 @@
-"""The attractors of one law at one a in a table."""
+"""A table of the attractors of one law at one a."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from burridge_knopoff.study.formatting import plain, with_error
 
 
 def called(found: xarray.Dataset, branch: int, side: int) -> str:
-    """Return what a branch is called, with + or - for the side of it where it has two."""
+    """Return the name of a branch, with + or - for its side if it has two."""
     return f"{branch_names(found)[branch]} {' +-'[side]}".rstrip()
 
 
 def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> list[str]:
     """Return the lines of a table of the attractors of one law and one a.
 
-    columns : {head: a text for each attractor} to be added
+    columns : {head: a text for each attractor}, appended to the table
     """
     rows = []
     for slot in np.flatnonzero(found["branch"].values[0, 0] >= 0):

@@ -1,4 +1,4 @@
-"""Numbers in words and in tables."""
+"""Formatting of values and tables for pages of text."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from textwrap import shorten
 import numpy as np
 import xarray
 
-#: Letters of a list of names, at most.
+#: Maximum length of a list of names, in letters.
 LONGEST = 70
-#: Numbers of a list, at most.
+#: Maximum length of a list of numbers.
 LISTED = 8
 
 
 def listed(values: Iterable[float]) -> str:
-    """Return numbers one after another, the middle ones left out if there are more than LISTED."""
+    """Return a list of numbers; if there are more than LISTED, those in the middle are left out."""
     words = [f"{value:g}" for value in np.atleast_1d(np.asarray(values))]
     return ", ".join(words if len(words) <= LISTED else [*words[: LISTED - 2], "...", words[-1]])
 
 
 def paragraph(rows: Iterable[tuple[str, str]]) -> list[str]:
-    """Return lines of a name and what is said of it, the latter below each other."""
+    """Return the lines of names with their descriptions in a column."""
     return table((), rows)
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Return the lines of a table whose columns are as wide as they need to be; an empty head is none."""
+    """Return the lines of a table with columns as wide as necessary; without a header line if `head` is empty."""
     cells = [head, *rows] if head else list(rows)
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
 
 
 def values_in_words(variable: xarray.DataArray) -> str:
-    """Return what the values of a variable are: how often each meaning of a flag stands there, or their range."""
+    """Summarize the values of a variable: the count of each flag meaning, or the range."""
     values = variable.values
     if not values.size:
         return "no values"

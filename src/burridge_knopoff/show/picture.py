@@ -1,4 +1,4 @@
-"""A file of results as a picture: J, section and velocities of a run; the figure of a summary."""
+"""A picture of a file of results: J, section and velocities of a run; the figure of a summary."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from burridge_knopoff.values import cut, shown
 
 FORMATS = (".png", ".pdf", ".svg")
 
-#: What a figure takes from the study, for a file that belongs to none.
+#: Arguments of figures taken from the study, for a file that belongs to none.
 WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 
 
 def check_format(path: str | Path) -> None:
-    """Raise ValueError, one line, if the name of a picture has no suffix that can be drawn."""
+    """Raise ValueError, one line, if the suffix of a picture's name is not a known format."""
     if Path(path).suffix not in FORMATS:
         raise ValueError(f"{cut(str(path), 200)}: got {shown(Path(path).suffix)}, expected {' | '.join(FORMATS)}")
 
 
 def write_picture(result: Result, path: str | Path) -> str:
-    """Draw a file of results into a picture, and return in a line what it shows.
+    """Draw a file of results as a picture, and describe the picture in a line.
 
-    Raises ValueError, one line, where no figure shows such a file, or one of those that it takes besides is not there.
+    Raises ValueError, one line, if no figure shows such a file, or if another file that the figure needs is missing.
     """
     if result.is_point:
         write_figure(draw_point(result.data), path)
@@ -44,14 +44,14 @@ def write_picture(result: Result, path: str | Path) -> str:
     try:
         drawn = module.draw(*inputs, **_from_study(result, figure))
     except (AttributeError, KeyError, IndexError, ValueError) as error:
-        # Made by other sources, or a part of a summary.
+        # Made by other sources, or only a part of a summary.
         raise ValueError(f"{result.path}: the figure {figure.name} cannot show it ({error})") from None
     write_figure(drawn, path)
     return f"{path}: {figure.title_of({})}. {figure.caption_of({})}"
 
 
 def _figure_of(result: Result) -> Description:
-    """Return the figure of a summary: the one of its name if there is one, else one that takes the fewest others."""
+    """Return the figure of a summary: the one with its name, else the one that needs the fewest other files."""
     figures = [
         figure
         for figure in figure_descriptions()
@@ -63,11 +63,11 @@ def _figure_of(result: Result) -> Description:
 
 
 def _beside(result: Result, name: str) -> xarray.Dataset:
-    """Return another summary that a figure takes, from the same folder."""
+    """Return another summary that a figure needs, from the same folder."""
     try:
         return open_result(result.path.with_name(f"{name}.nc")).data
     except ValueError as error:
-        raise ValueError(f"{result.path}: its figure takes {name}.nc besides: {error}") from None
+        raise ValueError(f"{result.path}: its figure also needs {name}.nc: {error}") from None
 
 
 def _from_study(result: Result, figure: Description) -> dict[str, Any]:
@@ -79,9 +79,9 @@ def _from_study(result: Result, figure: Description) -> dict[str, Any]:
 
 @styled
 def draw_point(point: xarray.Dataset) -> Figure:
-    """Draw J(τ), linear and logarithmic, W' at each upward section point against the one before, and velocities.
+    """Draw J(τ), linear and logarithmic, the return map of W' at upward crossings of the section, and velocities.
 
-    The linear panel leaves out the first relaxation.
+    The linear panel cuts off the initial relaxation.
     """
     figure, panels = new_figure(PAGE, 5.2, rows=2, columns=2, share_rows=False, share_columns=False)
     distance, time = point["distance"].values, point["time"].values

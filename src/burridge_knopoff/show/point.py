@@ -1,4 +1,4 @@
-"""A point file in a page of words."""
+"""A page of text about a point file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from burridge_knopoff.study.formatting import counted, plain, with_error
 
 
 def point_lines(result: Result) -> list[str]:
-    """Return what is in a point file, a line a thing."""
+    """Return a description of a point file, one line for each fact."""
     point, attributes = result.data, result.data.attrs
     head = f"{result.path}: a run from {attributes['initial']}, {attributes['law']} law, a = {point['a'].item()!r}"
     rows = [
@@ -109,7 +109,7 @@ def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
                 "stops and starts" if name == "event" else "",
                 f"{point.sizes[name]} {words}{_span(point[f'{name}_time'].values)}{stops}",
             )
-    # A run that ended early did not come to its last part.
+    # A run that ended early did not reach its last part.
     time = point["trajectory_time"].values[np.isfinite(point["velocity"].values).all(axis=1)]
     yield "trajectory", f"positions and velocities at {counted(len(time), 'time')}{_span(time)}"
 

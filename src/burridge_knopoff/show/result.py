@@ -1,4 +1,4 @@
-"""A file of results, opened whatever it is: a point, or a summary."""
+"""Opening a file of results, whether point or summary."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.recorded import check_result
 
-#: {variable that no other summary has: name of the summary}, where the module that made it does not tell.
+#: {variable that only one summary has: name of the summary}, for files whose source module does not tell.
 _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A file that this software has written, whole.
+    """An intact file written by this software.
 
-    study : folder of results that it lies in, or None; record : of that study, or nothing
+    study : folder of results that contains it, or None; record : of that study, or empty
     """
 
     path: Path
@@ -38,13 +38,13 @@ class Result:
 
     @property
     def name(self) -> str:
-        """Name of a summary, by which figures know it, whatever the file is called."""
+        """Name of a summary, by which figures identify it, whatever the name of the file."""
         known = (name for variable, name in _BY_CONTENT.items() if variable in self.data)
         return next(known, self.data.attrs["source_module"].rpartition(".")[2])
 
     @property
     def motion(self) -> MotionSettings:
-        """How kinds of motion are told: by its study, or by the defaults."""
+        """How kinds of motion are classified: as in its study, or by default."""
         config = self.record.get("config", {})
         if "motion" not in config:
             return MOTION
@@ -53,24 +53,24 @@ class Result:
 
     @property
     def made_by(self) -> str:
-        """What made the file, and whether the current sources are the same, in a line."""
+        """The software that made the file, and whether the current sources are the same, in a line."""
         attributes = self.data.attrs
         same = source_fingerprint(attributes["source_module"]) == attributes["source_fingerprint"]
         words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"
-        return words if same else f"{words} (other sources than those of now)"
+        return words if same else f"{words} (not the current sources)"
 
 
 def open_result(path: str | Path) -> Result:
-    """Return what is in a point file or a summary, of these sources or of others.
+    """Open a point file or a summary, made by these or other sources.
 
-    Raises ValueError, one line, if it is missing, damaged, of another program, or not what its study has there.
+    Raises ValueError, one line, if it is missing, damaged, from another program, or not the file expected in its study.
     """
     path = Path(path)
     study = study_folder(path)
     try:
         check_result(path)
     except BadFile as error:
-        # Only of these is it known what makes them again.
+        # Only the file of a study has a command that remakes it.
         if study and path.suffix == ".nc":
             raise
         hint = "" if path.suffix == ".nc" else " (shown are points and summaries, .nc)"

@@ -1,4 +1,4 @@
-"""A summary in a page of words."""
+"""A page of text about a summary."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from burridge_knopoff.show.attractors import attractor_table
 from burridge_knopoff.show.formatting import paragraph, table, values_in_words
 from burridge_knopoff.show.result import Result
 
-#: Global attributes that are said elsewhere on the page, or are the same in all files.
+#: Global attributes that the page shows elsewhere, or that are the same in all files.
 _ELSEWHERE = ("Conventions", "title", "history", "software", "source_module", "source_fingerprint")
 
 
 def summary_lines(result: Result) -> list[str]:
-    """Return what is in a summary: its question, over what, its numbers, and its digest where it has one."""
+    """Return a description of a summary: its question, dimensions, numbers, and its digest if it has one."""
     data = result.data
     lines = [f"{result.path}: {data.attrs.get('title', result.name)}", *_question(result.name), ""]
     lines += ["over", *paragraph((f"  {name}", text) for name, text in _dimensions(data)), ""]
@@ -37,19 +37,19 @@ def _described(variable: xarray.DataArray) -> tuple[str, str, str]:
 
 
 def digest(result: Result) -> str:
-    """Return what the module of a summary says of it in sentences; nothing if it says nothing of such a file."""
+    """Return the sentences that the module of a summary makes of its data; empty if it has none for this file."""
     if result.name == "attractors" and result.data.sizes.get("a") == result.data.sizes.get("law") == 1:
         return "\n".join(attractor_table(result.data, {}))
     try:
         module = import_module(result.data.attrs["source_module"])
         return module.digest(result.data)
     except (ImportError, AttributeError, KeyError, ValueError, IndexError):
-        # Of other sources, or a part of what the sentences are about.
+        # Made by other sources, or only a part of the summary.
         return ""
 
 
 def _question(name: str) -> Iterator[str]:
-    """Yield the first paragraph of what the module of a summary says that it is."""
+    """Yield the first paragraph of the docstring of a summary's module."""
     path = PACKAGE / "summaries" / f"{name}.py"
     if path.is_file():
         text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""

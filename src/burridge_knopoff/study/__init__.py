@@ -1,1 +1,1 @@
-"""A study: its config, and what follows from it."""
+"""Studies: a config, and everything derived from it."""

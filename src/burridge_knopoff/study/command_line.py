@@ -1,4 +1,4 @@
-"""What `snakemake --config` changes of a config: as Snakemake has read it, and as it is written."""
+"""Values that `snakemake --config` changes: from Snakemake's reading of them, and back to text."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from burridge_knopoff.study.yaml_file import plain_value
 
 
 def of_command_line(value: Any) -> Any:
-    """Return what Snakemake has read from --config as a config file would have it.
+    """Return a value that Snakemake has read from --config as a config file would have given it.
 
-    Snakemake reads `basins={pixels: 16}` as YAML whose numbers are texts. What stood in quotes cannot be told from
-    what did not.
+    Snakemake reads `basins={pixels: 16}` as YAML with texts for numbers. Quoted and unquoted values cannot be told
+    apart.
     """
     if isinstance(value, Mapping):
         return {key: of_command_line(item) for key, item in value.items()}
@@ -25,7 +25,7 @@ def of_command_line(value: Any) -> Any:
 
 
 def config_entries(overrides: Mapping[str, Any]) -> Iterable[str]:
-    """Yield entries for --config from which Snakemake reads these values."""
+    """Yield entries for --config that Snakemake reads as these values."""
     for key, value in overrides.items():
         text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
         yield f"{key}={'' if value is None else text}"

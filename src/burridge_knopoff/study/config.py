@@ -1,7 +1,7 @@
 """The config of a study: every key with its range, default and description.
 
-Most are the settings of the library under the same names; what stands here is what only a study has, and how the
-settings are put together. `CONFIG.form` gives a config its defaults or refuses it; rules.py holds its keys against each
+Most keys are settings of the library, under the same names. This module adds the keys that only a study has, and puts
+all of them together. `CONFIG.form` fills in the defaults or refuses a config; rules.py checks the keys against each
 other.
 """
 
@@ -30,12 +30,12 @@ from burridge_knopoff.values import joined
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
-#: Values from, from + step, … to; see `grid.values_of`.
+#: The values from, from + step, … to; see `grid.values_of`.
 STEPS = Keys(
     {
         "from": Field(A, "first value"),
         "to": Field(A, "last value"),
-        "step": Field(Number(0.0, 100.0, above=True), "distance of two values; it divides the range"),
+        "step": Field(Number(0.0, 100.0, above=True), "distance between values; it divides the range"),
     }
 )
 VALUES = Several(Either((A, STEPS)), 1)
@@ -45,7 +45,7 @@ STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first
 
 
 class LawKeys(Range):
-    """The description of a law: `law`, or `formula`, and numbers by any other names."""
+    """The description of a law: `law` or `formula`, and numbers under any other names."""
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping):
@@ -54,11 +54,11 @@ class LawKeys(Range):
         return {name: kinds.get(name, NUMBER).form(item, joined(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
-        return "law or formula, and numbers; {} for those of the law itself"
+        return "law or formula, and numbers; {} for a built-in law with its defaults"
 
 
 def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
-    """Return the settings of a class, without some and with others in the place of some."""
+    """Return the settings of a class, without those in `without` and with those in `other` replaced."""
     return {name: other.get(name, field) for name, field in fields_of(kind).items() if name not in without}
 
 
@@ -73,39 +73,39 @@ _SOLVER = OneOf(SOLVERS)
 AGREEMENT = {
     "relative_tolerance": Field(
         SHARE,
-        "a law agrees with the first one if its motion is of the same kind, periodic and quasiperiodic counting as "
-        "one, and <J> differs by at most this share of the larger one, or by at most synchronization_threshold",
+        "a law agrees with the first law if its motion is of the same kind (periodic and quasiperiodic count as one) "
+        "and <J> differs by at most this fraction of the larger value, or by at most synchronization_threshold",
         0.1,
     ),
     "standard_errors": Field(
-        ERRORS, "no verdict is given where the difference lies within this many standard errors of that tolerance", 3.0
+        ERRORS, "undecided if the difference lies within this many standard errors of that tolerance", 3.0
     ),
 }
 COMPARED = {
     "a": Field(
         replace(SOME_VALUES, least=1),
-        "values of the grid at which all other solvers that know a law simulate its points once more; by default those "
-        f"of {', '.join(map(str, PAPER_COMPARED))} that are in the grid, else figures.a",
+        "values of the grid whose points are simulated again with every other solver that can do the law; by default "
+        f"those of {', '.join(map(str, PAPER_COMPARED))} in the grid, else figures.a",
         FOLLOWS,
     ),
-    "step": replace(_SETTINGS["step"], description="step of rk4 there", default=0.0025),
+    "step": replace(_SETTINGS["step"], description="step of rk4 in this comparison", default=0.0025),
 }
 FIGURES = {
-    "a": Field(A, f"value of the grid that figures of single runs show; by default the nearest to {PAPER_A}", FOLLOWS),
-    "law": Field(Text(), "and their friction law; by default the first of the study", FOLLOWS),
+    "a": Field(A, f"value of the grid in figures of single runs; by default the one nearest to {PAPER_A}", FOLLOWS),
+    "law": Field(Text(), "friction law in figures of single runs; by default the study's first", FOLLOWS),
 }
 BASINS = {
     "a": Field(
         Named(Text(), SOME_VALUES),
-        "values of the grid with a map of basins, for each law; by default those that are in the grid of "
+        "values of the grid with a basin map, for each law; by default those in the grid of "
         + "; ".join(f"{law}: {', '.join(map(str, values))}" for law, values in PAPER_BASINS.items())
-        + "; all other laws: as the first of these",
+        + "; other laws: as the first of these",
         {},
     ),
     "pixels": fields_of(BasinSettings)["pixels"],
     "initial": Field(
         Text(),
-        "initial state that gives all other positions and velocities; by default the first of the study",
+        "initial state with the remaining positions and velocities of the plane; by default the study's first",
         FOLLOWS,
     ),
     **_part(BasinSettings, "pixels"),
@@ -113,23 +113,23 @@ BASINS = {
 PHASES = {
     "a": Field(
         SOME_VALUES,
-        "values of the grid at which states are drawn by the phases of their end blocks; by default, in the paper's "
-        f"chain, those of {', '.join(map(str, PAPER_PHASES))} that are in the grid",
+        "values of the grid at which initial states are drawn by the phases of their end blocks; by default, for the "
+        f"paper's chain, those of {', '.join(map(str, PAPER_PHASES))} in the grid",
         FOLLOWS,
     ),
     **_part(PhaseSettings),
 }
 TWO_BLOCKS = {
     "a": Field(
-        VALUES, "friction parameters at which two blocks are compared", [{"from": 0.01, "to": 0.4, "step": 0.01}]
+        VALUES, "friction parameters for the comparison of two blocks", [{"from": 0.01, "to": 0.4, "step": 0.01}]
     ),
-    "samples": Field(SAMPLES, "initial states from which they are compared", 8),
+    "samples": Field(SAMPLES, "number of initial states for the comparison of two blocks", 8),
 }
 CHAINS = {
     "blocks": Field(Several(Whole(2, 64), 1, distinct=True), "numbers of blocks", list(range(2, 11))),
     "a": Field(VALUES, "friction parameters", [0.005, {"from": 0.01, "to": 0.16, "step": 0.01}, 0.18, 0.2, 0.25, 0.3]),
     "laws": Field(
-        Several(Text(), 1, distinct=True), "friction laws, of those of the study; by default the first", FOLLOWS
+        Several(Text(), 1, distinct=True), "friction laws, a subset of the study's; by default the first", FOLLOWS
     ),
     "samples": _SAMPLE["samples"],
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
@@ -140,17 +140,17 @@ CHAINS = {
 
 CONFIG = Keys(
     {
-        "study": Field(STUDY_NAME, "its name, and the name of its folder under results/"),
-        "a": Field(VALUES, "the friction parameters, in any order; a range includes both ends, and step divides it"),
+        "study": Field(STUDY_NAME, "name of the study and of its folder in results/"),
+        "a": Field(VALUES, "friction parameters, in any order; a range includes both ends, and step divides it"),
         "a_digits": Field(Whole(1, 15), "decimals of a in file names", 4),
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
-            "named initial states, each with position U(0) and velocity U'(0), one number a block, for 1 to "
+            "initial states by name, each with position U(0) and velocity U'(0), one number a block, for 1 to "
             f"{MAXIMUM_BLOCKS} blocks; minus: {{}} and plus: {{}} are the paper's and need no numbers",
         ),
         "without": Field(
             Several(OneOf(tuple(OPTIONAL)), distinct=True),
-            "stages that are left out, and with them what takes their results",
+            "stages to leave out, together with the stages that use their results",
             [],
         ),
         "laws": Field(
@@ -162,7 +162,7 @@ CONFIG = Keys(
             Settings,
             solver=Field(
                 Either((_SOLVER, Named(LAW_NAME, _SOLVER))),
-                f"{_SETTINGS['solver'].description}; for all laws, or as {{linearized: map}} for some",
+                f"{_SETTINGS['solver'].description}; one for all laws, or {{linearized: map}} for some",
                 _SETTINGS["solver"].default,
             ),
             transient=replace(_SETTINGS["transient"], range=TIME),

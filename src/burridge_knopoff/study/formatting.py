@@ -1,4 +1,4 @@
-"""Words that messages and files share."""
+"""Formatting of numbers and words for messages and files."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 
     from burridge_knopoff.laws import Law
 
-#: Significant digits of a number without an error.
+#: Significant digits of a number without error.
 DIGITS = 6
-#: A number with this many digits or more has been cut to them; one with fewer is likely to be meant as it is.
+#: A number with at least this many digits is rounded; one with fewer is probably exact.
 STORED_DIGITS = 9
 
 MINUS = "\u2212"
 
 
 def text(value: Any) -> str:
-    """Return a number as text with DIGITS significant digits, anything else as it is; a dash if there is nothing."""
+    """Format a number with DIGITS significant digits; anything else as it is, and a dash for None or NaN."""
     if value is None:
         return "–"
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
@@ -35,10 +35,10 @@ def text(value: Any) -> str:
 
 
 def with_error(value: Any, error: Any = None) -> str:
-    """Return value ± error, the error with two significant digits and the value with as many decimals.
+    """Format value ± error with two significant digits of the error and as many decimals of the value.
 
-    An error of just three digits, half of a step of a grid, keeps them. A value that was stored with fewer digits than
-    its error asks for gets none that it does not have. Without an error, or with one that is 0, the value alone.
+    An error of exactly three digits, such as half a step of a grid, keeps all three. No decimals are added to a value
+    stored with fewer digits than its error asks for. Without an error, or if it is 0, the value alone.
     """
     numbers = [isinstance(item, int | float) and not isinstance(item, bool) for item in (value, error)]
     if not all(numbers) or not math.isfinite(value) or not math.isfinite(error) or error <= 0.0:
@@ -53,7 +53,7 @@ def with_error(value: Any, error: Any = None) -> str:
     elif decimals < 0:
         shown = f"{round(value, decimals):z.0f} ± {round(error, decimals):.0f}"
     else:
-        # Small numbers share the power of ten of the value.
+        # Small numbers: one power of ten for value and error.
         power = math.floor(math.log10(max(abs(value), error)))
         places = max(0, decimals + power)
         shown = f"({value / 10**power:z.{places}f} ± {error / 10**power:.{places}f})e{power}"
@@ -61,7 +61,7 @@ def with_error(value: Any, error: Any = None) -> str:
 
 
 def plain(shown: str) -> str:
-    """Return a number in the characters of every terminal."""
+    """Return a formatted number in ASCII."""
     return shown.replace(MINUS, "-").replace("±", "+-").replace("–", "nan").replace("∞", "infinity")
 
 
@@ -71,10 +71,10 @@ def counted(number: int, noun: str) -> str:
 
 
 def span(low: str, high: str) -> str:
-    """Return from where to where numbers reach, or the one that they all are as they are written."""
+    """Return `low to high`, or one of them if they read the same."""
     return low if low == high else f"{low} to {high}"
 
 
 def friction_words(laws: Iterable[Law]) -> str:
-    """Return how laws read, with their names and numbers."""
+    """Return laws with their names and numbers for a reader."""
     return "; ".join(f"{law.name}: {law.words}" for law in laws)

@@ -1,4 +1,4 @@
-"""Values of a: lists of numbers and ranges, and the names that they have in file names."""
+"""Values of a: lists of numbers and ranges, and their names in file names."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from typing import Any
 
 from burridge_knopoff.values import refusal
 
-#: Values of a list, and points of a study: Snakemake takes minutes to plan so many jobs.
+#: Limit on the values of a list and on the points of a study: planning so many jobs takes Snakemake minutes.
 MAXIMUM_POINTS = 100_000
 
 
 def grid_of(items: Sequence[Any], digits: int) -> dict[str, float]:
-    """Return {name: value}, ascending; every value the double nearest to its decimal.
+    """Return {name: value} in ascending order; every value is the double nearest to its decimal.
 
     items : the config's `a`; digits : its `a_digits`
-    Raises ValueError as `values_of` does, and for values that share a name.
+    Raises ValueError as `values_of` does, and for values with the same name.
     """
     grid: dict[str, float] = {}
     for value in values_of(items, "a"):
@@ -32,9 +32,9 @@ def grid_of(items: Sequence[Any], digits: int) -> dict[str, float]:
 
 
 def values_of(items: Sequence[Any], place: str) -> list[float]:
-    """Return the numbers and the values of the ranges in a list, ascending.
+    """Return the numbers and the values of the ranges in a list, in ascending order.
 
-    Raises ValueError, one line that begins with the place, if there are too many, or one twice.
+    Raises ValueError, one line that starts with the place, for too many values or a repeated one.
     """
     values: list[float] = []
     for position, item in enumerate(items):

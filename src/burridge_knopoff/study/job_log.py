@@ -1,4 +1,4 @@
-"""What a failed job said last, from its log."""
+"""The reason why a job failed, from its log."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ from pathlib import Path
 
 from burridge_knopoff.provenance.files import nearest_folder
 
-#: Of a log only its end is read.
+#: Only the end of a log is read.
 _TAIL = 20_000
 #: Longer reasons are cut.
 _LONGEST = 500
-# The calls of a traceback; what is not indented after them is the message, which may have several lines.
+# The calls of a traceback. The message is what follows without indentation; it may have several lines.
 _CALLS = re.compile(r"\A(?:[ \t].*\n?|\n)*")
-# The class of an error of ours says less than its line.
+# The class of our own errors adds nothing to the message.
 _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
 
 _TRACEBACK = "Traceback (most recent call last):\n"
 
-SILENT = "no error in its log: it was killed, or could not begin"
+SILENT = "no error in its log: it was killed, or could not start"
 FULL = "no error in its log: no space left on its disk"
-#: What `bk` says at Ctrl-C, after the name of its command.
+#: The message of `bk` after Ctrl-C, behind the name of its command.
 INTERRUPTED = "interrupted, nothing was written"
-#: Of a disk with fewer bytes left a log may have had no room.
+#: With fewer bytes left on the disk, there may have been no room for a log.
 ROOM = 1 << 16
 
-#: A line that tells of no failure: a note, or what calls have taken, which `running.processes` says of a long job.
+#: A line that reports no failure: a note, or the times of calls that `running.processes` logs in a long job.
 _NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s")
 
 
 def last_words(log: str | Path) -> str:
-    """Return in one line what a log says last: of a traceback the error, else its last line, if that tells of one."""
+    """Return, in one line, the error of the last traceback in a log, or its last line if that reports a failure."""
     try:
         text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
@@ -45,21 +45,21 @@ def last_words(log: str | Path) -> str:
 
 
 def interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
-    """Tell whether a job was ended by Ctrl-C.
+    """Tell whether Ctrl-C ended a job.
 
-    stopping : whether the run was: a job that it ended before its program had begun left no word
+    stopping : whether the run was interrupted, which leaves nothing in the log of a job that had not started
     """
-    # `bk` has a line for it, and scripts have a traceback, as `bk` has before it has read its command.
+    # `bk` writes a line. Scripts write a traceback, as does `bk` before it has read its command.
     said = [words for log in logs if (words := last_words(log))]
     return any(words.endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for words in said) or (stopping and not said)
 
 
 def failure(job: str, logs: Sequence[str | Path]) -> str:
-    """Return the line that tells of a failed job: the job, its reason, and where its log lies."""
+    """Return the line that reports a failed job: the job, the reason and the path of its log."""
     reason = next((words for log in logs if (words := last_words(log))), FULL if _is_full(logs) else SILENT)
     return f"failed: {job}: {reason} (log {', '.join(map(str, logs)) or 'none'})"
 
 
 def _is_full(logs: Sequence[str | Path]) -> bool:
-    """Tell whether a disk on which logs lie has no room for them."""
+    """Tell whether a disk that holds the logs is full."""
     return any(shutil.disk_usage(nearest_folder(Path(log).parent)).free < ROOM for log in logs)

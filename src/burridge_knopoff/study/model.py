@@ -9,7 +9,7 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 
-#: Keys of a config that decide a model, besides the number of blocks.
+#: Keys of a config that define a model, besides the number of blocks.
 MODEL_KEYS = ("laws", "chain", "v", "contact")
 
 

@@ -1,4 +1,4 @@
-"""Where the point files of a study lie below its results."""
+"""Where the point files of a study lie in its results."""
 
-#: Of the points, below `points`; of those of another solver, below `solvers/<solver>`.
+#: Path of a point, in the folder `points`, or `solvers/<solver>` for another solver.
 POINT = "{law}/{initial}/a{a}.nc"

@@ -1,4 +1,4 @@
-"""The study that a folder of results holds, by the record of its last run."""
+"""The study in a folder of results, from the record of its last run."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ _RUN = re.compile(r"(?:points|solvers/(?P<solver>\w+))/(?P<law>\w+)/(?P<initial>
 
 
 def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
-    """Return the record of a folder of results, and the study that it describes.
+    """Return the record in a folder of results and the study that it describes.
 
-    Raises ValueError, one line that names the record, if the folder holds no study, one of a version whose configs have
-    other keys, or a record that was changed by hand.
+    Raises ValueError, one line that names the record, if the folder has no study, if its config has the keys of another
+    version, or if the record was changed by hand.
     """
     record, path = read_study_record(results), Path(results, NAME)
     if key := _other_key(record["config"], CONFIG):
         raise ValueError(f"{path}: not a study of this version ({key}); run snakemake again")
-    # A config with all defaults is its own; but a default may be what is refused to those who ask for it.
+    # The form of a complete config is the config itself. A default may however be refused if it is given explicitly.
     asked = {name: value for name, value in record["config"].items() if value != CONFIG.fields[name].default}
     study = load_study(asked, str(path))
     if (study.config, study.grid) != (record["config"], record["grid"]):
@@ -36,20 +36,20 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
 
 
 def check_result(path: Path) -> None:
-    """Check that a file is whole and, in a study, the one that should be there; other sources may have made it.
+    """Check that a file is intact and, in a study, that it is the expected result; other sources may have made it.
 
     Raises BadFile as `check_seal` does.
     """
     about, folder = None, study_folder(path)
     if folder and (run := _RUN.fullmatch(path.absolute().relative_to(folder).as_posix())):
-        # Of what is no run of the study, or of another version, it is not known what it should be.
+        # For a file outside a run of the study, or of another version, the expected content is not known.
         with contextlib.suppress(ValueError, KeyError):
             about = point_about(recorded_study(folder)[1].command(**run.groupdict()))
     check_seal(path, about, any_sources=True)
 
 
 def _other_key(config: Any, keys: Keys, place: str = "") -> str:
-    """Return a key that only one of a config with all defaults and this version has; nothing if they have the same."""
+    """Return a key that a complete config has and this version lacks, or the reverse; empty if there is none."""
     if not isinstance(config, dict):
         return place
     sections = {name: field.range for name, field in keys.fields.items() if isinstance(field.range, Keys)}

@@ -1,6 +1,6 @@
-"""Rules of a config that no single key states: keys that must fit each other, and defaults that follow from others.
+"""Rules between the keys of a config: keys that must fit each other, and defaults derived from other keys.
 
-Every function raises ValueError for what breaks a rule: `key: got X, expected Y`.
+Every function raises ValueError, `key: got X, expected Y`, if a rule is broken.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 from burridge_knopoff.values import MOST_NUMBERS, refusal
 
-#: States that are labelled at once for each pair of near states: basins/pair_separation.py.
+#: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
 
 
 @contextmanager
 def under(place: str) -> Iterator[None]:
-    """Put a place before the message of a ValueError that is raised inside."""
+    """Prefix the message of a ValueError raised inside with a place."""
     try:
         yield
     except ValueError as error:
@@ -38,7 +38,7 @@ def under(place: str) -> Iterator[None]:
 
 
 def fill_states(config: Mapping[str, Any]) -> None:
-    """Fill in the numbers of the initial states that are known by name; all states have the same number of blocks."""
+    """Fill in the numbers of the paper's initial states; require the same number of blocks in all states."""
     states = config["initial"]
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
@@ -55,7 +55,7 @@ def fill_states(config: Mapping[str, Any]) -> None:
 
 
 def fill_names(config: dict[str, Any]) -> None:
-    """Check the names of laws and states that other keys hold, and fill in what they hold where they have none."""
+    """Check the names of laws and states in other keys, and fill in the default names."""
     laws, state, solver = config["laws"], next(iter(config["initial"])), config["solver"]
     for name, description in laws.items():
         kind = description.get("law", name)
@@ -71,12 +71,12 @@ def fill_names(config: dict[str, Any]) -> None:
 
 
 def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
-    """Return the range of what is given by law, with what is usual for each of them."""
+    """Return a range with one entry for each law, and the usual value of each as its default."""
     return Keys({law: Field(allowed, "", value) for law, value in usual.items()})
 
 
 def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) -> None:
-    """Check the chain, each law at every a that it is wanted at, its solver, and that every initial state can begin."""
+    """Check the chain, every law at every a where it is used, its solver, and that every initial state can start."""
     chain, laws = Chain(blocks, **config["chain"]), config["laws"]
     for name, solver in config["solver"].items():
         tapes = []
@@ -92,7 +92,7 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) 
             raise refusal(
                 f"laws.{name}.formula",
                 laws[name].get("formula"),
-                "a formula on which a has an effect, or one value of a",
+                "a formula that depends on a, or a single value of a",
             )
     chains = config["chains"]
     for key, section, names in (("chains", chains, chains["laws"]), ("chains.two_blocks", chains["two_blocks"], laws)):
@@ -106,16 +106,16 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) 
 
 
 def _reason(model: Model) -> str:
-    """Return why the motion of a model has no closed form."""
+    """Return the reason why the motion of a model has no closed form."""
     if not model.law.is_linear:
-        return "its friction is no straight line"
+        return "as its friction is not linear in the speed"
     if not model.chain.is_uniform:
-        return "the chain has open ends and one number each for coupling, pulling and threshold if there is one"
-    return f"a slope steeper than {model.chain.damping_limit:g} does not let the blocks oscillate"
+        return "which needs open ends and a single number each for coupling, pulling and threshold"
+    return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 
 def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown: float) -> None:
-    """Check the values of a of all sections against the grid, and fill them in; `shown` is that of single runs."""
+    """Check the values of a in all sections against the grid and fill in defaults; `shown` is that of single runs."""
     chain = Chain(blocks, **config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
@@ -142,14 +142,14 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
 
 
 def fill_chains(config: Mapping[str, Any]) -> None:
-    """Turn the lists of a of longer chains into numbers."""
+    """Convert the lists of a of longer chains to numbers."""
     chains = config["chains"]
     chains["a"] = values_of(chains["a"], "chains.a")
     chains["two_blocks"]["a"] = values_of(chains["two_blocks"]["a"], "chains.two_blocks.a")
 
 
 def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
-    """Take away the values of a of stages that are left out."""
+    """Clear the values of a of stages that are left out."""
     for name in {"solvers", "phases"} & set(stages):
         config[name]["a"] = []
     if "basins" in stages:
@@ -157,9 +157,9 @@ def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
 
 
 def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
-    """Check that a study has no more jobs than Snakemake can plan, and that none of them has too much to hold.
+    """Check that Snakemake can plan the jobs of a study and that no job holds too many numbers.
 
-    config : with all defaults; values : number of those of a
+    config : with all defaults; values : number of values of a
     """
     states, laws = config["initial"], config["laws"]
     points = len(laws) * len(states) * values
@@ -185,6 +185,6 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
     ):
         if numbers > MOST_NUMBERS:
             value = reduce(getitem, key.split("."), config)
-            raise refusal(key, value, f"at most {MOST_NUMBERS:.0e} numbers held by a job, which would be {numbers:.1e}")
+            raise refusal(key, value, f"at most {MOST_NUMBERS:.0e} numbers held by a job, not {numbers:.1e}")
     if maps * basins["tiles"] > MAXIMUM_POINTS:
         raise refusal("basins.tiles", basins["tiles"], f"at most {MAXIMUM_POINTS} tiles in {maps} maps")

@@ -1,6 +1,6 @@
-"""Stages that not every study has, and the summaries that each of them makes."""
+"""Optional stages of a study, and the summaries that each makes."""
 
-#: {stage that can be left out: the stage whose results it takes, or nothing}
+#: {optional stage: the stage whose results it uses, or empty}
 OPTIONAL = {
     "attractors": "",
     "bifurcations": "attractors",
@@ -12,14 +12,14 @@ OPTIONAL = {
     "claims": "",
 }
 
-#: Summaries of a stage, if they are not the one that has its name.
+#: Summaries of a stage, unless it makes one summary of its own name.
 SUMMARIES = {"attractors": ("attractors", "refined", "rotation"), "claims": ()}
 
-#: Summaries of longer chains, which have a target of their own.
+#: Summaries of longer chains, which have their own target.
 CHAIN_SUMMARIES = ("chains", "two_blocks")
 
-#: What a summary has beside its netCDF file, by suffix.
+#: Suffixes of the text files that come with the netCDF file of a summary.
 TEXTS = {"agreement": ("csv", "txt"), **dict.fromkeys(("attractors", "basins", "bifurcations", "proof"), ("txt",))}
 
-#: All summaries that not every study has.
+#: All summaries of optional stages and of longer chains.
 OPTIONAL_SUMMARIES = {name for stage in OPTIONAL for name in SUMMARIES.get(stage, (stage,))} | {*CHAIN_SUMMARIES}

@@ -1,4 +1,4 @@
-"""A study: its config with all defaults, its grid, and what both say about its runs."""
+"""A study: its complete config, its grid, and the runs that follow from both."""
 
 from __future__ import annotations
 
@@ -55,22 +55,22 @@ class Study:
 
     @property
     def shown_point(self) -> str:
-        """Name of the value of a that the figures of single runs show."""
+        """Name of the value of a in the figures of single runs."""
         shown = self.config["figures"].get("a", PAPER_A)
         return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
 
     @property
     def shown_a(self) -> float:
-        """The value of a that the figures of single runs show."""
+        """The value of a in the figures of single runs."""
         return self.grid[self.shown_point]
 
     @property
     def shown_law(self) -> str:
-        """The law that the figures of single runs show."""
+        """The law in the figures of single runs."""
         return self.config["figures"]["law"]
 
     def shown_runs(self, wildcards: Mapping[str, str]) -> dict[str, Any]:
-        """Return `points` of the runs that figures of single runs show, of one initial state if a wildcard names it."""
+        """Return `points` for the figures of single runs; for one initial state if a wildcard names it."""
         points, law = self.points, self.shown_law
         initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
         only = {key: {law: points[key][law]} for key in ("laws", "settings")}
@@ -78,17 +78,17 @@ class Study:
 
     @property
     def law_descriptions(self) -> dict[str, dict[str, Any]]:
-        """The laws as the config describes them, by name."""
+        """The laws by name, as the config describes them."""
         return self.config["laws"]
 
     @property
     def chain_description(self) -> dict[str, Any]:
-        """The chain as `Chain` takes it."""
+        """The chain as arguments of `Chain`."""
         return {"blocks": self.blocks, **self.config["chain"]}
 
     @property
     def has_several_laws(self) -> bool:
-        """Whether there is a law to compare with the first one."""
+        """Whether there is a second law to compare with the first."""
         return len(self.laws) > 1
 
     @property
@@ -98,23 +98,23 @@ class Study:
 
     @property
     def has_synchronized_orbit(self) -> bool:
-        """Whether there is a summary of the synchronized orbit, that of three blocks."""
+        """Whether there is a summary of the synchronized orbit, which is that of three blocks."""
         return self.blocks == 3 and self.is_mirror_symmetric
 
     @property
     def proved_laws(self) -> list[str]:
-        """The laws under which the synchronized orbit and its loss are proved."""
+        """The laws for which the synchronized orbit and its loss are proved."""
         return [law for law in self.laws if is_covered(self.model(law, self.shown_a))]
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Stages that the config leaves out, and those that take their results."""
+        """Stages that the config leaves out, together with the stages that use their results."""
         without = self.config["without"]
         return tuple(stage for stage, needed in stages.OPTIONAL.items() if stage in without or needed in without)
 
     @property
     def stages(self) -> tuple[str, ...]:
-        """Stages of the study, of those that not every study has."""
+        """Optional stages that the study has."""
         there = {
             "basins": self.basin_maps,
             "phases": self.config["phases"]["a"],
@@ -125,33 +125,33 @@ class Study:
 
     @property
     def stage_summaries(self) -> tuple[str, ...]:
-        """Names of the netCDF summaries that these stages make."""
+        """Names of the netCDF summaries made by these stages."""
         return tuple(name for stage in self.stages for name in stages.SUMMARIES.get(stage, (stage,)))
 
     @property
     def chain_summaries(self) -> tuple[str, ...]:
-        """Names of the netCDF summaries of longer chains, whether they are asked for or not."""
+        """Names of the netCDF summaries of longer chains, whether or not they are requested."""
         return () if self.single_length_key else stages.CHAIN_SUMMARIES
 
     @property
     def absent_summaries(self) -> set[str]:
-        """Names of the netCDF summaries that only other studies have."""
+        """Names of the netCDF summaries that this study does not have."""
         return stages.OPTIONAL_SUMMARIES - {*self.stage_summaries, *self.chain_summaries}
 
     @property
     def basin_maps(self) -> list[tuple[str, str]]:
-        """Law and name of a of every map of basins."""
+        """Law and name of a for every basin map."""
         names = {value: name for name, value in self.grid.items()}
         return [(law, names[a]) for law, values in self.config["basins"]["a"].items() for a in values]
 
     @property
     def single_length_key(self) -> str:
-        """Key of the chain that has a number for each spring or block: there is no other length then. Else empty."""
+        """Key of the chain with a number for each spring or block, which fixes the chain's length; empty if none."""
         return next((key for key, value in self.config["chain"].items() if isinstance(value, list)), "")
 
     @property
     def marked_states(self) -> dict[str, tuple[float, float]]:
-        """U_1(0) and U_N(0) of the initial states that lie in the plane of the maps of basins, by name."""
+        """U_1(0) and U_N(0) of the initial states in the plane of the basin maps, by name."""
         states = self.config["initial"]
         plane = states[self.config["basins"]["initial"]]
         return {
@@ -161,11 +161,11 @@ class Study:
         }
 
     def model(self, law: str, a: float) -> Model:
-        """Return the model of the study under one of its laws, at one a."""
+        """Return the model of the study for one of its laws at one a."""
         return model_of(self.config, law, a, self.blocks)
 
     def other_solvers(self, law: str) -> list[str]:
-        """Return the solvers that know a law where they are compared, without the one that makes the points."""
+        """Return the other solvers that can do a law at the compared values, besides the one that makes the points."""
         others = [solver for solver in SOLVERS if solver != self.config["solver"][law]]
         if "map" in others and not all(self.model(law, a).has_closed_form for a in self.config["solvers"]["a"]):
             others.remove("map")
@@ -173,11 +173,11 @@ class Study:
 
     @property
     def compared(self) -> dict[str, float]:
-        """The values of a at which the solvers are compared, by their names in file names."""
+        """The values of a at which solvers are compared, by their names in file names."""
         return {name: value for name, value in self.grid.items() if value in self.config["solvers"]["a"]}
 
     def value(self, a: str) -> float:
-        """Return the value of a by its name in file names; raises ConfigError if it is not in the grid."""
+        """Return a value of a from its name in file names; raises ConfigError if it is not in the grid."""
         if a not in self.grid:
             meant = next((name for name, value in self.grid.items() if value == float(a)), "")
             reason = f"the name of this a is a{meant}" if meant else "a is not in its grid"
@@ -185,10 +185,10 @@ class Study:
         return self.grid[a]
 
     def settings(self, law: str, solver: str | None = None) -> Settings:
-        """Return the settings of the runs under a law.
+        """Return the settings of the runs with a law.
 
-        solver : another one than that of the study's points
-        Raises ConfigError if it is not another one that knows the law.
+        solver : a solver other than that of the study's points
+        Raises ConfigError if it is not one of `other_solvers`.
         """
         config = {**self.config, "solver": solver or self.config["solver"][law]}
         if solver is not None:
@@ -199,25 +199,25 @@ class Study:
             if solver == "rk4":
                 config["lyapunov_exponents"] = 0
         if config["solver"] != "rk4":
-            # It is no setting of another solver, whose points it must not remake.
+            # The other solvers have no step: a change of it must not rerun their points.
             del config["step"]
         return _settings_of(Settings, config)
 
     def state(self, initial: str) -> InitialState:
-        """Return an initial state of the study by its name."""
+        """Return an initial state of the study from its name."""
         return InitialState(initial, **self.config["initial"][initial])
 
     def command(self, law: str, initial: str, a: str, solver: str | None = None) -> str:
-        """Return the `bk simulate` command of one grid point, named by its wildcards, without its --out.
+        """Return the `bk simulate` command of a grid point given by its wildcards, without --out.
 
-        solver : another one than that of the study's points
-        Raises ConfigError if a is not a value of the grid, or the solver not another one that knows the law.
+        solver : a solver other than that of the study's points
+        Raises ConfigError if a is not in the grid, or the solver is not one of `other_solvers`.
         """
         return simulate_command(self.model(law, self.value(a)), self.state(initial), self.settings(law, solver))
 
     @property
     def points(self) -> dict[str, Any]:
-        """What decides the point files, in the types of a config: `initial`, `a`, `settings` of each law, models."""
+        """Everything that decides the point files, in the types of a config."""
         return {
             **{key: self.config[key] for key in MODEL_KEYS},
             "initial": {name: dict(state) for name, state in self.config["initial"].items()},
@@ -227,11 +227,11 @@ class Study:
 
 
 def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] | None = None) -> Study:
-    """Give a config its defaults, and hold it against its ranges and against the rules between its keys.
+    """Complete a config with its defaults, and check it against its ranges and the rules between its keys.
 
     file : name of the config file, for messages
-    written : what that file holds, if the command line changes it: a fault that the file has not is that of --config
-    Raises ConfigError, one line: file, key, value, what is allowed.
+    written : content of the file if the command line changes it; errors that this content lacks are blamed on --config
+    Raises ConfigError, one line: file, key, value, expected values.
     """
     try:
         return _study(config)
@@ -249,9 +249,9 @@ def _fault(config: Mapping[str, Any]) -> str:
 
 
 def _study(config: Mapping[str, Any]) -> Study:
-    # In the types of YAML, lists for tuples.
+    # Use the types of YAML: lists instead of tuples.
     filled = json.loads(json.dumps(CONFIG.form(config, "")))
-    # Of the ranges in it only the record of the study tells.
+    # Keep the ranges of a as the user wrote them; `grid` has the values.
     filled["a"] = config["a"]
     grid = grid_of(filled["a"], filled["a_digits"])
     values = list(grid.values())
@@ -265,7 +265,7 @@ def _study(config: Mapping[str, Any]) -> Study:
     chain = study.model(study.laws[0], values[0]).chain
     for law in study.laws:
         study.settings(law).check_chain(chain)
-    # The default asks for three, of which one block has two.
+    # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
     with rules.under("basins."):
         _settings_of(BasinSettings, filled["basins"])
@@ -282,19 +282,19 @@ def _study(config: Mapping[str, Any]) -> Study:
 
 
 def _settings_of(kind: type[_T], config: Mapping[str, Any]) -> _T:
-    """Return the settings of a class that a config has under the same names."""
+    """Return settings of a class from the keys of the same names in a config."""
     return kind(**{name: config[name] for name in fields_of(kind) if name in config})
 
 
 def all_points(study: Study) -> list[dict[str, str]]:
-    """Return the wildcards of every point job, arguments of `Study.command`, in the order of the summaries."""
+    """Return the wildcards of every point, the arguments of `Study.command`, in the order of the summaries."""
     return [
         {"law": law, "initial": initial, "a": a} for law in study.laws for initial in study.initial for a in study.grid
     ]
 
 
 def solver_points(study: Study) -> list[dict[str, str]]:
-    """Return the same of every point that another solver makes once more."""
+    """Return the wildcards of every point that another solver repeats."""
     points = [point for point in all_points(study) if point["a"] in study.compared]
     return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]
 

@@ -1,4 +1,4 @@
-"""Reading a YAML file of ours: whole and plain, or refused with one line."""
+"""Reading YAML files: strictly, with a one-line error."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from burridge_knopoff.values import joined
 _TAG = "tag:yaml.org,2002:"
 
 
-#: Values of a file: a few aliases of aliases would make a file of 500 bytes fill any memory.
+#: Limit on the values of a file: with aliases of aliases, a file of 500 bytes could fill any memory.
 MOST_VALUES = 10_000_000
 
 
 class ConfigError(ValueError):
-    """A config that is not allowed; the message is one line: file, key, value, what is allowed."""
+    """A config that is refused; the message is one line: file, key, value, expected values."""
 
 
 class _Loader(yaml.SafeLoader):
-    """Numbers are decimals, and the keys of a mapping different texts.
+    """A loader with decimal numbers, and mappings whose keys are distinct texts.
 
-    YAML takes 1e-6 for text, and 010 for eight, 1:30 for ninety and 1_0 for ten: the first is a number here, these are
+    YAML reads 1e-6 as text, 010 as eight, 1:30 as ninety and 1_0 as ten. Here the first is a number and the others are
     texts.
     """
 
@@ -54,9 +54,9 @@ _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("
 
 
 def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:
-    """Return how many values a part of a file has with its aliases written out; known : of the parts before."""
+    """Return the number of values in a node with its aliases expanded; known : of nodes visited before."""
     if node not in known:
-        # Until it is known otherwise it is a part of itself.
+        # Infinite until counted, in case the node contains itself.
         known[node] = math.inf
         inside = node.value if isinstance(node, yaml.CollectionNode) else ()
         parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
@@ -65,18 +65,18 @@ def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:
 
 
 def plain_value(text: str) -> Any:
-    """Return what a text stands for that is written without quotes: a number, true, false, null, or the text."""
+    """Return the value of a text written without quotes: a number, true, false, null, or the text itself."""
     loader = _Loader("")
     tag = loader.resolve(yaml.ScalarNode, text, (True, False))
     try:
         return loader.construct_object(yaml.ScalarNode(tag, text))
-    # A date that is none, as for `read_yaml`.
+    # An invalid date, as in `read_yaml`.
     except (ValueError, yaml.YAMLError):
         return text
 
 
 def read_config(path: str | Path) -> dict[str, Any]:
-    """Return the content of the config file of a study, not yet validated; raises ConfigError as `read_yaml` does."""
+    """Return the content of a study's config file, not validated; raises ConfigError as `read_yaml` does."""
     content = read_yaml(path)
     if not isinstance(content, dict):
         found = "nothing" if content is None else joined("", content)
@@ -87,7 +87,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
 def read_yaml(path: str | Path) -> Any:
     """Return the content of a YAML file.
 
-    Raises ConfigError, one line, if it cannot be read, or a key stands twice in one place or is not text.
+    Raises ConfigError, one line, if the file cannot be read, or if a mapping has a repeated key or one that is no text.
     """
     try:
         if Path(path).exists() and not Path(path).is_file():
@@ -103,7 +103,7 @@ def read_yaml(path: str | Path) -> Any:
         reason = f"cannot be read: {error.strerror or error}"
     except UnicodeDecodeError:
         reason = "cannot be read: not UTF-8 text"
-    # PyYAML also raises what Python does, as for a date that is none.
+    # PyYAML also raises Python's own errors, for example for an invalid date.
     except Exception as error:
         mark = getattr(error, "problem_mark", None)
         problem = " ".join(str(getattr(error, "problem", None) or error).split())[:120]
