@@ -28,8 +28,12 @@ transient: 100
 window: 200
 batches: 4
 attractors: {samples: 4, fraction_width: 0.33, lifetime: 1000, transient: 100, window: 100, time_limit: 1000,
-perturbations: 4} refine: {resolution: 1} basins: {pixels: 4, pairs: 4, tiles: 1} phases: {a: [0.05], amplitude: [0.03],
-phase_difference: [20, 180], samples: 1} solvers: {a: [0.2], step: 0.01} chains: {two_blocks: {a: [0.02], samples: 2}}
+  perturbations: 4}
+refine: {resolution: 1}
+basins: {pixels: 4, pairs: 4, tiles: 1}
+phases: {a: [0.05], amplitude: [0.03], phase_difference: [20, 180], samples: 1}
+solvers: {a: [0.2], step: 0.01}
+chains: {two_blocks: {a: [0.02], samples: 2}}
 """
 
 COMPILE = """

@@ -162,8 +162,6 @@ def test_branches_have_names_that_say_what_they_are():
 
 def test_one_value_of_a_has_slots_as_well():
     found = continuation("linearized")
-    lists = ("models", "attractors", "lifetimes", "branch", "side")
-    alone = replace(found, **{name: getattr(found, name)[:1] for name in lists})
-    values = slot_values(alone, [0], 1e5, "a")
+    values = slot_values(found.models[:1], [found.rows(0)], 1e5, "a")
     assert values["stop_rate"].shape == (1, 2, 3)
     assert values["branch"].tolist() == [[0, 1]]

@@ -22,9 +22,12 @@ transient: 100
 window: 200
 batches: 4
 attractors: {samples: 6, fraction_width: 0.3, lifetime: 1000, transient: 500, window: 500, time_limit: 5000,
-perturbations: 4} refine: {resolution: 1} basins: {pixels: 8, pairs: 20} phases: {a: [0.05, 0.08], amplitude: [0.03,
-0.3], phase_difference: [20, 180], inner_share: [0, 0.2], samples: 3} solvers: {a: [0.2], step: 0.01} chains:
-{two_blocks: {a: [0.02, 0.15], samples: 2}}
+  perturbations: 4}
+refine: {resolution: 1}
+basins: {pixels: 8, pairs: 20}
+phases: {a: [0.05, 0.08], amplitude: [0.03, 0.3], phase_difference: [20, 180], inner_share: [0, 0.2], samples: 3}
+solvers: {a: [0.2], step: 0.01}
+chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 """
 
 #: With points that do not complete: at a = 2.5 the linearized law drives blocks to any speed. Small, and without stages
@@ -38,8 +41,12 @@ window: 60
 batches: 2
 lyapunov_alignment: 10
 attractors: {samples: 2, fraction_width: 0.4, lifetime: 1000, transient: 300, window: 300, time_limit: 1000,
-perturbations: 4} refine: {resolution: 1} basins: {a: {linearized: [], nonlinear: [0.05]}, pixels: 2, pairs: 2, tiles:
-1} solvers: {a: [2.5], step: 0.01} chains: {two_blocks: {a: [0.02], samples: 1}} without: [proof, bifurcations, phases]
+  perturbations: 4}
+refine: {resolution: 1}
+basins: {a: {linearized: [], nonlinear: [0.05]}, pixels: 2, pairs: 2, tiles: 1}
+solvers: {a: [2.5], step: 0.01}
+chains: {two_blocks: {a: [0.02], samples: 1}}
+without: [proof, bifurcations, phases]
 """
 
 
