@@ -18,15 +18,14 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.attractors.lifetime import Lifetime, lifetimes
+from burridge_knopoff.attractors.lifetime import EXPOSURE, Lifetime, lifetimes
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import known_attractors
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.motion.tuning import TUNING
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 
-LONGER = replace(TUNING, exposure=10.0 * TUNING.exposure)
+LONGER = 10.0 * EXPOSURE
 CHAOTIC = (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS)
 
 

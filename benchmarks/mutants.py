@@ -38,15 +38,29 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/burridge_knopoff")
 PYTHON = ROOT / ".venv/bin/python"
 LEFT_OUT = (".git", ".snakemake", "results", "build", "fuzzed", ".venv*", "__pycache__", ".*_cache")
-ROOMS = ("summaries", "stability", "periodic_orbits", "claims", "dataset", "model", "laws", "running", "kernel")
+ROOMS = (
+    "summaries",
+    "continuation",
+    "basins",
+    "attractors",
+    "motion",
+    "periodic_orbits",
+    "claims",
+    "dataset",
+    "model",
+    "laws",
+    "running",
+    "kernel",
+)
 
 #: What else meets a change in a room, quick tests first. Whether builds agree is no question to a changed source.
 TESTS = {
-    "model": ("study", "running", "periodic_orbits", "stability"),
-    "periodic_orbits": ("stability", "summaries/test_bifurcations.py"),
+    "model": ("study", "running", "periodic_orbits", "attractors"),
+    "periodic_orbits": ("motion", "continuation", "summaries/test_bifurcations.py"),
     "laws": ("model", "running/test_simulation.py"),
     "dataset": ("library/test_open_study.py",),
-    "stability": ("study/test_keys.py", "dataset/test_numbers.py"),
+    "motion": ("attractors", "study/test_keys.py", "dataset/test_numbers.py"),
+    "attractors": ("continuation", "basins"),
     "running": ("dataset", "kernel/test_exponents.py", "study/test_keys.py"),
     "kernel": ("attractors/test_ensemble.py", "laws", "running", "periodic_orbits/test_synchronized.py"),
 }

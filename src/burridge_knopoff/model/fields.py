@@ -59,10 +59,16 @@ class Keys(Range):
         return f"{{{', '.join(self.fields)}}}{self.words}"
 
 
+#: Keys of earlier configs, and what they are called now.
+RENAMED = {"fraction_samples": "fraction_width", "pushes": "perturbations"}
+
+
 def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
-    """Return the error for an unknown key, with its place, the closest known key and all known keys."""
-    meant = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
-    hint = f" (did you mean {meant[0]}?)" if meant else ""
+    """Return the error for an unknown key: its place, its new name or the closest known key, and all known keys."""
+    near = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
+    hint = f" (did you mean {near[0]}?)" if near else ""
+    if RENAMED.get(name) in allowed:
+        hint = f" (it is called {RENAMED[name]} now)"
     return ValueError(f"{joined(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
 
 
