@@ -44,7 +44,7 @@ rule watch_chain:
                 )
             },
         },
-        threshold=STUDY.config["synchronization_threshold"],
+        motion=keys(STUDY, "synchronization_threshold"),
         sources=sources("watch_chain"),
         seals=seals,
     message:

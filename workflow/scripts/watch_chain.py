@@ -11,6 +11,6 @@ from burridge_knopoff.summaries.chains import chain_dataset
 
 params, blocks = snakemake.params, int(snakemake.wildcards.blocks)
 models = [model_of(params.model, law, params.grid[0], blocks) for law in params.model["laws"]]
-watch = Watch(**params.watch, pair_distance=params.threshold)
+watch = Watch(**params.watch, **params.motion)
 dataset = chain_dataset(models, params.grid, Sample(**params.sample), watch)
 write_summary(dataset, *next(iter(params.seals.items())))

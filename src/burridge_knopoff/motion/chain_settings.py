@@ -82,7 +82,7 @@ class Watch:
         Number(1e-14, 1e-3),
         "mirror distance at which a motion has synchronized, if its transverse exponent is negative",
     ] = 1e-12
-    pair_distance: Annotated[
+    synchronization_threshold: Annotated[
         float,
         TOLERANCE,
         "a pair of a motion that is not synchronized counts as synchronized below this; below v = 0.1 it scales with v",

@@ -68,7 +68,7 @@ class Fate:
     time : when the synchronization distance was reached, NaN if it was not
     distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit; at `time`, if it
         was reached
-    pairs : number of pairs that stay below the pair distance in the last quarter; all of them, if synchronized
+    pairs : number of pairs that stay below the synchronization threshold in the last quarter; all of them, if synchronized
     transverse_exponent : of the symmetric motion that was reached or is near
     """
 
@@ -113,7 +113,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
         Outcome.UNDETERMINED if undetermined else Outcome.NOT_SYNCHRONIZED,
         distance=float(last.max()),
         mean_distance=float(last.max(axis=1).mean()),
-        pairs=int(np.count_nonzero(last.max(axis=0) < watch.pair_distance * min(1.0, model.scale))),
+        pairs=int(np.count_nonzero(last.max(axis=0) < watch.synchronization_threshold * min(1.0, model.scale))),
         transverse_exponent=exponent,
     )
 

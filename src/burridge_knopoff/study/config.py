@@ -134,7 +134,7 @@ CHAINS = {
     "samples": _SAMPLE["samples"],
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
     **{key: _SAMPLE[key] for key in ("seed", "position", "velocity")},
-    **_part(Watch, "pair_distance"),
+    **_part(Watch, "synchronization_threshold"),
     "two_blocks": _section(TWO_BLOCKS),
 }
 
