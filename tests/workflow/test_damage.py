@@ -172,7 +172,7 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     assert run.returncode == 1
     reasons = failures(run.stderr)
     assert reasons.keys() >= {
-        *("mean_distance.log", "bifurcation.log", "lyapunov.log", "stick_slip.log", "solvers.log"),
+        *("mean_distance.log", "bifurcation_diagram.log", "lyapunov.log", "stick_slip.log", "solvers.log"),
         *("figure_distance.log", "figure_motion_minus.log", "attractors.log"),
     }
     named = set()

@@ -68,7 +68,7 @@ class Fate:
     time : when the synchronization distance was reached, NaN if it was not
     distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit; at `time`, if it
         was reached
-    pairs : number of pairs that stay below the synchronization threshold in the last quarter; all of them, if synchronized
+    pairs : number of pairs below the synchronization threshold in the last quarter; all of them, if synchronized
     transverse_exponent : of the symmetric motion that was reached or is near
     """
 
