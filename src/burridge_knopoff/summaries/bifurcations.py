@@ -25,36 +25,40 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment
 
 PARTS = ("real", "imaginary")
-_EDGE, _ORBIT = ("bifurcation",), ("orbit",)
+_BIFURCATION, _ORBIT = ("bifurcation",), ("orbit",)
 _V = Variable
 VARIABLES = {
-    "law": _V(_EDGE, "i1", "friction law, by its number in the attribute laws"),
-    "a": _V(_EDGE, "f8", "friction parameter a of the bifurcation"),
-    "a_error": _V(_EDGE, "f8", "its error: half the width of the interval that brackets it"),
-    "kind": _V(_EDGE, "i1", "what happens there", flag("i1", BifurcationKind)),
-    "change": _V(_EDGE, "i1", "what the branch of attractors does there", flag("i1", Change)),
+    "law": _V(_BIFURCATION, "i1", "friction law, by its number in the attribute laws"),
+    "a": _V(_BIFURCATION, "f8", "friction parameter a of the bifurcation"),
+    "a_error": _V(_BIFURCATION, "f8", "its error: half the width of the interval that brackets it"),
+    "kind": _V(_BIFURCATION, "i1", "what happens there", flag("i1", BifurcationKind)),
+    "change": _V(_BIFURCATION, "i1", "what the branch of attractors does there", flag("i1", Change)),
     "from_branch": _V(
-        _EDGE, "i2", "branch below the bifurcation, or reached from above it", {"comment": "-1 undetermined"}
+        _BIFURCATION, "i2", "branch below the bifurcation, or reached from above it", {"comment": "-1 undetermined"}
     ),
     "to_branch": _V(
-        _EDGE, "i2", "branch above the bifurcation, or reached from below it", {"comment": "-1 undetermined"}
+        _BIFURCATION, "i2", "branch above the bifurcation, or reached from below it", {"comment": "-1 undetermined"}
     ),
-    "grid_low": _V(_EDGE, "f8", "largest a of refined.nc at which the branch is as before, NaN for none"),
-    "grid_high": _V(_EDGE, "f8", "smallest a of refined.nc at which it is as after, NaN for none"),
-    "motion_before": _V(_EDGE, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
-    "motion_after": _V(_EDGE, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
-    "turns": _V(_EDGE, "i1", "whether the orbits on both sides of the bifurcation lie at a on one side of it", ANSWER),
-    "period": _V(_EDGE, "f8", "period of the orbit at the bifurcation"),
+    "grid_low": _V(_BIFURCATION, "f8", "largest a of refined.nc at which the branch is as before, NaN for none"),
+    "grid_high": _V(_BIFURCATION, "f8", "smallest a of refined.nc at which it is as after, NaN for none"),
+    "motion_before": _V(_BIFURCATION, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
+    "motion_after": _V(_BIFURCATION, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
+    "turns": _V(
+        _BIFURCATION, "i1", "whether the orbits on both sides of the bifurcation lie at a on one side of it", ANSWER
+    ),
+    "period": _V(_BIFURCATION, "f8", "period of the orbit at the bifurcation"),
     "stops": _V(("bifurcation", "block"), "i4", "stops of each block in a period of the stable orbits"),
     "stops_beyond": _V(("bifurcation", "block"), "i4", "the same of the orbits beyond the bifurcation"),
     "multiplier": _V(
         ("bifurcation", "part"), "f8", "Floquet multiplier of the largest modulus next to the bifurcation"
     ),
     "multiplier_beyond": _V(("bifurcation", "part"), "f8", "the same of the orbits beyond the bifurcation"),
-    "mean_distance": _V(_EDGE, "f8", "<J> over a period of that orbit"),
-    "stick_time": _V(_EDGE, "f8", "shortest stick at the bifurcation, 0 where it shrinks to nothing"),
-    "lifetime_low": _V(_EDGE, "f8", "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"),
-    "lifetime_high": _V(_EDGE, "f8", "upper end of that interval; of the shorter life where both are chaotic"),
+    "mean_distance": _V(_BIFURCATION, "f8", "<J> over a period of that orbit"),
+    "stick_time": _V(_BIFURCATION, "f8", "shortest stick at the bifurcation, 0 where it shrinks to nothing"),
+    "lifetime_low": _V(
+        _BIFURCATION, "f8", "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"
+    ),
+    "lifetime_high": _V(_BIFURCATION, "f8", "upper end of that interval; of the shorter life where both are chaotic"),
     "orbit_law": _V(_ORBIT, "i1", "friction law, by its number in the attribute laws"),
     "orbit_segment": _V(_ORBIT, "i4", "number of the segment of orbits that were followed together, in this order"),
     "orbit_branch": _V(_ORBIT, "i2", "branch of most of the attractors that lie on them"),
