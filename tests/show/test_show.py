@@ -105,7 +105,7 @@ def test_every_summary_in_words(study):
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("mean_distance", "⟨J⟩ against a. The time average ⟨J⟩"), ("basins", "Basins of attraction. Maps over")],
+    [("mean_distance", "⟨J⟩ versus a. The time average ⟨J⟩"), ("basins", "Basins of attraction. Basin maps over")],
 )
 def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
     """With the summaries and the properties of the study that the figure takes besides."""
