@@ -102,7 +102,16 @@ def test_last_lines_of_a_study(finished):
     results = finished.folder / "results" / "tiny"
     folders = {"points": 16} | {name: len(list((results / name).glob("[!.]*"))) for name in ("summary", "figures")}
     assert counts == {f"{name} {count}" for name, count in folders.items()} | {
-        *("attractors 2", "refined 2", "basins 9", "bifurcations 2", "phases 2", "solvers 6", "report.html")
+        *(
+            "attractors 2",
+            "refined 2",
+            "returns 2",
+            "basins 9",
+            "bifurcations 2",
+            "phases 2",
+            "solvers 6",
+            "report.html",
+        )
     }
     assert "points: all 16 completed" in lines
     with xr.open_dataset(finished.folder / "results" / "tiny" / "summary" / "agreement.nc") as agreement:
