@@ -119,7 +119,7 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
         ("dataset/point.py", POINTS),
         ("attractors/search.py", ("attractors_of_law", "two_blocks")),
         ("motion/chain_synchronization.py", ()),
-        ("basins/plane.py", ("basin_tile", "basin_pairs", "basins", "phases_of_law", "phases")),
+        ("basins/plane.py", ("basin_tile", "basin_pairs", "basins")),
         ("basins/initial_phases.py", ("phases_of_law", "phases")),
         ("motion/kind.py", ("attractors_of_law", "lyapunov", "agreement", "two_blocks")),
         ("summaries/mean_distance.py", ("mean_distance",)),

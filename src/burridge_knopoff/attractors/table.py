@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
-from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.motion.observables import EXPONENTS
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+
+# A figure reads the names of branches here: it should not depend on how attractors are found.
+if TYPE_CHECKING:
+    from burridge_knopoff.attractors.attractor import Attractor
+    from burridge_knopoff.attractors.lifetime import Lifetime
+    from burridge_knopoff.model.model import Model
+
+#: Lyapunov exponents of an attractor.
+EXPONENTS = 3
 
 
 @dataclass(frozen=True, eq=False)

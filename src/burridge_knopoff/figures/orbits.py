@@ -32,7 +32,7 @@ CONDITION = "has_synchronized_orbit"
 CAPTION = """\
 (a) Floquet multipliers of the synchronized orbit. Synchrony is lost, or gained, where the modulus of the transverse
 multiplier μ crosses 1 (dots). (b) ⟨J⟩ of the stable and unstable orbits around this a_c, with the study's runs in that
-range. (c) The distance between the end blocks on the orbit that branches off grows as a power of the distance of a from a_c.
+range. (c) The distance between the end blocks on the orbit that branches off grows as a power of the distance from a_c.
 (d) Difference between each law and the first law in μ and in the period T at the same a; black: the paper's two laws at
 the same slope of friction at the driver velocity. Values of 0 are left out.
 """
