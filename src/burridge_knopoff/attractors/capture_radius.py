@@ -1,6 +1,6 @@
 """How near an attractor a trajectory is certain to stay: the radius, within which trajectories are captured.
 
-It is less than half the way to any other attractor, and trajectories that were pushed off by that much at random have
+It is less than half the way to any other attractor, and trajectories that were perturbed by that much at random have
 come back. The returns of a set of many dimensions are few and far between: its radius is as wide as they need.
 """
 

@@ -21,7 +21,6 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.provenance.sources import provenance
 
 _RETURN = ("section_return", "block")
 VARIABLES = {
@@ -55,23 +54,21 @@ def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about
         for slot, row in enumerate(here)
     ]
     blocks = models[0].blocks
-    states = np.concatenate([np.zeros((0, 2 * blocks)), *(motion.returns for *_, motion in held)])
-    offset = np.concatenate(
-        [np.zeros((0, blocks)), *(np.tile(model.sliding_offset, (len(motion.returns), 1)) for model, _, motion in held)]
-    )
+    none = np.zeros((0, blocks))
     values = {
         "a": [model.a for model, *_ in held],
         "slot": [slot for _, slot, _ in held],
         "return_count": [len(motion.returns) for *_, motion in held],
         "section_block": [motion.block for *_, motion in held],
         "spacing": [motion.spacing for *_, motion in held],
-        "position": states[:, :blocks] + offset,
-        "velocity": states[:, blocks:],
+        "position": np.concatenate(
+            [none, *(motion.returns[:, :blocks] + model.sliding_offset for model, _, motion in held)]
+        ),
+        "velocity": np.concatenate([none, *(motion.returns[:, blocks:] for *_, motion in held)]),
     }
     title = f"Section returns of the attractors, {models[0].law.name} friction law"
     arrays = {name: np.asarray(value) for name, value in values.items()}
-    attributes = {key: value for key, value in about.items() if key not in ("title", *provenance(__name__))}
-    return summary(title, VARIABLES, arrays, slot_coordinates(blocks), attributes, module=__name__)
+    return summary(title, VARIABLES, arrays, slot_coordinates(blocks), {**about, "title": title}, module=__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,15 +99,15 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
         position = returns["position"].values[part] - model.sliding_offset
         return np.concatenate([position, returns["velocity"].values[part]], axis=1)
 
-    result = []
+    none, result = np.zeros((0, 2 * model.blocks)), []
     for index, slot in enumerate(slots.tolist()):
         one, row = found.isel(attractor=slot), row_of[slot]
         images = np.flatnonzero((branch == branch[index]) & (side == -side[index]))
         partner = int(images[0]) if side[index] and len(images) else index
-        mirror_symmetric = model.chain.is_mirror_symmetric
+        image = int(slots[partner])
         motion = SteadyMotion(
             returns=states(slot),
-            mirror_returns=states(int(slots[partner])) if mirror_symmetric else np.zeros((0, 2 * model.blocks)),
+            mirror_returns=states(image) if model.chain.is_mirror_symmetric else none,
             spacing=returns["spacing"].values[row].item(),
             mean_distance=one["mean_distance"].item(),
             mean_distance_error=one["mean_distance_error"].item(),
@@ -119,7 +116,7 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
             section_period=one["section_period"].item(),
             exponent=one["lyapunov_exponent"].values,
             block=int(returns["section_block"].values[row]),
-            mirror_block=int(returns["section_block"].values[row_of[int(slots[partner])]]),
+            mirror_block=int(returns["section_block"].values[row_of[image]]),
             period=one["period"].item(),
         )
         fixed = {name: one[name].item() for name in ("radius", "close_returns", "patience")}

@@ -11,6 +11,7 @@ import xarray
 
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.settings import EXPONENTS
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # A figure reads the names of branches here: it should not depend on how attractors are found.
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from burridge_knopoff.attractors.attractor import Attractor
     from burridge_knopoff.attractors.lifetime import Lifetime
     from burridge_knopoff.model.model import Model
-
-#: Lyapunov exponents of an attractor.
-EXPONENTS = 3
 
 
 @dataclass(frozen=True, eq=False)

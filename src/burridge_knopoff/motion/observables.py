@@ -12,12 +12,11 @@ from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, judged_dista
 from burridge_knopoff.motion.phase_locking import recurrence
 from burridge_knopoff.motion.section_returns import Returns, returns_of, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
-from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.motion.settings import EXPONENTS, MotionSettings
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
 BATCHES = 6
-EXPONENTS = 3
 
 
 @dataclass(frozen=True, eq=False)

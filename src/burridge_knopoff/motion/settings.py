@@ -12,6 +12,9 @@ from burridge_knopoff.running.settings import TIME, Settings
 
 ERRORS = Number(0.0, 100.0)
 
+#: Lyapunov exponents that are computed of a motion, the largest ones.
+EXPONENTS = 3
+
 
 @settings
 @dataclass(frozen=True)
