@@ -5,12 +5,9 @@ from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 from scipy.spatial import cKDTree
 
 from burridge_knopoff import ChainState
-from burridge_knopoff.attractors import convergence, labels, slow_set
-from burridge_knopoff.motion import classification
 from burridge_knopoff.motion.kind import motion_with
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.period import repetition
@@ -118,17 +115,6 @@ class Ensemble:
     def run(self, position, velocity, stuck, times):
         x = self.model.orbit(position[:, 0], times[0])[-1] if times[0] >= 1 else position[:, 0]
         return {"position": x[:, None, None], "velocity": np.full((len(x), 1, 1), 0.1)}
-
-
-@pytest.fixture
-def maps(monkeypatch):
-    """Let searches follow maps."""
-    monkeypatch.setattr(convergence, "visit", visit)
-    monkeypatch.setattr(slow_set, "visit", visit)
-    monkeypatch.setattr(labels, "new_ensemble", Ensemble)
-    monkeypatch.setattr(labels, "Clouds", Clouds)
-    monkeypatch.setattr(classification, "observe", observe)
-    monkeypatch.setattr(classification, "locked_orbit", lambda *_: None)
 
 
 LOGISTIC = MapModel(lambda x, r: r * x * (1.0 - x), lambda x, r: r * (1.0 - 2.0 * x), 3.2)

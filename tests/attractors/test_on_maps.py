@@ -6,7 +6,7 @@ import pytest
 from burridge_knopoff import InitialState, MotionKind, SearchSettings
 from burridge_knopoff.attractors.lifetime import lifetimes
 from burridge_knopoff.attractors.search import Search
-from tests.maps import CIRCLE, LOGISTIC, TWO_WELLS, maps  # noqa: F401
+from tests.maps import CIRCLE, LOGISTIC, TWO_WELLS
 
 SEARCH = SearchSettings(
     samples=30, position=(0.05, 0.95), transient=400.0, window=480.0, time_limit=1000.0, lifetime=2000.0
@@ -23,7 +23,7 @@ def searched(model, settings=SEARCH):
     ("r", "period"),
     [(2.5, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.835, 3)],
 )
-def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):  # noqa: F811
+def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):
     """Of the logistic map, also in the window of period 3, in which chaos is a transient."""
     search, _, labels = searched(LOGISTIC.at(r))
     (found,) = search.attractors
@@ -36,7 +36,7 @@ def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):  # noqa: F811
     assert found.motion.exponent[1] == pytest.approx(np.log(multiplier) / period, abs=1e-6)
 
 
-def test_chaos_is_one_attractor_that_lasts(maps):  # noqa: F811
+def test_chaos_is_one_attractor_that_lasts(maps):
     """At r = 4 the exponent is ln 2, and no trajectory leaves [0, 1]."""
     search, _, labels = searched(LOGISTIC.at(3.999999))
     (found,) = search.attractors
@@ -47,7 +47,7 @@ def test_chaos_is_one_attractor_that_lasts(maps):  # noqa: F811
     assert life.lasts(SEARCH.lifetime)
 
 
-def test_motion_that_never_returns_is_quasiperiodic(maps):  # noqa: F811
+def test_motion_that_never_returns_is_quasiperiodic(maps):
     search, _, labels = searched(CIRCLE)
     (found,) = search.attractors
     assert found.motion.kind == MotionKind.QUASIPERIODIC
@@ -55,7 +55,7 @@ def test_motion_that_never_returns_is_quasiperiodic(maps):  # noqa: F811
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.2, -0.3])
-def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):  # noqa: F811
+def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):
     """The unstable fixed point between the wells parts their basins."""
     model = TWO_WELLS.at(1.0 + mu)
     settings = SearchSettings(samples=60, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
@@ -69,7 +69,7 @@ def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):  # noqa:
         assert 0.0 < item.radius < abs(well - roots[1])
 
 
-def test_the_attractors_do_not_depend_on_the_order_of_the_states(maps):  # noqa: F811
+def test_the_attractors_do_not_depend_on_the_order_of_the_states(maps):
     settings = SearchSettings(samples=40, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
     model = TWO_WELLS.at(1.1)
     first = Search(model, settings)
@@ -82,7 +82,7 @@ def test_the_attractors_do_not_depend_on_the_order_of_the_states(maps):  # noqa:
     assert wells[0] == pytest.approx(wells[1][::-1], abs=1e-9)
 
 
-def test_a_trajectory_next_to_an_unstable_fixed_point_falls_into_a_well(maps):  # noqa: F811
+def test_a_trajectory_next_to_an_unstable_fixed_point_falls_into_a_well(maps):
     settings = SearchSettings(samples=0, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
     search = Search(TWO_WELLS, settings)
     for x in (1e-9, -1e-9):

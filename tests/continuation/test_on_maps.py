@@ -6,7 +6,7 @@ import pytest
 from burridge_knopoff import MotionKind, SearchSettings
 from burridge_knopoff.continuation.along_a import continue_attractors
 from burridge_knopoff.continuation.settings import Refine
-from tests.maps import LOGISTIC, TWO_WELLS, maps  # noqa: F401
+from tests.maps import LOGISTIC, TWO_WELLS
 
 WELLS = SearchSettings(
     samples=30, position=(-1.3, 1.3), fraction_width=0.1, transient=200.0, window=200.0, time_limit=2000.0
@@ -26,7 +26,7 @@ def where(found, branch):
     return np.array([a for a, _ in known]), [item for _, item in known]
 
 
-def test_each_well_is_one_branch_that_ends_at_its_fold(maps):  # noqa: F811
+def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
     """The lower well exists for μ < 2/√27 only, the upper one for μ > −2/√27 only."""
     fold, refine = 2.0 / np.sqrt(27.0), Refine(2e-3)
     grid = np.linspace(-0.45, 0.45, 19).tolist()
@@ -46,7 +46,7 @@ def test_each_well_is_one_branch_that_ends_at_its_fold(maps):  # noqa: F811
     assert ranges[1][1] == pytest.approx(0.45)
 
 
-def test_fractions_are_those_of_the_basins(maps):  # noqa: F811
+def test_fractions_are_those_of_the_basins(maps):
     """States are uniform: the fraction of a well is the share of its side of the unstable fixed point."""
     grid = [-0.2, 0.0, 0.3]
     found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
@@ -58,7 +58,7 @@ def test_fractions_are_those_of_the_basins(maps):  # noqa: F811
             assert np.mean(sample == index) == pytest.approx(share, abs=0.2)
 
 
-def test_sweeps_show_the_hysteresis_of_two_folds(maps):  # noqa: F811
+def test_sweeps_show_the_hysteresis_of_two_folds(maps):
     """Carried upward, motion leaves the lower well beyond its fold; downward it leaves the upper one."""
     grid = [-0.45, -0.3, 0.0, 0.3, 0.45]
     found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
@@ -77,7 +77,7 @@ def test_sweeps_show_the_hysteresis_of_two_folds(maps):  # noqa: F811
 @pytest.mark.parametrize(
     ("grid", "at", "periods"), [((2.8, 2.9, 3.1, 3.2), 3.0, (1, 2)), ((3.35, 3.4, 3.5), 1.0 + np.sqrt(6.0), (2, 4))]
 )
-def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods):  # noqa: F811
+def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods):
     """The logistic map doubles the period at 3 and at 1 + √6; what branches off goes on under the same number."""
     refine = Refine(0.01)
     found = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)
@@ -92,7 +92,7 @@ def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods
     assert last - 0.01 <= at <= first + 0.01
 
 
-def test_no_result_depends_on_what_is_asked_of_other_values(maps):  # noqa: F811
+def test_no_result_depends_on_what_is_asked_of_other_values(maps):
     """The attractors at a value of a are the same whatever other values there are."""
     one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=Refine(1.0))
     several = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=Refine(1.0))

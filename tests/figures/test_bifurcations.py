@@ -13,7 +13,7 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 EDGE = ("law", "a", "a_error", "mean_distance", "kind", "change", "from_branch", "to_branch")
 
 
-def test_an_bifurcation_that_is_not_located_is_as_wide_as_its_error():
+def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
     names = ("law", "a", "attractor")
     attractors = xr.Dataset(
         {name: (names, np.ones((1, 2, 1), dtype=int)) for name in ("branch", "basin_count", "mean_distance")},

@@ -78,7 +78,7 @@ def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
         (lambda length: 0.0, 0.0, 1e-12),
     ],
 )
-def test_the_place_of_an_bifurcation_is_known_within_where_the_sign_changes(branch, place, dead, error):
+def test_the_place_of_a_bifurcation_is_known_within_where_the_sign_changes(branch, place, dead, error):
     """At least to the rounding of a."""
     point = branch(lambda length: np.expm1(3.0 * (length - 0.3)) if abs(length - 0.3) > dead else 0.0, place)
     (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
@@ -159,7 +159,7 @@ def test_a_short_stick_is_none_at_a_grazing(kind, sticks, shortest):
 
 
 @pytest.mark.parametrize(("before", "expected"), [(2.0004, 2.0), (3.9996, 4.0), (6.01, 6.0)])
-def test_the_period_at_an_bifurcation_is_that_of_the_orbits_before_it(before, expected):
+def test_the_period_at_a_bifurcation_is_that_of_the_orbits_before_it(before, expected):
     """Of what joins an orbit of two or three times its own period: so many of its own."""
     points = [SimpleNamespace(orbit=SimpleNamespace(period=period)) for period in (2.0, before)]
     assert Bifurcation(0.1, 1e-9, BifurcationKind.PERIOD_DOUBLING, *points, None, turns=False).period == expected

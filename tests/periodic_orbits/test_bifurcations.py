@@ -75,7 +75,7 @@ def test_an_orbit_is_followed_within_a_range_that_it_lies_in(families, law):
     ("unstable", "loses", "keeps"),
     [((0, 0), False, True), ((0, 1), True, False), ((0, None), True, False), ((1, 0), False, False)],
 )
-def test_stability_on_both_sides_of_an_bifurcation(unstable, loses, keeps):
+def test_stability_on_both_sides_of_a_bifurcation(unstable, loses, keeps):
     sides = [None if n is None else SimpleNamespace(multipliers=SimpleNamespace(unstable=n)) for n in unstable]
     bifurcation = Bifurcation(0.1, 1e-9, BifurcationKind.GRAZING, sides[0], *sides, turns=False)
     assert (bifurcation.loses_stability, bifurcation.keeps_stability) == (loses, keeps)
@@ -162,7 +162,7 @@ def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
         at(here, bifurcation.a + 1e-8)
 
 
-def test_an_bifurcation_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
+def test_a_bifurcation_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
     again = segment(seven.stable[-1].orbit, (0.13, 0.16), 4, Following(largest_step=3e-4))
     for one, other in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
         assert one.a == pytest.approx(other.a, abs=1e-10)

@@ -145,7 +145,7 @@ def test_bifurcations_are_those_of_the_orbits(found):
     assert (found["a_error"].values <= 1e-9).all()
 
 
-def test_an_bifurcation_lies_by_the_values_between_which_it_was_looked_for(found):
+def test_a_bifurcation_lies_by_the_values_between_which_it_was_looked_for(found):
     """Within a step of the grid; one that is passed between values at which the branch is known, if there are any."""
     low, high, a = (found[name].values for name in ("grid_low", "grid_high", "a"))
     passed = found["change"].values == Change.PASSED
@@ -181,7 +181,7 @@ def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
     assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
 
 
-def test_the_values_beside_an_bifurcation_are_those_of_the_attractors(found, grid):
+def test_the_values_beside_a_bifurcation_are_those_of_the_attractors(found, grid):
     """To the last bit, so that they can be looked up."""
     for name in ("grid_low", "grid_high"):
         beside = found[name].values
@@ -223,7 +223,7 @@ def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
     assert (found["orbit_period"].values > 0.0).all()
 
 
-def test_an_bifurcation_without_an_orbit_has_no_numbers_of_one(grid):
+def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid):
     """Chaos on both sides of every bifurcation: none is located, and each lies anywhere between two values of a."""
     chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
     found = one_law(MODEL, chaotic, at_all_values(chaotic))
