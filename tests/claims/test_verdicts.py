@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.attractors.table import reached
+from burridge_knopoff.attractors.lookup import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, Measured, Verdict

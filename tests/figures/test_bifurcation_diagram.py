@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.figures.bifurcation_diagram import draw
-from burridge_knopoff.summaries.refined import CROSSINGS
 
 
 def runs():

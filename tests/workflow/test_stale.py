@@ -41,7 +41,7 @@ FIGURES = tuple(
             "basin_fractions",
         ),
         *("basins", "bifurcations", "orbits", "stick_slip", "equilibrium", "solvers", "two_blocks", "motion", "phases"),
-        *("windows", "rotation", "sketch"),
+        *("windows", "rotation", "sketch", "bifurcation_diagram_refined", "branches_reached"),
     )
 )
 OF_SUMMARIES = tuple(name for name in FIGURES if name not in ("figure_distance", "figure_motion"))

@@ -1,24 +1,20 @@
-"""The table of attractors: what netCDF files hold of each attractor at each a, and how it is looked up."""
+"""The table of attractors: what netCDF files hold of each attractor at each a; `lookup` reads it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-import xarray
 
+from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.settings import EXPONENTS
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-
-# A figure reads the names of branches here: it should not depend on how attractors are found.
-if TYPE_CHECKING:
-    from burridge_knopoff.attractors.attractor import Attractor
-    from burridge_knopoff.attractors.lifetime import Lifetime
-    from burridge_knopoff.model.model import Model
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,11 +122,6 @@ def empty(variables: Mapping[str, Variable], shape: Mapping[str, int], *beginnin
     }
 
 
-def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
-    """Return what each branch of a file is called, by its number."""
-    return dict(zip(dataset["branch_number"].values.tolist(), map(str, dataset["branch_name"].values), strict=True))
-
-
 def slot_values(
     models: Sequence[Model], rows: Sequence[Sequence[Row]], lasting: float, dimension: str
 ) -> dict[str, np.ndarray]:
@@ -187,18 +178,3 @@ def name_branches(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarra
         sliding = f", block {', '.join(map(str, never))} never sticks" if len(never) else ""
         names.append(f"{name}{sliding}{f' ({number})' if number else ''}")
     return {"branch_number": numbers, "branch_name": np.array(names, dtype=object)}
-
-
-def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return (known, values) of a variable on the attractors that an initial state reaches.
-
-    attractors : with a, under one convention
-    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
-    values : shape (a, …)
-    """
-    found = attractors[[*{name, "branch", "side", "initial_branch", "initial_side"}]].sel(law=law)
-    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
-        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
-    )
-    slots &= found["branch"].values >= 0
-    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.table import reached
+from burridge_knopoff.attractors.lookup import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.kinds import CLOSED

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.table import reached
+from burridge_knopoff.attractors.lookup import reached
 from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (

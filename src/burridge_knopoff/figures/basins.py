@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import map_colors, map_parts
 from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
 

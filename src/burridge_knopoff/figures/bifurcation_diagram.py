@@ -9,6 +9,7 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.dataset.variables import DIRECTION
 from burridge_knopoff.figures.style import (
     color,
@@ -21,7 +22,6 @@ from burridge_knopoff.figures.style import (
     styled,
 )
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD, ROUNDING, STAYS, section_points
-from burridge_knopoff.summaries.refined import CROSSINGS
 
 TITLE = "Bifurcation diagrams"
 CATEGORY = "Synchronization"

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
 from burridge_knopoff.figures.style import (

@@ -9,7 +9,7 @@ from itertools import cycle
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.model.sampling import fraction_interval
 
 OTHER_COLOR = "#999999"

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import branch_colors, named_colors
 from burridge_knopoff.figures.style import (
     begin_at_zero,

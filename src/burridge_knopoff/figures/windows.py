@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.formatting import span, text, with_error

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.show.formatting import table
 from burridge_knopoff.study.formatting import plain, with_error

@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 import xarray
 
-from burridge_knopoff.attractors.table import reached
+from burridge_knopoff.attractors.lookup import reached
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
 from burridge_knopoff.motion.kind import (

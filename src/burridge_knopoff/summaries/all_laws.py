@@ -14,8 +14,9 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.labels import UNDETERMINED
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import NAMES, branch_names, missing, name_branches
+from burridge_knopoff.attractors.table import NAMES, missing, name_branches
 from burridge_knopoff.continuation.law_homotopy import joined
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable

@@ -16,13 +16,7 @@ import xarray
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import (
-    NOTHING,
-    empty,
-    slot_coordinates,
-    slot_values,
-    slot_variables,
-)
+from burridge_knopoff.attractors.table import NOTHING, empty, slot_coordinates, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable

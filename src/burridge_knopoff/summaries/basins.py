@@ -10,8 +10,9 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_states
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
-from burridge_knopoff.attractors.table import NAMES, branch_names
+from burridge_knopoff.attractors.table import NAMES
 from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
 from burridge_knopoff.basins.plane import pixel_centres, plane, states
 from burridge_knopoff.basins.settings import BasinSettings

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import slot_coordinates, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
@@ -32,9 +33,6 @@ VARIABLES = {
         {"comment": "of mirror images those of one side: W is the same for both; NaN beyond the last crossing"},
     ),
 }
-
-#: Crossings of the section that are kept of an attractor, at most.
-CROSSINGS = 300
 
 
 def one_law(

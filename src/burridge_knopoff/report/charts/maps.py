@@ -6,7 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 import xarray
 
-from burridge_knopoff.attractors.table import branch_names
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import MapPart, map_colors, map_parts
 from burridge_knopoff.report.charts.legend import Entry
 from burridge_knopoff.report.charts.look import axis, chart, steps

@@ -1,0 +1,32 @@
+"""What files say of attractors, looked up by name.
+
+It imports nothing of the search: a figure that reads a name here does not depend on how attractors are found.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+
+#: Crossings of the section that `refined.nc` holds of an attractor, at most.
+CROSSINGS = 300
+
+
+def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
+    """Return what each branch of a file is called, by its number."""
+    return dict(zip(dataset["branch_number"].values.tolist(), map(str, dataset["branch_name"].values), strict=True))
+
+
+def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return (known, values) of a variable on the attractors that an initial state reaches.
+
+    attractors : with a, under one convention
+    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
+    values : shape (a, …)
+    """
+    found = attractors[[*{name, "branch", "side", "initial_branch", "initial_side"}]].sel(law=law)
+    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
+        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
+    )
+    slots &= found["branch"].values >= 0
+    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]
