@@ -95,6 +95,7 @@ durations: .venv/kernel
 
 benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/kernel.py
+	.venv-benchmark/bin/python benchmarks/floor.py
 	.venv-benchmark/bin/python benchmarks/peers.py
 	.venv-benchmark/bin/python benchmarks/chain_length.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
