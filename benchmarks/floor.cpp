@@ -1,18 +1,18 @@
 // The floor: how fast can a program be that is written for one model alone?
 //
-// It runs the paper's three blocks (a = 0.08, v = 0.1, one-sided contact) and records what the package records of a run:
-// all events, <J> over the window, and the crossings of the section W = x1 + x2 + x3 = 0. Springs, laws and a are
-// constants of the program. It computes no exponents, extremes or samples, and it does not prove that no event is missed:
-// it samples the motion at intervals H. benchmarks/floor.py compares its results with those of the package and refuses
-// to compare times if they differ.
+// It runs the paper's three blocks (a = 0.08, v = 0.1, one-sided contact) and records what the package records of a
+// run: all events, <J> over the window, and the crossings of the section W = x1 + x2 + x3 = 0. Springs, laws and a are
+// constants. It computes no exponents, extremes or samples, and it does not prove that no event is missed: it samples
+// the motion at intervals H. benchmarks/floor.py compares its results with those of the package.
 //
-// Coordinates are those of docs/model.md: x_i = U_i - v tau - e_i and w_i = U_i'. The gap of a block to its next event is
-// its speed w_i if it slips, and 1 - s_i = 1 - Phi(v) + (K x)_i if it sticks.
+// Coordinates are those of docs/model.md: x_i = U_i - v tau - e_i and w_i = U_i'. The gap of a block to its next event
+// is its speed w_i if it slips, and 1 - s_i = 1 - Phi(v) + (K x)_i if it sticks.
 
 #include <algorithm>
 #include <cmath>
-
 #include <immintrin.h>
+
+struct Row { double time, what, kind; };  // block, 1 start or 0 stop; or W', direction of W
 
 namespace {
 
@@ -22,10 +22,12 @@ typedef long long bits __attribute__((vector_size(32)));
 
 constexpr double A = 0.08, V = 0.1;
 constexpr double H = 0.1;           // interval of samples
-constexpr double LOW = 5e-3;        // gaps that stay above this in all samples have no event
+constexpr double LOW = 2e-3;        // gaps that stay above this in all samples have no event
 constexpr double DIP = 1e-3;        // a gap whose parabola through three samples falls below this may have two
 constexpr double NEAR = 1e-3;       // distance from a guess up to which a reverted series gives the root to rounding
-constexpr double PANEL = 0.5;       // longest interval over which 8 Gauss nodes integrate J
+constexpr int CELLS = 90;           // intervals after which the closed form is started anew
+constexpr double PANEL = 5 * H;     // longest interval over which 8 Gauss nodes integrate J
+constexpr double SLOW = 1e-9;       // last coefficient of a nonlinear series up to which a step may be 6 H, else 2 H
 constexpr double TOGETHER = 1e-13;  // blocks with gaps below this at an event change state with it
 constexpr vec DRIVER = {V, V, V, 0.0};
 
@@ -45,10 +47,7 @@ constexpr vec NODE[2] = {{0.019855071751231884, 0.10166676129318663, 0.237233795
 constexpr vec WEIGHT[2] = {{0.050614268145188130, 0.11119051722668724, 0.15685332293894364, 0.18134189168918099},
                            {0.18134189168918099, 0.15685332293894364, 0.11119051722668724, 0.050614268145188130}};
 
-struct State {
-    vec x, w;
-    int slip;  // one bit a block
-};
+struct State { vec x, w; int slip; };  // slip: one bit a block
 
 inline bits lanes_of(int slip) { return bits{-(slip & 1), -(slip >> 1 & 1), -(slip >> 2 & 1), 0}; }
 
@@ -61,37 +60,29 @@ template <Law LAW, int N> struct Series {
     vec x[N + 1], w[N + 1], r[N + 1];
     int slip;
 
-    explicit Series(const State &s) : slip(s.slip) {
+    explicit Series(const State &s) : x{s.x, s.w - DRIVER}, w{s.w}, r{springs(x[0]), springs(x[1])}, slip(s.slip) {
         const vec on = (vec)((bits)all(1.0) & lanes_of(slip));
         vec f[N + 1], g[N + 1];  // Phi, and -a Phi(0) times the speeds
-        x[0] = s.x;
-        w[0] = s.w;
-        x[1] = w[0] - DRIVER;
-        r[0] = springs(x[0]);
-        r[1] = springs(x[1]);
         f[0] = LAW == LINEARIZED ? 1.0 - A * w[0] : 1.0 / (1.0 + A * w[0]);
         w[1] = (SLIDING<LAW> - r[0] - f[0]) * on;
         const vec slope = -A * f[0], back = slope * f[0];
-        g[1] = slope * w[1];
-        f[1] = back * w[1];
-        vec pull = r[0];
+        f[1] = back * w[1], g[1] = slope * w[1];
 #pragma GCC unroll 32
         for (int n = 1; n < N; ++n) {
             const vec per = on * (1.0 / (n + 1)), next = r[n] * per;
             if constexpr (LAW == LINEARIZED) {
                 w[n + 1] = w[n] * (A * per) - next;
             } else {
-                // Phi (1 + a w) = 1. What is known early is summed first: a coefficient then waits for only one product
-                // with the one before it.
+                // Phi (1 + a w) = 1. What is known early is summed first: f[n] waits for one product with f[n - 1].
                 vec late = all(0.0), early = all(0.0);
 #pragma GCC unroll 32
                 for (int k = (n + 1) / 2; k < n - 1; ++k) late += f[k] * g[n - k];
 #pragma GCC unroll 32
                 for (int k = std::min((n - 1) / 2, n - 2); k > 0; --k) early += f[k] * g[n - k];
-                if (n > 1) f[n] = (late + (early - back * pull)) + f[n - 1] * (g[1] - back * (on * (1.0 / n)));
+                const vec before = on * (1.0 / n);
+                if (n > 1) f[n] = (late + (early - back * (r[n - 1] * before))) + f[n - 1] * (g[1] - back * before);
                 w[n + 1] = -f[n] * per - next;
                 g[n + 1] = slope * w[n + 1];
-                pull = next;
             }
             x[n + 1] = w[n] * (1.0 / (n + 1));
             r[n + 1] = springs(w[n]) * (1.0 / (n + 1));
@@ -99,7 +90,6 @@ template <Law LAW, int N> struct Series {
     }
 
     vec gap(int n) const { return lanes_of(slip) ? w[n] : n == 0 ? r[0] + AT_REST<LAW> : r[n]; }
-
     State at(double t) const {
         State even{x[N], w[N], slip}, odd{x[N - 1], w[N - 1], slip};
         const double square = t * t;
@@ -123,11 +113,11 @@ template <Law LAW, int N> struct Series {
                 d[0] = d[0] * t + sign * g[n][i];
             }
             if (g == r) d[0] += AT_REST<LAW>[i];
-            double over = 1.0 / d[1], u = -d[0] * over, b = d[2] * over, c = d[3] * over;
+            const double over = 1.0 / d[1], u = -d[0] * over, b = d[2] * over, c = d[3] * over;
             if (std::abs(u) * (1.0 + std::abs(b)) < NEAR)
                 return t + u + u * u * (-b + u * ((2.0 * b * b - c) + u * (5.0 * b * (c - b * b) - d[4] * over)));
-            double square = d[1] * d[1] - 4.0 * d[0] * d[2];
-            double step = square > 0.0 ? 2.0 * d[0] / (std::sqrt(square) - d[1]) : -0.5 * d[1] / d[2];
+            const double square = d[1] * d[1] - 4.0 * d[0] * d[2];
+            const double step = square > 0.0 ? 2.0 * d[0] / (std::sqrt(square) - d[1]) : -0.5 * d[1] / d[2];
             if (square <= 0.0 && std::abs(step) < NEAR) break;
             t += step;
         }
@@ -148,43 +138,30 @@ template <Law LAW, int N> struct Series {
     }
 };
 
-constexpr int CELLS = 90, PANELS = int(CELLS * H / PANEL);
-
 // The linearized law: the motion of a set of slipping blocks is linear in (1, x, w), and its closed form is tabulated.
 struct Flow {
-    vec gap[CELLS + 2][7];                    // at the samples, from -H on
-    vec x[CELLS][7], w[CELLS][7];             // in the middle of the cells between them
-    vec dx[PANELS][2][7], dw[PANELS][2][7];   // x3 - x1 and w3 - w1 at the Gauss nodes of each panel
-
+    vec gap[CELLS + 2][7];                          // at the samples, from -H on
+    vec x[CELLS + 1][7], w[CELLS + 1][7];           // in the middle of the cells between them
+    vec dx[CELLS / 5 + 1][2][7], dw[CELLS / 5 + 1][2][7];  // x3 - x1 and w3 - w1 at the Gauss nodes of each panel
     explicit Flow(int slip) {
         for (int n = 0; n < 7; ++n) {
             auto part = [&](vec *row, vec value) { row[n] = n ? value - row[0] : value; };
             State s{vec{}, vec{}, slip};
             if (n) (n < 4 ? s.x : s.w)[(n - 1) % 3] = 1.0;
-            const State begin = s;
             part(gap[0], Series<LINEARIZED, 20>(Series<LINEARIZED, 20>(s).at(-H)).gap(0));
-            for (int j = 0; j < CELLS; ++j) {
+            for (int j = 0; j <= CELLS; ++j) {
                 const Series<LINEARIZED, 20> series(s);
-                const State middle = series.at(0.5 * H);
                 part(gap[j + 1], series.gap(0));
-                part(x[j], middle.x);
-                part(w[j], middle.w);
+                part(x[j], series.at(0.5 * H).x), part(w[j], series.at(0.5 * H).w);
                 s = series.at(H);
-            }
-            part(gap[CELLS + 1], Series<LINEARIZED, 20>(s).gap(0));
-            s = begin;
-            for (int j = 0; j < PANELS; ++j) {
-                const Series<LINEARIZED, 20> series(s);
-                for (int l = 0; l < 2; ++l) {
+                for (int l = 0; l < 2 && j % 5 == 0; ++l) {
                     vec position, speed;
                     for (int k = 0; k < 4; ++k) {
                         const State node = series.at(PANEL * NODE[l][k]);
                         position[k] = node.x[2] - node.x[0], speed[k] = node.w[2] - node.w[0];
                     }
-                    part(dx[j][l], position);
-                    part(dw[j][l], speed);
+                    part(dx[j / 5][l], position), part(dw[j / 5][l], speed);
                 }
-                s = series.at(PANEL);
             }
         }
     }
@@ -196,78 +173,65 @@ struct Closed {
     static constexpr int cells = CELLS;
     const Flow &flow;
     const int slip;
-    vec y[7];
-
-    Closed(const Flow &of, const State &s)
-        : flow(of), slip(s.slip), y{all(1.0), lane<0>(s.x), lane<1>(s.x), lane<2>(s.x), lane<0>(s.w), lane<1>(s.w), lane<2>(s.w)} {}
-
+    const vec a, b, c, d, e, f;
+    Closed(const Flow &flow, const State &s)
+        : flow(flow), slip(s.slip), a(lane<0>(s.x)), b(lane<1>(s.x)), c(lane<2>(s.x)), d(lane<0>(s.w)), e(lane<1>(s.w)),
+          f(lane<2>(s.w)) {}
     vec image(const vec *row) const {
-        return (row[0] + row[1] * y[1] + row[2] * y[2] + row[3] * y[3]) + (row[4] * y[4] + row[5] * y[5] + row[6] * y[6]);
+        return (row[0] + row[1] * a + row[2] * b + row[3] * c) + (row[4] * d + row[5] * e + row[6] * f);
     }
-
     void sample(int j, vec *out) const {
         for (int l = 0; l < 4; ++l) out[l] = image(flow.gap[j + l + 1]);
     }
 
     // The series about the middle of cell j, and when that is.
-    State middle(int j) const { return State{image(flow.x[j]), image(flow.w[j]), slip}; }
-    Series<law, 10> series(int j) const { return Series<law, 10>(middle(j)); }
+    template <int N = 8> Series<law, N> series(int j) const {
+        return Series<law, N>(State{image(flow.x[j]), image(flow.w[j]), slip});
+    }
     static double origin(int j) { return (j + 0.5) * H; }
-
     double distance(double end) const {
-        if (!(slip & 5)) return std::abs(y[3][0] - y[1][0]) * end;
+        const int panels = std::min(int(end / PANEL), CELLS / 5);
         vec total = {};
-        const int panels = std::min(int(end / PANEL), PANELS);
         for (int j = 0; j < panels; ++j)
             for (int l = 0; l < 2; ++l) {
                 const vec dx = image(flow.dx[j][l]), dw = image(flow.dw[j][l]);
                 total += WEIGHT[l] * (vec)_mm256_sqrt_pd(dx * dx + dw * dw);
             }
         const int j = std::min(int((panels * PANEL + end) * (0.5 / H)), cells - 1);
-        return sum(total) * PANEL + Series<law, 12>(middle(j)).distance(panels * PANEL - origin(j), end - origin(j));
+        return sum(total) * PANEL + series<10>(j).distance(panels * PANEL - origin(j), end - origin(j));
     }
 };
 
-// A piece under the nonlinear law: one Taylor series, exact to rounding up to cells H; less while blocks are fast.
+// A piece under the nonlinear law: one Taylor series.
 struct Expanded {
     static constexpr Law law = NONLINEAR;
     static constexpr int N = 20;
-    static constexpr double SLOW = 1e-10;  // last coefficient; times (6 H)^N: 4e-15
     const Series<law, N> whole;
     const int cells;
-    vec gap[N + 1];
-
     explicit Expanded(const State &s)
-        : whole(s), cells(negative(SLOW - whole.w[N]) | negative(SLOW + whole.w[N]) ? 2 : 6) {
-#pragma GCC unroll 32
-        for (int n = 0; n <= N; ++n) gap[n] = whole.gap(n);
-    }
-
+        : whole(s), cells(negative(SLOW - whole.w[N]) | negative(SLOW + whole.w[N]) ? 2 : 6) {}
     void sample(int j, vec *out) const {
         vec even[4], odd[4];
-        double t[4];
-        for (int l = 0; l < 4; ++l) t[l] = (j + l) * H, even[l] = gap[N], odd[l] = gap[N - 1];
+        for (int l = 0; l < 4; ++l) even[l] = whole.gap(N), odd[l] = whole.gap(N - 1);
 #pragma GCC unroll 32
         for (int n = N - 2; n >= 0; n -= 2)
             for (int l = 0; l < 4; ++l) {
-                even[l] = even[l] * (t[l] * t[l]) + gap[n];
-                if (n) odd[l] = odd[l] * (t[l] * t[l]) + gap[n - 1];
+                const double square = (j + l) * (j + l) * (H * H);
+                even[l] = even[l] * square + whole.gap(n);
+                if (n) odd[l] = odd[l] * square + whole.gap(n - 1);
             }
-        for (int l = 0; l < 4; ++l) out[l] = even[l] + odd[l] * t[l];
+        for (int l = 0; l < 4; ++l) out[l] = even[l] + odd[l] * ((j + l) * H);
     }
-
     const Series<law, N> &series(int) const { return whole; }
     static double origin(int) { return 0.0; }
-
     double distance(double end) const {
-        if (!(whole.slip & 5)) return std::abs(whole.x[0][2] - whole.x[0][0]) * end;
         return end < PANEL ? whole.distance(0.0, end) : whole.distance(0.0, 0.5 * end) + whole.distance(0.5 * end, end);
     }
 };
 
 struct Run {
     State state;
-    double (*event)[3], (*crossing)[3];  // time, block, 1 start or 0 stop; time, W', direction
+    Row *event, *crossing;
     double clock = 0.0, clock_rest = 0.0, integral = 0.0;
     long events = 0, crossings = 0;
     int side = 0;       // of W, 1 or -1; 0 before the window
@@ -275,21 +239,15 @@ struct Run {
 
     void move(double t) {  // The clock is a compensated sum.
         const double total = clock + (clock_rest + t);
-        clock_rest = (clock - total) + (clock_rest + t);
-        clock = total;
+        clock_rest = (clock - total) + (clock_rest + t), clock = total;
     }
-
     void change(int i) {
-        state.slip ^= 1 << i;
-        state.w[i] = 0.0;
-        double *row = event[events++];
-        row[0] = clock, row[1] = i + 1, row[2] = state.slip >> i & 1;
+        state.slip ^= 1 << i, state.w[i] = 0.0;
+        event[events++] = {clock, i + 1.0, double(state.slip >> i & 1)};
     }
-
     void cross(double t, vec w) {
         side = -side;
-        double *row = crossing[crossings++];
-        row[0] = clock + (clock_rest + t), row[1] = w[0] + w[1] + w[2] - 3.0 * V, row[2] = side;
+        crossing[crossings++] = {clock + (clock_rest + t), sum(w) - 3.0 * V, double(side)};
     }
 };
 
@@ -299,12 +257,13 @@ template <class Piece> void follow(Run &run, const Piece &piece, double until) {
     const int slip = run.state.slip, last = std::min(piece.cells, 1 + int(remaining * (1 / H)));
     vec buffer[CELLS + 6], *sample = buffer + 3, watch = {1, 1, 1, double(run.side)};
     const vec idle = {0, 0, 0, double(!run.side)};
-    double t = HUGE_VAL;
-    int due = 0, low = 0;
     State other;
+    double t = HUGE_VAL;  // of the first event
+    int due = 0, low = 0;
     // A parabola through three samples gives the guess; of two roots the first, or the second if W has crossed.
     auto zero = [&](int i, int j, bool dips, int sign, State &at) {
-        const double y = sample[j - 1][i], b = 0.5 * (sample[j][i] - sample[j - 2][i]), c = 0.5 * (sample[j][i] + sample[j - 2][i]) - y;
+        const double before = sample[j - 2][i], y = sample[j - 1][i], after = sample[j][i];
+        const double b = 0.5 * (after - before), c = 0.5 * (after + before) - y;
         const double square = b * b - 4.0 * c * y;
         const double guess = (j - 1 + (square > 0.0 ? 2.0 * y / (std::sqrt(square) - b) : -0.5 * b / c)) * H;
         const int cell = dips ? std::clamp(int(guess * (1 / H)), 0, piece.cells - 1) : j - 1;
@@ -321,16 +280,14 @@ template <class Piece> void follow(Run &run, const Piece &piece, double until) {
         low = negative((vec)((bits)small[0] | (bits)small[1] | (bits)small[2] | (bits)small[3]));
         if (!(low | before)) continue;
         for (int l = j < 0 ? 2 : 0; l < 4 && t == HUGE_VAL; ++l) {
-            const int below = negative(now[l]);
-            due = below;
+            const int below = due = negative(now[l]);
             if (j + l > int(run.fresh)) {
                 const vec a = now[l - 2], b = now[l - 1], bend = a - 2.0 * b + now[l], rise = now[l] - a;
                 const bits inside = (rise < 1.2 * bend) & (rise > -1.2 * bend) & (a >= 0.0) & (b >= 0.0);
                 due |= negative((vec)((8.0 * (b - DIP) * bend < rise * rise) & inside));
             }
             for (int left = due & 7; left; left &= left - 1) {
-                const int i = __builtin_ctz(left);
-                const double one = zero(i, j + l, !(below >> i & 1), 1, other);
+                const double one = zero(__builtin_ctz(left), j + l, !(below & left & -left), 1, other);
                 if (one < t) t = one, run.state = other;
             }
             for (int turn = due & 8 ? (below & 8 ? 1 : 2) : 0; turn > 0; --turn) {
@@ -348,15 +305,11 @@ template <class Piece> void follow(Run &run, const Piece &piece, double until) {
         const int cell = std::min(int(t * (1 / H)), piece.cells - 1);
         run.state = piece.series(cell).at(t - piece.origin(cell));
     }
-    if (run.side) run.integral += piece.distance(t);
-    run.move(t);
-    run.fresh = event;
-    if (!event) return;
-    const vec force = springs(run.state.x) + AT_REST<Piece::law>;
-    for (int left = due & 7; left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        if ((slip >> i & 1 ? run.state.w[i] : force[i]) < TOGETHER) run.change(i);
-    }
+    if (run.side) run.integral += slip & 5 ? piece.distance(t) : t * std::abs(run.state.x[2] - run.state.x[0]);
+    run.move(t), run.fresh = event;
+    const vec gap = lanes_of(slip) ? run.state.w : springs(run.state.x) + AT_REST<Piece::law>;
+    for (int left = event ? due & 7 : 0; left; left &= left - 1)
+        if (gap[__builtin_ctz(left)] < TOGETHER) run.change(__builtin_ctz(left));
 }
 
 // All blocks stick: forces grow at the rates D_i v, and J stays.
@@ -366,8 +319,7 @@ template <Law LAW> void wait(Run &run, double until) {
     if (run.side) run.integral += t * std::abs(run.state.x[2] - run.state.x[0]);
     if (run.side > 0 && due[3] <= t) run.cross(std::max(0.0, due[3]), vec{});
     run.state.x -= DRIVER * t;
-    run.move(t);
-    run.fresh = true;
+    run.move(t), run.fresh = true;
     for (int i = 0; i < 3; ++i)
         if (t < remaining && due[i] - t < TOGETHER) run.change(i);
 }
@@ -375,12 +327,9 @@ template <Law LAW> void wait(Run &run, double until) {
 template <Law LAW> void advance(Run &run, double until) {
     static const Flow flow[7] = {Flow(1), Flow(2), Flow(3), Flow(4), Flow(5), Flow(6), Flow(7)};
     while (run.clock < until) {
-        if (run.state.slip == 0)
-            wait<LAW>(run, until);
-        else if constexpr (LAW == LINEARIZED)
-            follow(run, Closed(flow[run.state.slip - 1], run.state), until);
-        else
-            follow(run, Expanded(run.state), until);
+        if (run.state.slip == 0) wait<LAW>(run, until);
+        else if constexpr (LAW == LINEARIZED) follow(run, Closed(flow[run.state.slip - 1], run.state), until);
+        else follow(run, Expanded(run.state), until);
     }
 }
 
@@ -388,9 +337,9 @@ template <Law LAW> void advance(Run &run, double until) {
 
 // Run from x and w, all blocks slipping; return <J> from `transient` to `end`, and the numbers of rows written.
 extern "C" double run_floor(int nonlinear, const double *x, const double *w, double transient, double end,
-                            double (*event)[3], double (*crossing)[3], long *count) {
+                            Row *event, Row *crossing, long *count) {
     Run run{{vec{x[0], x[1], x[2], 0}, vec{w[0], w[1], w[2], 0}, 7}, event, crossing};
-    auto advance_to = nonlinear ? advance<NONLINEAR> : advance<LINEARIZED>;
+    const auto advance_to = nonlinear ? advance<NONLINEAR> : advance<LINEARIZED>;
     advance_to(run, transient);
     run.side = springs(run.state.x)[3] < 0.0 ? -1 : 1;
     advance_to(run, end);

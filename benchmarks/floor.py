@@ -29,7 +29,7 @@ import numpy as np
 from kernel import least
 from measure import print_table, verdict
 
-from burridge_knopoff import Chain, Model, Settings, law_of, simulate
+from burridge_knopoff import Chain, Model, Settings, Trajectory, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
@@ -40,7 +40,7 @@ A, TRANSIENT, WINDOW = 0.08, 3000.0, 7000.0
 LAWS, STATES = ("linearized", "nonlinear"), ("minus", "plus")
 MEMBERS, SPREAD = 32, 1e-3
 MOST_EVENTS = 100_000
-# Events up to this time agree to rounding. Later, rounding errors may have grown: `plus` nearly grazes.
+# Event times are compared up to this time. Later, errors may have grown: the nonlinear law nearly grazes from `plus`.
 REGULAR, TOLERANCE = 2000.0, 1e-10
 # How many times the floor's CPU time the kernel may take.
 LIMITS = {
@@ -82,7 +82,7 @@ class Floor:
         return FloorRun(self.event[: self.count[0]], self.crossing[: self.count[1]], mean)
 
 
-def agreement(floor: FloorRun, ours) -> float:
+def agreement(floor: FloorRun, ours: Trajectory) -> float:
     """Return the largest difference of event times while the motion is regular; raises RuntimeError if runs differ.
 
     Compared block by block: events that are simultaneous but for rounding may come in either order.
