@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.dataset.point import point_about
-from burridge_knopoff.model.fields import Keys
+from burridge_knopoff.model.fields import FOLLOWS, Keys
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
 from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.config import CONFIG
@@ -53,6 +53,7 @@ def _other_key(config: Any, keys: Keys, place: str = "") -> str:
     if not isinstance(config, dict):
         return place
     sections = {name: field.range for name, field in keys.fields.items() if isinstance(field.range, Keys)}
-    found = [joined(place, name) for name in sorted(config.keys() ^ keys.fields.keys())]
+    needed = {name for name, field in keys.fields.items() if field.default is not FOLLOWS}
+    found = [joined(place, name) for name in sorted((config.keys() - keys.fields.keys()) | (needed - config.keys()))]
     found += [_other_key(config[name], inside, joined(place, name)) for name, inside in sections.items() if not found]
     return next(filter(None, found), "")

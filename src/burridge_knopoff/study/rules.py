@@ -11,9 +11,9 @@ from functools import reduce
 from operator import getitem
 from typing import Any
 
-from burridge_knopoff.basins.initial_phases import ends_are_neighbours
+from burridge_knopoff.basins.initial_phases import has_free_ends
 from burridge_knopoff.laws import LAWS, law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
@@ -38,7 +38,7 @@ def under(place: str) -> Iterator[None]:
 
 
 def fill_states(config: Mapping[str, Any]) -> None:
-    """Fill in the numbers of the paper's initial states; require the same number of blocks in all states."""
+    """Fill in the numbers of the paper's initial states."""
     states = config["initial"]
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
@@ -48,10 +48,28 @@ def fill_states(config: Mapping[str, Any]) -> None:
             if state and key not in state:
                 raise ValueError(f"initial.{name}.{key}: got none, expected position and velocity together")
         if not state:
-            state.update(position=list(PAPER_STATES[name].position), velocity=list(PAPER_STATES[name].velocity))
-    if len({len(state["position"]) for state in states.values()}) > 1:
-        counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in states.items())
+            position, velocity = PAPER_STATES[name].numbers(BLOCKS)
+            state.update(position=position.tolist(), velocity=velocity.tolist())
+
+
+def fill_blocks(config: Mapping[str, Any]) -> None:
+    """Fill in the number of blocks, from the springs or the initial states; every state must have as many."""
+    chain, told = config["chain"], {}
+    for name, state in config["initial"].items():
+        with under(f"initial.{name}."):
+            told[name] = InitialState(name, **state).blocks
+    lists = {name: told[name] for name, state in config["initial"].items() if list in map(type, state.values())}
+    if len({*lists.values()}) > 1:
+        counts = ", ".join(f"{name}: {count}" for name, count in lists.items())
         raise ValueError(f"initial: got different numbers of positions ({counts}), expected one for all states")
+    if not {"blocks", "grid", "springs"} & chain.keys():
+        chain["blocks"] = next(iter(lists.values()), max(count or 0 for count in told.values()))
+        if not chain["blocks"]:
+            raise ValueError("chain.blocks: missing, expected the number of blocks, which drawn states do not tell")
+    chain["blocks"] = Chain(**chain).blocks
+    for name, count in lists.items():
+        if count != chain["blocks"]:
+            raise ValueError(f"initial.{name}: got numbers for {count} blocks, expected {chain['blocks']}")
 
 
 def fill_names(config: dict[str, Any]) -> None:
@@ -75,9 +93,9 @@ def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
     return Keys({law: Field(allowed, "", value) for law, value in usual.items()})
 
 
-def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) -> None:
+def check_models(config: Mapping[str, Any], grid: Iterable[float]) -> None:
     """Check the chain, every law at every a where it is used, its solver, and that every initial state can start."""
-    chain, laws = Chain(blocks, **config["chain"]), config["laws"]
+    chain, laws = Chain(**config["chain"]), config["laws"]
     for name, solver in config["solver"].items():
         tapes = []
         for a in grid:
@@ -102,7 +120,7 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) 
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
         with under(f"initial.{name}."):
-            model.begin(InitialState(name, **state), config["start"])
+            model.numbers_of(InitialState(name, **state))
 
 
 def _reason(model: Model) -> str:
@@ -110,13 +128,13 @@ def _reason(model: Model) -> str:
     if not model.law.is_linear:
         return "as its friction is not linear in the speed"
     if not model.chain.is_uniform:
-        return "which needs open ends and a single number each for coupling, pulling and threshold"
+        return "which needs a row with open ends, masses of 1 and one number each for coupling, pulling and threshold"
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 
 def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown: float) -> None:
     """Check the values of a in all sections against the grid and fill in defaults; `shown` is that of single runs."""
-    chain = Chain(blocks, **config["chain"])
+    chain = Chain(**config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
     usual = {law: [a for a in values if a in grid and blocks > 1] for law, values in maps.items()}
@@ -126,8 +144,8 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     phases["a"] = sorted(phases.get("a", [a for a in PAPER_PHASES if a in grid and of_paper]))
     solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown]))
     config["figures"].setdefault("a", shown)
-    if phases["a"] and ends_are_neighbours(chain):
-        raise refusal("phases.a", phases["a"], "[] where a spring joins the end blocks: one or two blocks, or a ring")
+    if phases["a"] and not has_free_ends(chain):
+        raise refusal("phases.a", phases["a"], "[] unless the chain is a row of three blocks or more with open ends")
     if blocks == 1 and any(basins["a"].values()):
         raise ValueError(f"basins.a: got {basins['a']}, expected no values for one block: a map needs two end blocks")
     for key, values in (

@@ -69,7 +69,7 @@ class Grid:
     @property
     def blocks(self) -> int:
         """Number of blocks."""
-        return len(next(iter(self.initial.values())).position)
+        return self.models["chain"]["blocks"]
 
     @property
     def is_mirror_symmetric(self) -> bool:
