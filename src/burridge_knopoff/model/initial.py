@@ -34,7 +34,7 @@ class InitialState:
     InitialState(name='own', position=(-0.9, -1.1), velocity=(0.1, 0.1))
     >>> rough = InitialState("rough", {"random": "uniform", "low": -1.5, "high": -0.5, "seed": 1}, 0.0)
     >>> rough.numbers(4)[0].round(2).tolist()
-    [-1.44, -0.66, -1.23, -0.93]
+    [-1.45, -1.15, -0.55, -0.68]
     """
 
     name: str

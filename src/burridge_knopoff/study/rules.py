@@ -26,6 +26,8 @@ from burridge_knopoff.values import MOST_NUMBERS, refusal
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
+#: Numbers in a list of a config: the command of a run has to hold them.
+MOST_LISTED = 1024
 
 
 @contextmanager
@@ -55,6 +57,11 @@ def fill_states(config: Mapping[str, Any]) -> None:
 def fill_blocks(config: Mapping[str, Any]) -> None:
     """Fill in the number of blocks, from the springs or the initial states; every state must have as many."""
     chain, told = config["chain"], {}
+    sections = {"chain": chain, **{f"initial.{name}": state for name, state in config["initial"].items()}}
+    for section, values in sections.items():
+        for key, value in values.items():
+            if isinstance(value, list) and len(value) > MOST_LISTED:
+                raise refusal(f"{section}.{key}", value, f"at most {MOST_LISTED} numbers in a list, or drawn numbers")
     for name, state in config["initial"].items():
         with under(f"initial.{name}."):
             told[name] = InitialState(name, **state).blocks
