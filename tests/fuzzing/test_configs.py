@@ -48,9 +48,10 @@ v contact start solver step transient batches sampling trajectory trajectory_sam
 lyapunov_exponents lyapunov_alignment a_digits synchronization_threshold motion agreement solvers figures attractors
 basins chains two_blocks samples pixels tiles pairs blocks laws seed position velocity time_limit resolution
 perturbations threads phases amplitude phase_difference inner_share 180 180.5 refine fraction_width lifetime 1.0e-4 law
-chain coupling pulling threshold mass grid springs ends neighbours open ring formula sigma eta exponential stribeck carlson_langer own 100
+chain coupling pulling threshold ends neighbours open ring formula sigma eta exponential stribeck carlson_langer own 100
 100.5 1/(1+a*u) 1-a*u 1-b*u exp(-a*u) sqrt(1-a*u) 1-a*u**2 {formula: 1-a*u} {formula: 1-b*u, b: 0.5} {law: stribeck,
-sigma: 0.1} {sigma: 0.02} {linearized: {}}
+sigma: 0.1} {sigma: 0.02} {linearized: {}} mass grid springs {springs: x} {grid: [3,1]} random=uniform
+{random: uniform, low: 0.5, high: 1, seed: 1}
 """
 pieces = st.sampled_from(re.findall(r"\{.*?\}+|\[.*?\]+|\S+", PIECES))
 

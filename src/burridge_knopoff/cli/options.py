@@ -45,9 +45,10 @@ number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
 how_many = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
 count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
 _numbers = _reader(
-    r"[-+.0-9a-zA-Z,]+",
-    "numbers with commas between them",
-    lambda text: tuple(int(item) if item.isdecimal() else float(item) for item in text.split(",")),
+    r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
+)
+_counts = _reader(
+    r"[0-9]{1,9}(,[0-9]{1,9})*", "whole numbers with commas between them", lambda text: tuple(map(int, text.split(",")))
 )
 _named_number = _reader(
     r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",
@@ -108,7 +109,7 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
         shown = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default
         option = group.add_argument(
             f"--{key.replace('_', '-')}",
-            type=_READERS.get(type(field.range), str),
+            type=_counts if name == "grid" else _READERS.get(type(field.range), str),
             default=default,
             metavar="LOW,HIGH" if isinstance(field.range, Interval) else _METAVARS.get(key),
             help=words if default is None else f"{words} (default: {shown})",

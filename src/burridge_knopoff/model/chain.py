@@ -167,7 +167,12 @@ class Chain:
             )
 
     def is_like(self, other: Chain) -> bool:
-        """Tell whether another chain has the same springs, masses and static friction, in whatever form."""
+        """Tell whether another chain has the same springs, masses and static friction, in whatever form.
+
+        A network is like no row, which has a mirror image.
+        """
+        if self.is_network != other.is_network:
+            return False
         pairs = [(getattr(self, name), getattr(other, name)) for name in ("driving", "thresholds", "masses")]
         return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
 

@@ -21,7 +21,7 @@ def simulate_command(model: Model, initial: InitialState, settings: Settings) ->
     """Return the command that repeats this run, quoted for a shell; settings with their default are left out."""
     words = ["bk", "simulate", *_law(model.law), "--a", repr(model.law.a)]
     words += [*_changed(model.chain), *_changed(model), "--initial", initial.name]
-    if initial.blocks != model.blocks and not model.chain.is_network:
+    if model.chain.springs or (initial.blocks != model.blocks and not model.chain.grid):
         words += ["--blocks", f"{model.blocks}"]
     words += [f"--{key}={_text(getattr(initial, key))}" for key in fields_of(InitialState)]
     words += _changed(settings)

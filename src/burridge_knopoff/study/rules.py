@@ -181,10 +181,10 @@ def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
         config["basins"]["a"] = {law: [] for law in config["laws"]}
 
 
-def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
+def check_size(config: Mapping[str, Any], values: int, blocks: int, without: Collection[str]) -> None:
     """Check that Snakemake can plan the jobs of a study and that no job holds too many numbers.
 
-    config : with all defaults; values : number of values of a
+    config : with all defaults; values : number of values of a; without : stages that are left out
     """
     states, laws = config["initial"], config["laws"]
     points = len(laws) * len(states) * values
@@ -208,7 +208,7 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
         ("chains.samples", max(len(chains["a"]), 2 * max(chains["blocks"])) * chains["samples"]),
         ("chains.two_blocks.samples", len(two_blocks["a"]) * two_blocks["samples"]),
     ):
-        if numbers > MOST_NUMBERS:
+        if numbers > MOST_NUMBERS and key.partition(".")[0] not in without:
             value = reduce(getitem, key.split("."), config)
             raise refusal(key, value, f"at most {MOST_NUMBERS:.0e} numbers held by a job, not {numbers:.1e}")
     if maps * basins["tiles"] > MAXIMUM_POINTS:

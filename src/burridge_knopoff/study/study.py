@@ -279,7 +279,9 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     chain = study.model(study.laws[0], values[0]).chain
     if is_new:
         chain.check_springs()
-    for law in study.laws:
+    # Results may be read where the file of springs is not; it was checked when the study ran.
+    has_springs = chain.springs is None or is_new
+    for law in study.laws if has_springs else ():
         study.settings(law).check_chain(chain)
     # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
@@ -288,11 +290,11 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
-    for law in study.laws if "solvers" in study.stages else ():
+    for law in study.laws if has_springs and "solvers" in study.stages else ():
         for solver in study.other_solvers(law):
             with rules.under("solvers."):
                 study.settings(law, solver).check_chain(chain)
-    rules.check_size(filled, len(grid), study.blocks)
+    rules.check_size(filled, len(grid), study.blocks, study.left_out)
     rules.leave_out(filled, study.left_out)
     return study
 

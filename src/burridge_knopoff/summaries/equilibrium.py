@@ -35,6 +35,9 @@ SLIDING = "uniform sliding attracts here; it has no stops and is not looked for"
 
 PARTS = ("real", "imaginary")
 
+#: Limit on the number of blocks: the modes of larger chains take hours, and their matrices more than any memory.
+MOST_BLOCKS = 1024
+
 # Digits kept of numbers that come from LAPACK, whose last bits depend on the machine.
 DIGITS = 12
 
@@ -72,13 +75,15 @@ _COORDINATES = {
 def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     """Return position, simulated drift, eigenvalues and simulated growth rate of uniform sliding at each a of a grid.
 
+    They are NaN for more than MOST_BLOCKS blocks.
+
     models : one for each law, at any a, of one chain and velocity
     """
     blocks = models[0].blocks
     sizes = {"law": len(models), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for i, of_law in enumerate(models):
-        for k, a in enumerate(grid):
+        for k, a in enumerate(grid if blocks <= MOST_BLOCKS else ()):
             model = of_law.at(a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
