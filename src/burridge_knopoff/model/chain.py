@@ -12,7 +12,7 @@ import numpy as np
 from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
-from burridge_knopoff.model.solving import eliminated, nearest_solution, ring_eliminated
+from burridge_knopoff.model.solving import static_displacement
 from burridge_knopoff.model.springs import (
     MAXIMUM_BLOCKS,
     STRENGTH,
@@ -33,8 +33,6 @@ ENDS = ("open", "ring")
 NEIGHBOURS = "neighbours"
 #: Number of blocks if nothing tells it: the paper's.
 BLOCKS = 3
-#: Rows and rings of up to this many blocks slide uniformly where elimination puts them.
-ELIMINATED = 1024
 
 _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
 _OF_BLOCKS = Either((STRENGTH, Several(STRENGTH), Drawn(STRENGTH)))
@@ -96,8 +94,7 @@ class Chain:
     springs: Annotated[
         str | None,
         SpringsFile(),
-        "file of the springs between blocks, instead of a row: lines `block block strength`; blocks are numbered from "
-        "1; a path is relative to the folder of the config",
+        "file of the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1",
     ] = None
 
     def __post_init__(self) -> None:
@@ -270,14 +267,6 @@ class Chain:
         return all(bool((one == other[::-1]).all()) for one, other in (*pairs, (self.before, self.after)))
 
     @property
-    def _period(self) -> int:
-        """The smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
-        values = np.array([self.before, self.driving, self.thresholds])
-        return next(
-            shift for shift in range(1, self.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1))
-        )
-
-    @property
     def is_uniform(self) -> bool:
         """Whether this is a row with open ends, masses of 1, and one number each for coupling, pulling and threshold.
 
@@ -318,14 +307,4 @@ class Chain:
 
         Uniform sliding is U_i = vτ + e_i if `friction` is Φ(v).
         """
-        if self.is_network or self.blocks > ELIMINATED:
-            return -friction * nearest_solution(self.sparse_stiffness, self.thresholds)
-        solve = ring_eliminated if self.ends == "ring" else eliminated
-        load = solve(self.diagonal, self.after, self.thresholds.copy())
-        if self.ends == "ring":
-            # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
-            load = np.tile(load[: self._period], self.blocks // self._period)
-        if self.is_mirror_symmetric:
-            # Make it mirror-symmetric to the bit, like the chain.
-            load = 0.5 * (load + load[::-1])
-        return -friction * load
+        return -friction * static_displacement(self)

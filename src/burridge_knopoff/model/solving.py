@@ -9,11 +9,37 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
+    from burridge_knopoff.model.chain import Chain
+
+#: Rows and rings of up to this many blocks are solved by elimination.
+ELIMINATED = 1024
 #: Corrections of a solution at most; each one gains several digits.
 _CORRECTIONS = 20
 #: Relative error at which a solution is right in twice the digits of a double.
 _ENOUGH = 1e-31
 _SPLITTER = 2.0**27 + 1.0
+
+
+def static_displacement(chain: Chain) -> np.ndarray:
+    """Return x with K x = threshold, shape (blocks,), as symmetric to the bit as the chain."""
+    if chain.is_network or chain.blocks > ELIMINATED:
+        return nearest_solution(chain.sparse_stiffness, chain.thresholds)
+    solve = ring_eliminated if chain.ends == "ring" else eliminated
+    found = solve(chain.diagonal, chain.after, chain.thresholds.copy())
+    if chain.ends == "ring":
+        # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
+        period = _period(chain)
+        found = np.tile(found[:period], chain.blocks // period)
+    if chain.is_mirror_symmetric:
+        # Make it mirror-symmetric to the bit, like the chain.
+        found = 0.5 * (found + found[::-1])
+    return found
+
+
+def _period(ring: Chain) -> int:
+    """Return the smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
+    values = np.array([ring.before, ring.driving, ring.thresholds])
+    return next(shift for shift in range(1, ring.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1)))
 
 
 def eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
