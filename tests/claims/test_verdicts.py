@@ -125,7 +125,7 @@ FOUR = {"four": {"position": [-1.0] * 4, "velocity": [0.1] * 4}}
 LONGER = "the paper's runs have a transient of 3000 and a window of 7000, those of the study "
 CHAINS = [{"ends": "ring"}, {"coupling": 2.0}, {"pulling": 1.0}, {"threshold": [1.0, 1.1, 1.0]}]
 FEW = "a statement on all 0.005 ≤ a ≤ 0.08 needs 10 values of a; what was computed has 2 there"
-SPRINGS = "the study's chain has other springs or static friction than the paper's"
+SPRINGS = "the study's chain has other springs, masses or static friction than the paper's"
 
 
 @pytest.mark.parametrize(

@@ -66,8 +66,8 @@ VARIABLES = {
     ),
 }
 _COORDINATES = {
-    "block": Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True),
-    "mode": Variable(("mode",), "i2", "number of the eigenvalue, from the slowest oscillation on", coordinate=True),
+    "block": Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True),
+    "mode": Variable(("mode",), "i4", "number of the eigenvalue, from the slowest oscillation on", coordinate=True),
     "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
 }
 
