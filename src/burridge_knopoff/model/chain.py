@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
@@ -46,15 +47,16 @@ class Chain:
     """N blocks in a row, a ring, a grid, or any network of springs.
 
     A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A grid
-    of nx × ny blocks has open edges; block number is ix + nx·iy, with ix and iy from 0. A file of springs has a line
-    `block block strength` for each, with blocks numbered from 1. A slipping block feels the friction threshold · Φ.
+    of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and row iy, both from 0. A file of springs
+    has a line `block block strength` for each, with blocks numbered from 1. A block of mass m obeys
+    m U'' = s − threshold · Φ(U') while it slips.
 
     The spring force on block i is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian of the springs plus diag(D),
     so that K·1 = D. The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
     pulled at its first block only: `Chain(2, pulling=(1.0, 0.0))`. A single block hangs on one spring to the driver.
 
     Raises ValueError for a number of blocks, a number of springs or a strength out of range, for a file that is no list
-    of springs, and if no block is pulled of those that springs join, since K is then singular.
+    of springs, and if the driver pulls no block of a connected part of the chain, since K is then singular.
 
     Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
     in units of F(0), masses in units of the mass of the paper's blocks.
@@ -75,12 +77,12 @@ class Chain:
         "number of blocks N; by default that of the grid, the largest in the file of springs, or that of the positions",
     ] = None  # type: ignore[assignment]
     coupling: Annotated[
-        float | tuple[float, ...],
+        float | Sequence[float],
         _STRENGTHS,
         "springs between neighbours: one number for all, or one a spring of a row or a ring",
     ] = 1.0
     pulling: Annotated[
-        Numbers,
+        float | Sequence[float] | str,
         Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
         "springs to the driver: one number for all, or one a block (0: no spring); neighbours: the number of the "
         "block's neighbours, as in the paper (1 for a single block)",
@@ -89,7 +91,7 @@ class Chain:
     ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is coupled to the first"] = "open"
     mass: Annotated[Numbers, _OF_BLOCKS, "mass: one number for all, one a block, or drawn"] = 1.0
     grid: Annotated[
-        tuple[int, int] | None, Several(_SIDE, 2, 2), "[nx, ny]: nx columns and ny rows of blocks, instead of a row"
+        Sequence[int] | None, Several(_SIDE, 2, 2), "[nx, ny]: nx columns and ny rows of blocks, instead of a row"
     ] = None
     springs: Annotated[
         str | None,
@@ -147,8 +149,8 @@ class Chain:
     def check_springs(self) -> None:
         """Read the file of springs, if there is one.
 
-        Raises ValueError, one line, if it is no list of springs between these blocks, and if no block is pulled of
-        those that springs join, since K is then singular.
+        Raises ValueError, one line, if it is no list of springs between these blocks, and if the driver pulls no block
+        of a connected part, since K is then singular.
         """
         if self.springs is None:
             return
@@ -211,7 +213,8 @@ class Chain:
         smallest number. The two blocks of a ring are joined by two springs.
         """
         if self.grid:
-            return of_grid(*self.grid, float(self.coupling))  # type: ignore[arg-type]
+            columns, rows = self.grid
+            return of_grid(columns, rows, float(self.coupling))  # type: ignore[arg-type]
         if self.springs is None:
             return along(self.before, self.after)
         one, other, strength = read_edges(self.springs)

@@ -13,8 +13,8 @@ from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import Number, OneOf, Range, Whole
 from burridge_knopoff.values import refusal
 
-#: One number for all blocks, a list with one number each, or the text of a `Drawn`.
-Numbers = float | Sequence[float] | str
+#: One number for all blocks, a list with one number each, or the keys or the text of a `Drawn`.
+Numbers = float | Sequence[float] | Mapping[str, Any] | str
 
 SEED = Whole(0, 2**32 - 1)
 
@@ -61,7 +61,7 @@ def numbers_of(given: Numbers, blocks: int, name: str) -> np.ndarray:
     The first numbers drawn for more blocks are those drawn for fewer.
     """
     if not isinstance(given, str):
-        return np.array(np.broadcast_to(given, blocks), dtype=float)
+        return np.array(np.broadcast_to(given, blocks), dtype=float)  # type: ignore[arg-type]
     drawn = {key: _plain(text) for key, _, text in (part.partition("=") for part in given.split(","))}
     unit = np.random.default_rng([drawn["seed"], *name.encode()]).random(blocks)
     return np.minimum(drawn["low"] + (drawn["high"] - drawn["low"]) * unit, drawn["high"])
