@@ -84,7 +84,7 @@ class Evidence:
 
     @property
     def _blocks(self) -> int:
-        return self.config["chain"]["blocks"]
+        return Chain(**self.config["chain"]).blocks
 
     def summary(self, name: str) -> xarray.Dataset:
         """Return a summary, for the paper's laws only; raises NotTestableError if the study does not have it."""
