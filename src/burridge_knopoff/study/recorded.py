@@ -8,13 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.dataset.point import point_about
-from burridge_knopoff.model.fields import FOLLOWS, Keys
+from burridge_knopoff.model.fields import Keys
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
 from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.values import joined
 
+#: Keys without a default, which the config of a row or a ring does not have.
+_OF_NETWORKS = ("chain.grid", "chain.springs")
 _RUN = re.compile(r"(?:points|solvers/(?P<solver>\w+))/(?P<law>\w+)/(?P<initial>\w+)/a(?P<a>[\d.]+)\.nc")
 
 
@@ -53,7 +55,7 @@ def _other_key(config: Any, keys: Keys, place: str = "") -> str:
     if not isinstance(config, dict):
         return place
     sections = {name: field.range for name, field in keys.fields.items() if isinstance(field.range, Keys)}
-    needed = {name for name, field in keys.fields.items() if field.default is not FOLLOWS}
-    found = [joined(place, name) for name in sorted((config.keys() - keys.fields.keys()) | (needed - config.keys()))]
+    found = [joined(place, name) for name in sorted(config.keys() ^ keys.fields.keys())]
+    found = [key for key in found if key not in _OF_NETWORKS]
     found += [_other_key(config[name], inside, joined(place, name)) for name, inside in sections.items() if not found]
     return next(filter(None, found), "")
